@@ -1,7 +1,7 @@
 /** @file
  * velo/camera_file.h: reads and writes the camera files of other tools. docs/camera-files.md gives each dialect's
- * contents, axes and pixel origin; everything is converted to velo's: x right, y down, z forward, the first pixel's
- * centre at (0.5, 0.5). A field that a dialect cannot hold is an error that names it, never dropped silently. */
+ * contents, axes and pixel origin. Reading converts them to velo's conventions: x right, y down, z forward, the first
+ * pixel's centre at (0.5, 0.5). If a dialect cannot hold a field, writing fails with an error that names the field. */
 #ifndef VELO_CAMERA_FILE_H
 #define VELO_CAMERA_FILE_H
 
@@ -17,13 +17,13 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_VELO,      /**< JSON; holds everything, exactly */
   VL_CAMERA_DIALECT_OPENCV,    /**< YAML, JSON or XML, also FileStorage's */
   VL_CAMERA_DIALECT_ROS,       /**< camera_info YAML, or .ini */
-  VL_CAMERA_DIALECT_COLMAP,    /**< folder with cameras and images as .txt or .bin, or one of them */
+  VL_CAMERA_DIALECT_COLMAP,    /**< a folder with the files cameras and images (.txt or .bin), or one of these files */
   VL_CAMERA_DIALECT_NERF,      /**< transforms.json */
   VL_CAMERA_DIALECT_KALIBR,    /**< camchain YAML */
   VL_CAMERA_DIALECT_BLENDER,   /**< JSON of Blender's own property names */
   VL_CAMERA_DIALECT_PBRT,      /**< write only: Transform and Camera statements; scenes are read by vl_scene_load */
   VL_CAMERA_DIALECT_GLTF,      /**< a node with a camera; .glb is read too */
-  VL_CAMERA_DIALECT_OPENGL,    /**< projection and view matrix, as JSON or YAML; conventions stated */
+  VL_CAMERA_DIALECT_OPENGL,    /**< projection and view matrix and their conventions, as JSON or YAML */
   VL_CAMERA_DIALECT_VULKAN,    /**< as OPENGL, with Vulkan's conventions */
   VL_CAMERA_DIALECT_D3D,       /**< as OPENGL, with Direct3D's conventions */
   VL_CAMERA_DIALECT_MITSUBA,   /**< a sensor in Mitsuba 3's XML */
@@ -53,12 +53,13 @@ VL_API const char *vl_camera_dialect_name(vlCameraDialect dialect);
 typedef struct vlCameraFileDef {
   uint32_t cookie;
   vlCameraDialect dialect; /**< default VL_CAMERA_DIALECT_AUTO */
-  const char
-      *frame; /**< which camera or pose of a file with several: its name, or its number from 0; null: the first */
-  const char *const *drop; /**< names of fields that writing may drop */
+  const char *frame; /**< the camera or pose to read from a file with several: its name, or its number from 0; null: the
+                        first */
+  const char *const *drop; /**< names of fields that writing may drop if the dialect cannot hold them */
   uint32_t drop_count;     /**< length of drop */
-  uint32_t width, height;  /**< pixels, for files without an image size; 0: that of the file's images where they are
-                            * there; else an error, or 720 rows where the file has an aspect ratio (glTF, USD) */
+  uint32_t width,
+      height; /**< image size, pixels, for files that have none; 0: the size of the images that the file names, if they
+                 exist; else 720 rows for files with an aspect ratio (glTF, USD), an error for others */
 } vlCameraFileDef;
 
 /** The default def. */
@@ -74,8 +75,8 @@ typedef struct vlCameraRecord {
 } vlCameraRecord;
 
 /** Reads one camera. def may be null: the default. The result is a description; vl_camera_make checks its numbers.
- * Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, the message names the field; UNSUPPORTED: valid, but not
- * a camera that velo has. */
+ * Errors: MISSING, IO, MEMORY; SCENE: the contents are wrong, and the message names the field; UNSUPPORTED: the camera
+ * is valid, but velo does not have its model. */
 VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCameraFileDef *def, vlCameraRecord *record,
                                vlError *error);
 /** Writes one camera; the file is written whole or not at all. def may be null: the default. Errors: ARGUMENT, IO,

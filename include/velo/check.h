@@ -1,7 +1,6 @@
 /** @file
- * velo/check.h: the scene doctor: finds what is likely to be a mistake in a scene although it can be rendered, and
- * summarises what a scene holds. It reads the description (velo/scene.h) only, from any file format, and builds
- * nothing. */
+ * velo/check.h: the scene doctor: finds likely mistakes in a scene, also in one that can be rendered, and summarises
+ * its contents. It works on the description (velo/scene.h) of a scene from any file format and builds no world. */
 #ifndef VELO_CHECK_H
 #define VELO_CHECK_H
 
@@ -27,9 +26,9 @@ typedef enum vlFindingKind {
   VL_FINDING_ALBEDO,     /**< a surface that reflects more light than it receives */
   VL_FINDING_CAMERA_INSIDE, /**< the camera is inside a closed solid */
   VL_FINDING_DARK_LIGHT,    /**< a light of power 0 */
-  VL_FINDING_ROUGH_COAT,    /**< a rough coat that loses light between its microfacets: how much */
-  VL_FINDING_WRONG,         /**< reported while loading (vl_scene_diagnose): another error in the file */
-  VL_FINDING_OVERWRITTEN,   /**< reported while loading: given twice; the second counts */
+  VL_FINDING_ROUGH_COAT,    /**< a rough coat that loses light between its microfacets; the message says how much */
+  VL_FINDING_WRONG,         /**< reported while loading (vl_scene_diagnose): any other error in the file */
+  VL_FINDING_OVERWRITTEN,   /**< reported while loading: something is given twice, and the second one is used */
   VL_FINDING_REMARK,        /**< reported while loading: a warning of the importer */
   VL_FINDING_KINDS          /**< number of kinds */
 } vlFindingKind;
@@ -47,8 +46,8 @@ typedef enum vlSeverity {
 typedef struct vlFinding {
   vlFindingKind kind;  /**< what was found */
   vlSeverity severity; /**< how bad it is */
-  vlResult code;       /**< errors: what rendering would return */
-  vlSource source;     /**< where; file null, line 0 where not known */
+  vlResult code;       /**< for errors: the result that rendering would return */
+  vlSource source;     /**< place in the scene's file; file is null or line 0 if not known */
   const char *message; /**< one line */
 } vlFinding;
 
@@ -64,7 +63,8 @@ typedef struct vlCheckDef {
 } vlCheckDef;
 /** The default def. */
 VL_API vlCheckDef vl_default_check_def(void);
-/** Checks a scene, which must outlive the check. def may be null. Errors: MEMORY, ARGUMENT, that of vl_scene_result. */
+/** Checks a scene, which must outlive the check. def may be null. Errors: MEMORY, ARGUMENT, the error of
+ * vl_scene_result. */
 VL_API vlResult vl_scene_check(const vlScene *scene, const vlCheckDef *def, vlCheck **check, vlError *error);
 /** Null is allowed. */
 VL_API void vl_check_destroy(vlCheck *check);

@@ -10,10 +10,11 @@
 extern "C" {
 #endif
 
-/** The focus distance for the surface at image point (x, y), in pixels, at the middle of the exposure: *distance in
- * scene units, as vlCameraDef.focus_distance, for the camera's own tilt. Only surfaces between the near and far planes
- * count. For a lens of many elements: the distance from the film, as vl_optics_refocus takes it. Errors: ARGUMENT (a
- * point outside the image, or where no surface is seen), MEMORY. Not from inside a parallel body. */
+/** Finds the focus distance for the surface at image point (x, y), in pixels, at the middle of the exposure. *distance
+ * is in scene units, as vlCameraDef.focus_distance, and accounts for the tilt of the camera's plane in focus. Only
+ * surfaces between the near and far planes count. For a lens of many elements: the distance from the film, as
+ * vl_optics_refocus takes it. Errors: ARGUMENT (a point outside the image, or where no surface is seen), MEMORY. Must
+ * not be called from inside a parallel loop. */
 VL_API vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, double y, double *distance,
                              vlError *error);
 

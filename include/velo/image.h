@@ -12,7 +12,7 @@ extern "C" {
 /** The type of all values of an image: unsigned integers, half and single precision floats. */
 typedef enum vlPixelType { VL_PIXEL_U8, VL_PIXEL_U16, VL_PIXEL_F16, VL_PIXEL_F32, VL_PIXEL_U32 } vlPixelType;
 
-/** The encoding of integers: linear, sRGB's curve, or x^gamma. Floats are always linear. */
+/** The encoding of integer values: linear, sRGB's curve, or x^gamma. Float values are always linear. */
 typedef enum vlEncoding { VL_ENCODING_LINEAR, VL_ENCODING_SRGB, VL_ENCODING_GAMMA } vlEncoding;
 
 /** An image: interleaved channels of one type, rows from the top, no padding. Its context must outlive it. */
@@ -53,7 +53,7 @@ VL_API const char *vl_image_channel_name(const vlImage *image, uint32_t channel)
 VL_API int vl_image_find_channel(const vlImage *image, const char *name);
 /** width * height * channels values of the image's type, rows from the top; lives as long as the image. */
 VL_API void *vl_image_pixels(vlImage *image);
-/** The same, to read. */
+/** The same values, read-only. */
 VL_API const void *vl_image_const_pixels(const vlImage *image);
 /** Renames a channel. ARGUMENT: no such channel, an empty name, the name of another channel. */
 VL_API vlResult vl_image_rename_channel(vlImage *image, uint32_t channel, const char *name);
@@ -90,11 +90,11 @@ VL_API uint32_t vl_image_attribute_count(const vlImage *image);
 /** Attribute `index`, from 0. Its strings live until the attribute is set again or the image destroyed. ARGUMENT: no
  * such attribute. */
 VL_API vlResult vl_image_attribute(const vlImage *image, uint32_t index, vlAttribute *attribute);
-/** The same by name. */
+/** As vl_image_attribute, by name. */
 VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, vlAttribute *attribute);
 
-/** Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP; the content decides, not the suffix. Of an EXR file:
- * the first part; the image is its data window, and where that is not the display window both are attributes
+/** Reads EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP; the content decides, not the suffix. Of an EXR file
+ * the first part is read. The image is its data window; if the display window differs, both are stored as attributes
  * ("dataWindow", "displayWindow"), which vl_image_write writes back. Errors: SCENE (a damaged file), MISSING, IO,
  * MEMORY. Memory is bounded by the file: a header with more pixels than the file can hold is refused before allocating.
  */
@@ -103,9 +103,9 @@ VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **im
 /** Reads only the header: an image without pixels (vl_image_pixels is null), with channels and attributes. */
 VL_API vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image, vlError *error);
 
-/** Reads only these `count` channels of an OpenEXR file (other formats: all). The image has the channels' type if they
- * all have the same: ids stay VL_PIXEL_U32, where vl_image_read makes floats of ids beside colours (exact up to 2^24).
- * SCENE when the file lacks one of them. */
+/** Reads only these `count` channels of an OpenEXR file (of other formats, all channels). If the channels have the same
+ * type, the image has that type, so ids stay VL_PIXEL_U32. vl_image_read, in contrast, converts ids beside colours to
+ * floats (exact up to 2^24). SCENE when the file lacks one of the channels. */
 VL_API vlResult vl_image_read_channels(vlContext *context, const char *path, const char *const *names, uint32_t count,
                                        vlImage **image, vlError *error);
 /** The type of a channel in the file that the image was read from; otherwise the image's own type. */
@@ -134,11 +134,12 @@ VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlW
 VL_API vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, const char *path,
                                       const vlWriteDef *write, vlError *error);
 
-/** The channels of an image for colour-only files and displays: R G B (A), or Y (A); without those the first layer that
- * has R, G and B ("diffuse.R"), else the first channel, as grey. Returns their number, 1 to 4. */
+/** The channels of an image that displays and colour-only files show: R G B (A), or Y (A); if there are none, those of
+ * the first layer with R, G and B ("diffuse.R"), else the first channel as grey. Returns their number, 1 to 4. */
 VL_API uint32_t vl_image_shown(const vlImage *image, uint32_t channel[4]);
 
-/** The transform from linear to display values: sRGB's curve, tone mapping by Khronos PBR Neutral or AgX, none. */
+/** The transform from linear to display values: sRGB's curve (STANDARD), tone mapping by Khronos PBR Neutral or by AgX,
+ * or none (RAW). */
 typedef enum vlView { VL_VIEW_STANDARD, VL_VIEW_KHRONOS_NEUTRAL, VL_VIEW_AGX, VL_VIEW_RAW } vlView;
 /** Makes an 8-bit sRGB image (R G B, or Y), owned by the caller, from linear Rec. 709 channels R, G, B (or Y),
  * multiplied by 2^exposure and transformed by the view. Values that are not finite become 0 and are counted in

@@ -1,6 +1,6 @@
 /** @file
- * velo/render.h: the world (compiled, constant), the film (accumulated samples), and vl_render, the one call where
- * world, camera and film meet. */
+ * velo/render.h: the world (a compiled scene), the film (accumulated samples), and vl_render, which renders a world
+ * with a camera into a film. */
 #ifndef VELO_RENDER_H
 #define VELO_RENDER_H
 
@@ -15,44 +15,49 @@ extern "C" {
 
 /* ---- world ------------------------------------------------------------------------------------------------------ */
 
-/** A compiled scene. Constant: any number of threads and renders may share it. Its context must outlive it. */
+/** A compiled scene. It never changes, so any number of threads and renders may share it. Its context must outlive it.
+ */
 typedef struct vlWorld vlWorld;
-/** What is guaranteed for the image's bits. PORTABLE: the same scene, options and version give the same bits on every
- * x86-64 machine, for any number of threads; a crop has the same pixels as the whole image. FAST: the same on machines
- * for which Embree, which intersects the rays, selects the same instruction set; elsewhere a few pixels differ, where
- * surfaces are coplanar or a ray meets an edge. docs/decisions/0013-the-bits-of-embree.md has the numbers. */
+/** The guarantee for the image's bits. PORTABLE: the same scene, options and version give the same bits on every x86-64
+ * machine and for any number of threads; a crop has the same pixels as the whole image. FAST: the bits are the same
+ * only on machines for which Embree, which intersects the rays, selects the same instruction set. Between other
+ * machines a few pixels differ, where surfaces are coplanar or a ray meets an edge.
+ * docs/decisions/0013-the-bits-of-embree.md has measurements. */
 typedef enum vlBits { VL_BITS_PORTABLE, VL_BITS_FAST } vlBits;
 /** How to compile a scene. */
 typedef struct vlBuildDef {
   uint32_t cookie;
-  vlColorMode color;            /**< spectral (default) or RGB; fixed at build */
+  vlColorMode color;            /**< spectral (default) or RGB */
   vlLightSampler light_sampler; /**< default BVH */
-  bool imitate_pbrt; /**< reproduce known errors of pbrt-v4 (rough coats up to 8 % too bright; docs/decisions) */
-  /** Path and volume tracers: roughen what a path meets after its first non-specular scattering (pbrt-v4's regularize:
-   * alphas below 0.3 are doubled and clamped to 0.1 to 0.3). Removes fireflies of caustics, and part of their light.
-   * Default false. */
+  bool imitate_pbrt; /**< reproduce known errors of pbrt-v4, which for example makes rough coats up to 8 % too bright
+                        (docs/decisions) */
+  /** Path and volume tracers: increase the roughness of the materials that a path meets after its first non-specular
+   * scattering (pbrt-v4's regularize: alphas below 0.3 are doubled and clamped to the range 0.1 to 0.3). This removes
+   * fireflies from caustics, and also part of their light. Default false. */
   bool regularize;
-  /** Default portable. The environment variable VELO_EMBREE=sse4.2|avx|avx2|avx512 forces Embree's instruction set, for
-   * tests; portable accepts the first two. UNSUPPORTED from the build for one that is not accepted or not available. */
+  /** Default VL_BITS_PORTABLE. The environment variable VELO_EMBREE=sse4.2|avx|avx2|avx512 forces Embree's instruction
+   * set, for tests. VL_BITS_PORTABLE accepts only the first two. The build returns UNSUPPORTED for a set that is not
+   * accepted or that the machine lacks. */
   vlBits bits;
 } vlBuildDef;
 /** The default def. */
 VL_API vlBuildDef vl_default_build_def(void);
-/** Compiles the scene, and reads the images that it names. The scene may be destroyed afterwards. def may be null.
- * Errors: ARGUMENT, that of vl_scene_result, SCENE (with the place), MISSING (images), IO, MEMORY, UNSUPPORTED; *world
- * is null then. */
+/** Compiles the scene and reads the images that it names. The scene may be destroyed afterwards. def may be null.
+ * Errors: ARGUMENT, the error of vl_scene_result, SCENE (with the place), MISSING (images), IO, MEMORY, UNSUPPORTED.
+ * *world is null after an error. */
 VL_API vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
-/** The same for the last build of a scene: its meshes are freed as soon as the world has them, so that both are never
- * in memory beside the accelerator. Another build of the scene is ARGUMENT. */
+/** As vl_world_build, for the last build of a scene. It needs less memory: the scene's meshes are freed as soon as the
+ * world has copied them, before the accelerator is built. Later builds of the same scene return ARGUMENT. */
 VL_API vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **world, vlError *error);
 /** Null is allowed. */
 VL_API void vl_world_destroy(vlWorld *world);
 /** The size of a world. */
 typedef struct vlWorldInfo {
-  uint64_t triangles, primitives; /**< counts; triangles are among the primitives; those of groups count once */
-  uint64_t instances, lights;     /**< counts; each emissive primitive is a light */
-  uint64_t texture_bytes;         /**< of images, with their coarser levels */
-  uint64_t bytes; /**< held by the context when the build was done, the scene's included, Embree's excluded */
+  uint64_t triangles, primitives; /**< counts; primitives include the triangles; a group's primitives count once,
+                                     however many instances it has */
+  uint64_t instances, lights;     /**< counts; each emissive primitive counts as a light */
+  uint64_t texture_bytes;         /**< bytes of the texture images, including their MIP levels */
+  uint64_t bytes; /**< bytes that the context held at the end of the build: with the scene's, without Embree's */
   float bounds_min[3], bounds_max[3]; /**< corners of the bounding box, world space */
   double build_seconds;               /**< duration of the build */
 } vlWorldInfo;
@@ -61,32 +66,34 @@ VL_API void vl_world_info(const vlWorld *world, vlWorldInfo *info);
 
 /* ---- film ------------------------------------------------------------------------------------------------------- */
 
-/** The accumulated samples of an image. One thread at a time. Its context must outlive it. */
+/** The accumulated samples of an image. Only one thread at a time may use a film. Its context must outlive it. */
 typedef struct vlFilm vlFilm;
 /** How to create a film. */
 typedef struct vlFilmDef {
   uint32_t cookie;
-  uint32_t width, height; /**< the whole image, pixels */
+  uint32_t width, height; /**< size of the whole image, pixels */
   uint32_t crop[4];       /**< the pixels that are rendered: x0, y0, x1, y1, exclusive; default all */
   vlPixelFilter filter;   /**< reconstruction filter */
-  vlColorSpace space;     /**< of the developed image */
-  double white_balance; /**< kelvin: daylight of this colour temperature becomes white; 0 (default): no white balance */
-  /** The spectral response: null (default) or "cie1931": the standard observer; or a measured camera (vl_sensor_name),
-   * whose values become XYZ by the matrix that fits 24 reflectances under its white, daylight of white_balance kelvin
-   * (0: 6500 here), pbrt book 5.4.2. Worlds in RGB mode have no spectra and use the standard observer with that white.
+  vlColorSpace space;     /**< colour space of the developed image */
+  double white_balance;   /**< colour temperature of the daylight that becomes white, kelvin; 0 (default): no white
+                             balance */
+  /** The sensor's spectral response. Null (default) or "cie1931" is the standard observer. The name of a measured
+   * camera (vl_sensor_name) selects its response; a matrix converts its values to XYZ. The matrix is fitted to 24
+   * reflectances under the sensor's white, which is daylight of white_balance kelvin, or of 6500 K if that is 0 (pbrt
+   * book 5.4.2). Worlds in RGB mode have no spectra: for them the sensor is the standard observer with the same white.
    */
   const char *sensor;
-  /** A sample whose X, Y or Z (the sensor's red, green or blue) is above this is scaled down to it: removes fireflies,
-   * and is biased. Default infinity. */
+  /** A sample whose X, Y or Z (or the sensor's red, green or blue) is above this value is scaled down so that the
+   * largest equals it. This removes fireflies, but biases the image. Default infinity. */
   float max_component;
-  bool errors; /**< keep what vl_film_errors needs: three times the memory; default false */
-  /** Spectra beside the colours: the number of buckets of equal width from lambda_min to lambda_max, at most 1000; each
-   * takes 48 bytes a pixel. All paths then have the same distribution of wavelengths, in this range only. 0 (default):
-   * none. */
+  bool errors; /**< keep the sums that vl_film_errors needs, which triples the film's memory; default false */
+  /** The number of wavelength buckets, at most 1000. A film with buckets stores spectra besides the colours: its
+   * buckets have equal width and cover lambda_min to lambda_max. Each bucket takes 48 bytes per pixel. All paths then
+   * sample wavelengths from the same distribution, and only in this range. 0 (default): no spectra. */
   uint32_t buckets;
-  double lambda_min, lambda_max; /**< nm, within 360 to 830 (the default) */
+  double lambda_min, lambda_max; /**< wavelengths in nm, between 360 and 830 (the defaults) */
 } vlFilmDef;
-/** The names for vlFilmDef.sensor, index from 0; null past the end. Constant. */
+/** Name `index`, from 0, of the names for vlFilmDef.sensor; null past the end. Constant strings. */
 VL_API const char *vl_sensor_name(uint32_t index);
 /** The default def for an image of this size, in pixels. */
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
@@ -94,11 +101,12 @@ VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 /** Null is allowed. */
 VL_API void vl_film_destroy(vlFilm *film);
-/** Bytes that a film of this def holds while it is rendered into. */
+/** The number of bytes that a film of this def holds during a render. */
 VL_API uint64_t vl_film_memory(const vlFilmDef *def);
-/** Removes all samples and keeps the memory, for the next image of the same size. Not while a render runs. */
+/** Removes all samples but keeps the memory, so that the film can take another image of the same size. Must not be
+ * called while a render runs. */
 VL_API void vl_film_clear(vlFilm *film);
-/** The number of samples per pixel (of whole passes). */
+/** The number of samples per pixel. Only finished passes count. */
 VL_API uint32_t vl_film_spp(const vlFilm *film);
 /** How to develop a film. */
 typedef struct vlDevelopDef {
@@ -107,19 +115,22 @@ typedef struct vlDevelopDef {
 } vlDevelopDef;
 /** The default def. */
 VL_API vlDevelopDef vl_default_develop_def(void);
-/** Makes a float image R G B A of the crop window, owned by the caller: the weighted mean of the samples, linear, in
- * the film's colour space; A is the share of samples that met a surface (R G B include the background). Zero for pixels
- * without samples. Not while a render runs, except from its callback after a pass. def may be null. ARGUMENT, MEMORY.
+/** Makes a float image R G B A of the crop window, owned by the caller. R G B are the weighted mean of the samples:
+ * linear, in the film's colour space, with the background. A is the share of samples that met a surface. Pixels without
+ * samples are 0. Must not be called while a render runs, except from its callback after a pass. def may be null.
+ * ARGUMENT, MEMORY.
  */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
-/** Makes a float image error.R error.G error.B of the crop window: the standard error of vl_film_develop's values, that
- * is the square root of the variance of the mean, estimated as if the pixel's samples were independent (most samplers
- * have less error); infinity below 2 samples. ARGUMENT when the film was made without vlFilmDef.errors. */
+/** Makes a float image error.R error.G error.B of the crop window, owned by the caller: the standard errors of
+ * vl_film_develop's values. They are square roots of the estimated variance of the mean. The estimate treats a pixel's
+ * samples as independent; the true error of most samplers is smaller. Pixels with fewer than 2 samples have infinity.
+ * ARGUMENT when the film was made without vlFilmDef.errors. */
 VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
-/** Makes a float image of the crop window with one channel per bucket, named as emitted light in Fichet, Pacanowski,
- * Wilkie 2021 ("An OpenEXR layout for spectral images"): S0.374,688nm for the one centred at 374.688 nm. A value is the
- * mean radiance per wavelength in the bucket, in the unit in which a light of constant spectrum and luminance 1 has 1
- * everywhere (pbrt-v4's). White balance, exposure and max_component do not apply. ARGUMENT for a film without buckets.
+/** Makes a float image of the crop window with one channel per bucket, owned by the caller. Channels are named as
+ * emitted light in Fichet, Pacanowski, Wilkie 2021 ("An OpenEXR layout for spectral images"): S0.374,688nm is the
+ * bucket centred at 374.688 nm. A value is the mean radiance per wavelength in the bucket. Its unit is pbrt-v4's: a
+ * light of constant spectrum and luminance 1 has the value 1 at all wavelengths. White balance, exposure and
+ * max_component do not apply. ARGUMENT for a film without buckets.
  */
 VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
@@ -127,17 +138,19 @@ VL_API vlResult vl_film_spectrum(const vlFilm *film, vlImage **image);
 
 /** The state of a render. */
 typedef struct vlProgress {
-  uint32_t spp_done, spp_total; /**< samples per pixel of the film: done in whole passes, and requested */
-  double elapsed, remaining;    /**< seconds; remaining is an estimate, infinity before there is one */
-  double fraction;              /**< of the work, 0 to 1; also inside a pass */
-  uint64_t paths, rays;         /**< traced so far */
-  bool pass_done; /**< a pass is done and the film may be read; false: inside a pass, the film must not be read */
+  uint32_t spp_done,
+      spp_total;             /**< samples per pixel of the film: those of finished passes, and the requested number */
+  double elapsed, remaining; /**< seconds; remaining is an estimate, infinity before there is one */
+  double fraction;           /**< share of the work that is done, 0 to 1; also advances inside a pass */
+  uint64_t paths, rays;      /**< numbers of paths and rays traced so far */
+  bool pass_done; /**< true: a pass is finished, and the film may be read; false: a pass is running, and the film must
+                     not be read */
 } vlProgress;
 /** Called after each pass, and about ten times a second inside one, on the thread that called vl_render. Return false
- * to stop: after a pass at once; inside a pass the pass is discarded. */
+ * to stop the render; a pass that is running is then discarded. */
 typedef bool vlProgressFn(void *user, const vlProgress *progress);
 
-/** vlRenderDef.light_paths: one light path per pixel, at most 2^20. */
+/** Value of vlRenderDef.light_paths: one light path per pixel, but at most 2^20. */
 #define VL_AS_MANY_AS_PIXELS 0xffffffffu
 
 /** How to render. */
@@ -145,29 +158,33 @@ typedef struct vlRenderDef {
   uint32_t cookie;
   vlTracer tracer;       /**< light transport algorithm */
   vlSamplerKind sampler; /**< sample generator */
-  uint32_t spp;          /**< samples per pixel that the film shall have in the end, those it has already included
-                          * and those before its first_sample */
-  uint32_t seed;         /**< of the random numbers */
-  /** The length of the sample sequence: for how many samples per pixel the sampler lays out its points; sample i of a
-   * pixel is the same in all renders of one length, whatever their spp. Samples past it begin another, independent
-   * sequence. 0 (default): that of the samples which the film has; for its first ones 65536, or spp for the samplers
-   * that divide it into cells (without VL_SAMPLER_TRAIT_OPEN). */
+  uint32_t spp;  /**< samples per pixel that the film has after the render; includes the samples that it has before, and
+                    those before its first_sample */
+  uint32_t seed; /**< seed of the random numbers */
+  /** The length of the sample sequence: the number of samples per pixel for which the sampler lays out its points. All
+   * renders with the same length have the same sample i of a pixel, whatever their spp. Samples past the end begin
+   * another, independent sequence. 0 (default): the length with which the film's samples were taken. For a film without
+   * samples it is then 65536, or spp for samplers that divide the sequence into cells (those without
+   * VL_SAMPLER_TRAIT_OPEN). */
   uint32_t sequence;
-  /** The index of the first sample of a film without samples, which then gets those from first_sample to spp - 1: a
-   * part of an image that is rendered on several machines. Default 0. A film with samples continues where it ends. */
+  /** The index of the first sample. A film without samples gets the samples first_sample to spp - 1; so several
+   * machines can each render a part of the samples of one image. Default 0. A film with samples ignores it and
+   * continues after its last sample. */
   uint32_t first_sample;
-  uint32_t max_depth; /**< the most bounces of a path */
+  uint32_t max_depth; /**< largest number of bounces of a path */
   float ao_distance;  /**< ambient occlusion: length of its rays, scene units */
   bool ao_cosine;     /**< ambient occlusion: directions weighted by the cosine; else uniform */
-  /** For comparisons (pbrt's disablepixeljitter and the like). centred: all samples at the centre of the pixel, the
-   * lens and the exposure; same_wavelengths: the same for all paths; sharp_textures: no filtering by footprint. */
+  /** For comparisons (as pbrt's disablepixeljitter and similar options). centred: all samples are at the centre of the
+   * pixel, of the lens and of the exposure. same_wavelengths: all paths have the same wavelengths. sharp_textures:
+   * textures are not filtered by the footprint. */
   bool centred, same_wavelengths, sharp_textures;
-  /** Tracers that follow light both ways (docs/tracers.md): radius within which paths are merged in the first pass,
-   * scene units, above 0; VL_UNSET: two pixels wide. */
+  /** Tracers with light paths (docs/tracers.md): the radius within which paths are merged in the first pass, in scene
+   * units, above 0. VL_UNSET: the radius spans two pixels. */
   double merge_radius;
-  uint32_t light_paths; /**< the same tracers: light paths per pass, up to 2^24; or VL_AS_MANY_AS_PIXELS */
-  /** Seconds; 0: no limit. Passes are sized by the time left, and one that is not done by then is discarded; the first
-   * pass of each call is always finished. The callback may change it while the render runs. */
+  uint32_t light_paths; /**< tracers with light paths: their number per pass, up to 2^24, or VL_AS_MANY_AS_PIXELS */
+  /** The limit of the call's duration, in seconds; 0: no limit. Passes are sized by the time left, and a pass that is
+   * not finished in time is discarded. The first pass of each call is always finished. The callback may change the
+   * limit while the render runs. */
   double time_limit;
   vlProgressFn *progress; /**< default null */
   void *progress_user;    /**< passed to progress */
@@ -179,27 +196,27 @@ VL_API vlRenderDef vl_default_render_def(void);
 typedef struct vlRenderStats {
   uint32_t spp;                                          /**< samples per pixel of the film */
   uint64_t paths, camera_rays, bounce_rays, shadow_rays; /**< counts */
-  uint64_t not_finite;       /**< samples discarded because they were not finite or above 2^40 */
+  uint64_t not_finite;       /**< number of samples discarded because they were not finite or above 2^40 */
   double seconds;            /**< duration of the call */
-  uint32_t worst_x, worst_y; /**< a pixel where such a sample was found */
+  uint32_t worst_x, worst_y; /**< a pixel where a sample was discarded */
 } vlRenderStats;
-/** Adds samples until each pixel has def->spp. The bits do not depend on the number of threads, the crop and the
- * division into passes and calls. VL_CANCELLED when the callback stopped it: the film holds whole passes. One render at
- * a time adds to a film; it runs on the workers of the world's context. def and stats may be null. Errors: ARGUMENT
- * (also camera and film of different sizes, a film with buckets and a world in RGB, a film whose samples are of a
- * sequence of another length), MEMORY. For films with buckets the tracers that follow light both ways use camera paths
- * only. */
+/** Adds samples to the film until each pixel has def->spp. The bits depend neither on the number of threads, nor on the
+ * crop, nor on the division into passes and calls. VL_CANCELLED when the callback stopped the render; the film then
+ * holds whole passes. Only one render at a time may add to a film. The render runs on the workers of the world's
+ * context. def and stats may be null. With buckets in the film, the tracers with light paths use camera paths only.
+ * Errors: MEMORY; ARGUMENT, also when camera and film have different sizes, when the film has buckets and the world is
+ * in RGB mode, or when the film's samples are from a sequence of another length. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 
-/** Bytes that vl_render needs beside the film, for its workers and for light paths; the latter are an estimate, since
- * their number is known after the first pass. */
+/** The number of bytes that vl_render needs in addition to the film, for its workers and for light paths. The share of
+ * the light paths is an estimate, because their size is known only after the first pass. */
 VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def);
 
 /* ---- how the image of a scene is taken -------------------------------------------------------------------------- */
 
-/** The defs of the calls that make the image of a scene, each complete and ready to be passed on. A
- * new scene has the defaults of an empty pbrt-v4 file (1280 x 720 pixels); an importer sets what its file gives.
+/** The defs of the calls that make the image of a scene. A new scene has the defaults of an empty pbrt-v4 file (1280 x
+ * 720 pixels); an importer sets what its file specifies. The defs can be passed to the calls as they are:
  *
  *   vlSceneDefs *defs = vl_scene_defs(scene);
  *   vl_world_build(scene, &defs->build, &world, &error);
@@ -208,20 +225,20 @@ VL_API uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, co
  *   vl_render(world, &camera, film, &defs->render, NULL, &error);
  *   vl_film_develop(film, &defs->develop, &image);
  *
- * A copy stays valid after the scene, except for what the scene owns: camera.lens.aperture, camera.lens.optics,
- * camera_source.file. Not thread-safe. */
+ * A copy stays valid after the scene is destroyed, except for the pointers that the scene owns: camera.lens.aperture,
+ * camera.lens.optics, camera_source.file. Not thread-safe. */
 struct vlSceneDefs {
-  vlCameraDef camera; /**< for vl_camera_make; width and height are the film's */
-  vlFilmDef film;     /**< for vl_film_create */
-  vlBuildDef build;   /**< for vl_world_build */
-  vlRenderDef render; /**< for vl_render */
-  vlDevelopDef
-      develop; /**< for vl_film_develop; exposure: the file's sensor (ISO, imaging ratio, seconds) as one factor */
+  vlCameraDef camera;   /**< for vl_camera_make; width and height equal the film's */
+  vlFilmDef film;       /**< for vl_film_create */
+  vlBuildDef build;     /**< for vl_world_build */
+  vlRenderDef render;   /**< for vl_render */
+  vlDevelopDef develop; /**< for vl_film_develop; its exposure combines the settings of the file's sensor: ISO, imaging
+                           ratio, seconds */
   vlMediumId camera_medium; /**< the medium around the camera; index 0: vacuum. Read when the world is built */
   vlGbuffer gbuffer;        /**< ground truth channels that the file requests (pbrt's gbuffer film) */
   char output[512];         /**< name of the image file given in the scene's file; empty: none */
   vlSource camera_source;   /**< where the file describes the camera, for errors of vl_camera_make; file may be null */
-  bool camera_missing;      /**< the file describes no camera: vl_scene_complete makes one */
+  bool camera_missing;      /**< the file describes no camera: vl_scene_complete adds one */
   bool light_missing;       /**< the file describes no environment light: vl_scene_complete may add one */
 };
 

@@ -14,14 +14,14 @@ extern "C" {
 /** The frames and cameras of a file. Constant once loaded. */
 typedef struct vlTrajectory vlTrajectory;
 
-/** vlTrajectoryFrame.camera of a pose without camera. */
+/** Value of vlTrajectoryFrame.camera for a pose without a camera. */
 enum { VL_NO_CAMERA = -1 };
 
 /** One pose of a trajectory. */
 typedef struct vlTrajectoryFrame {
   const char *name; /**< name of the image, as the file writes it; may be empty; lives as long as the trajectory */
   int32_t camera;   /**< index for vl_trajectory_camera; VL_NO_CAMERA: the file gives a pose only */
-  uint32_t line;    /**< in the file, from 1; 0: not known */
+  uint32_t line;    /**< line in the file, from 1; 0: not known */
   double world_from_camera[16]; /**< a rotation (checked to 1e-3) and a translation; velo's axes, scene units */
   double time;                  /**< seconds; VL_UNSET: the file gives none */
 } vlTrajectoryFrame;
@@ -36,7 +36,8 @@ VL_API void vl_trajectory_destroy(vlTrajectory *trajectory);
 VL_API uint32_t vl_trajectory_frames(const vlTrajectory *trajectory);
 /** Frame `index`, from 0. ARGUMENT when there is no such frame. */
 VL_API vlResult vl_trajectory_frame(const vlTrajectory *trajectory, uint32_t index, vlTrajectoryFrame *frame);
-/** The number of different cameras; cameras that differ only in their pose are one. 0: the file holds poses only. */
+/** The number of different cameras; cameras that differ only in their pose count as one. 0: the file holds only poses.
+ */
 VL_API uint32_t vl_trajectory_cameras(const vlTrajectory *trajectory);
 /** Camera `index`, from 0; its pose is that of its first frame. Lives as long as the trajectory; null past the end. */
 VL_API const vlCameraRecord *vl_trajectory_camera(const vlTrajectory *trajectory, uint32_t index);

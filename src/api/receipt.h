@@ -1,4 +1,4 @@
-/* api/receipt.h: the parts of receipts (velo/receipt.h): a tree of JSON. */
+/* api/receipt.h: the internals of receipts (velo/receipt.h), which are JSON trees. */
 #ifndef API_RECEIPT_H
 #define API_RECEIPT_H
 
@@ -17,7 +17,7 @@ struct vlReceipt {
 
 /* Adds a value to an object, or an element to an array (key null). Takes the reference. False: out of memory. */
 bool vl_receipt_put(json_t *parent, const char *key, json_t *value);
-/* Settings as members of the tree. False: out of memory. */
+/* Adds the settings of def to the tree. False: out of memory. */
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def);
 
 #endif

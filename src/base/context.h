@@ -17,14 +17,14 @@ void *vl_realloc_array(vlContext *context, void *block, size_t count, size_t siz
 void vl_free(vlContext *context, void *block);
 char *vl_strdup(vlContext *context, const char *text); /* null for null text, or on failure */
 
-/* Counts memory that another library allocates (bytes < 0: frees) for this context. False: beyond the limit, and not
- * counted. With `taken` the memory is already allocated and is counted in any case. */
+/* Counts memory that another library allocates (bytes < 0: frees) for this context. False: the memory exceeds the limit
+ * and is not counted. With `taken` it is already allocated and always counted. */
 bool vl_count_foreign(vlContext *context, int64_t bytes, bool taken);
 /* Whether a scene may name this file. Symbolic links are resolved. True if there is no sandbox. */
 bool vl_context_allows(const vlContext *context, const char *path);
 bool vl_context_has_sandbox(const vlContext *context);
-/* Tries whether as many threads as the context has workers can be started beside them: libraries that start threads of
- * their own end the process where one is refused. Errors: MEMORY. */
+/* Tests whether as many threads as the context has workers can be started in addition to the workers. Libraries that
+ * start their own threads end the process if a thread cannot be started. Errors: MEMORY. */
 vlResult vl_try_threads(vlContext *context, vlError *error);
 uint64_t vl_context_max_texture_pixels(const vlContext *context);
 

@@ -4,8 +4,8 @@
 
 #include "film/film.h"
 
-/* Radiance of n rays. Spectral: radiance[c] at lambda[c] (nm), sampled with density 1 / inv_pdf[c]. RGB (lambda[0]
- * null): radiance[0..2] are linear Rec.709. All are multiplied by exposure. Arrays of VL_PAD(n). */
+/* Radiance of n rays. Spectral: radiance[c] is given at lambda[c] (nm), sampled with density 1 / inv_pdf[c]. RGB
+ * (lambda[0] null): radiance[0..2] are linear Rec.709. All are multiplied by exposure. Arrays of VL_PAD(n). */
 typedef struct vlExposure {
   uint32_t n;
   const float *radiance[4], *lambda[4], *inv_pdf[4];

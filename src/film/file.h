@@ -22,7 +22,7 @@ typedef struct vlSampleSpan {
 
 typedef struct vlFilmPreamble {
   char magic[8];
-  uint32_t format, header_size, header_crc, crc; /* crc: of what is before it */
+  uint32_t format, header_size, header_crc, crc; /* crc: of the bytes before this field */
 } vlFilmPreamble;
 _Static_assert(sizeof(vlFilmPreamble) == 24, "no padding");
 extern const char vl_film_magic[8];
@@ -37,7 +37,7 @@ enum { VL_FILM_BLOCK_MAGIC = 0x4b4c4256 }; /* "VBLK" */
 
 /* What films of one render share. */
 typedef struct vlFilmShape {
-  vlFilmDef def; /* crop: of the whole render */
+  vlFilmDef def; /* its crop is that of the whole render */
   uint32_t sequence;
 } vlFilmShape;
 
@@ -55,7 +55,7 @@ void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t plac
 
 /* The text of a header; receipt: JSON, may be null. Null: out of memory. */
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt);
-/* Reads it. *receipt: its text, null where there is none; the caller frees it. Errors: SCENE, MEMORY. */
+/* Reads a header. *receipt: text of its receipt, which the caller frees; null if it has none. Errors: SCENE, MEMORY. */
 vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
                              char **receipt, vlError *error);
 
@@ -83,21 +83,21 @@ void vl_film_reader_close(vlFilmReader *reader);
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
 /* Reads and checks the data of that block: pixels (row by row), then moments, then spectra. */
 vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
-/* The CRC that the block has, unchecked. */
+/* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
 
 /* ---- merging ----------------------------------------------------------------------------------------------------- */
 
-/* Adds the sums of a block to those of another one, both as in the file. */
+/* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file. */
 void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, const void *from);
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
 /* The number of samples of a block. */
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
-/* Preamble and header. */
+/* Writes preamble and header. */
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
-/* Fills a head; size of the block in the file. */
+/* Fills a block's head. Returns the size of the block in the file, bytes. */
 size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count, vlFilmBlockHead *head);
 
 #endif

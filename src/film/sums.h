@@ -9,8 +9,8 @@
 
 __extension__ typedef __int128 vlInt128;
 
-/* Fraction bits. Colours: |value| < 2^40, |weight| < 2^4, 2^31 samples: 75 bits and the sign above the point, 50 below.
- * Weights and alpha: 2^4 2^31 and the sign above the point. */
+/* Numbers of fraction bits of the sums. Colours have |value| < 2^40, |weight| < 2^4 and up to 2^31 samples: 75 integer
+ * bits, a sign and 50 fraction bits. Sums of weights and alpha need 4 + 31 integer bits and a sign. */
 enum { VL_COLOR_BITS = 50, VL_WEIGHT_BITS = 24, VL_ALPHA_BITS = 28 };
 
 /* Sums of weight * channel, and of weight: one cache line. */
@@ -30,8 +30,8 @@ typedef struct vlFilmMoments {
 } vlFilmMoments;
 _Static_assert(sizeof(vlFilmMoments) == 128, "the compiler adds no bytes");
 
-/* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): front committed, back of the
- * running pass where stamp == pass. */
+/* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): the front sums are committed; the
+ * back sums belong to the running pass and are valid where stamp == pass. */
 typedef struct vlFilmSpectrum {
   vlInt128 *sums[2]; /* front, back; null: not allocated yet */
   int64_t *weights[2];
@@ -49,10 +49,11 @@ struct vlFilm {
   uint32_t *stamp;    /* the pass in which the pixel's back was last written */
   uint32_t pass;      /* counts from 1 */
   bool in_pass;
-  vlFilmMoments *moments[2]; /* front and back, with def.errors; a pixel's back is valid where that of the sums is */
-  vlFilmSpectrum spectrum;   /* with def.buckets */
+  vlFilmMoments
+      *moments[2]; /* front and back, front and back, only with def.errors; valid where the pixel's sums are valid */
+  vlFilmSpectrum spectrum; /* with def.buckets */
   vlFilterTable filter;
-  float balance[9]; /* white balance matrix for XYZ; with def.white_balance */
+  float balance[9]; /* white balance matrix for XYZ; only with def.white_balance */
   vlFilmSensor *sensor;
   void *scratch; /* memory of vl_film_scratch */
   size_t scratch_size;

@@ -49,8 +49,8 @@ typedef struct vlRenderRun {
   uint32_t sample_before; /* the first sample of this call */
 } vlRenderRun;
 
-/* Chooses the size of a block: several tiles where a pass has few samples, so that batches are full; not so many that a
- * worker is idle. */
+/* Chooses the size of a block. In a pass with few samples a block has several tiles, so that batches are full, but not
+ * so many that a worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
 /* A task of vl_parallel_for; user is the run. */

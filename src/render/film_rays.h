@@ -1,5 +1,5 @@
-/* render/film_rays.h: film samples to camera rays. Both the image and the ground truth that counts the image's samples
- * use this file, so that their rays are equal to the bit. */
+/* render/film_rays.h: film samples to camera rays. The image and the ground truth that uses the image's samples share
+ * this code, so that their rays are bitwise equal. */
 #ifndef RENDER_FILM_RAYS_H
 #define RENDER_FILM_RAYS_H
 
@@ -17,13 +17,13 @@ typedef struct vlFilmRays {
   const vlFilterKernels *filter_kernels;
   bool lens;    /* lens points are sampled */
   bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
-  float shared; /* from 0 on: all times are sampled by this number; below 0: each its own */
+  float shared; /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
   bool middle;  /* all times are the middle of the shutter's time */
-  bool moves;   /* the world has moving shapes: times of rays are the world's, 0 to 1; else seconds */
+  bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1; false: seconds */
 } vlFilmRays;
 
 /* One element per sample, VL_PAD(n) of them. In: the pixel and the sample's index in it; the rest is output. film_x,
- * film_y: pixels from the pixel's top left corner; weight: of the pixel filter. */
+ * film_y: pixels from the pixel's top left corner; weight: the sample's weight by the pixel filter. */
 typedef struct vlFilmRayRows {
   int32_t *px, *py;
   uint32_t *index;
@@ -51,7 +51,7 @@ vlFilmRayRows vl_film_ray_rows(float *rows);
 
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa);
-/* Rays get times of the world (0 to 1) where it has moving shapes. */
+/* Makes rays have world times (0 to 1) if the world has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 

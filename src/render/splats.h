@@ -29,8 +29,8 @@ void vl_splats_free(vlContext *context, vlSplats *splats);
 /* Adds the color, times the filter, to all pixels whose filter covers the film point x, y (pixels). Any thread. False:
  * the color is not finite. */
 bool vl_splats_add(vlSplats *splats, float x, float y, const float color[3]);
-/* Moves the pixels' sums to their samples (of filter weight `weight`) and clears them: each pixel once per pass, any
- * thread. */
+/* Moves the sums of n pixels to their samples, whose filter weights are `weight`, and clears the sums. To be called
+ * once per pixel and pass, on any thread. */
 void vl_splats_take(vlSplats *splats, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
                     float *g, float *b);
 void vl_splats_clear(vlSplats *splats);

@@ -17,8 +17,8 @@ enum { VL_MOST_LIGHT_PATHS = 1 << 24 };
 /* Whether the tracer traces light paths, too. */
 bool vl_two_way_tracer(vlTracer tracer);
 
-/* trace: the definition for the camera paths; the caller sets its two_way to vl_two_way_of. rays: gives the camera
- * samples' times; must outlive the run. Error: MEMORY. */
+/* trace: the def of the camera paths; afterwards the caller sets its member two_way to vl_two_way_of(run). rays:
+ * determines the times of camera samples; must outlive the run. Error: MEMORY. */
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                            const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **run, vlError *error);
 /* Estimated memory in bytes. */
@@ -28,20 +28,21 @@ const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run);
 /* A worker's memory for vlTraceBatch.two_way. */
 struct vlTwoWayRows *vl_two_way_rows(const vlTwoWayRun *run, uint32_t worker);
 
-/* Sets the scratch of a worker. */
+/* Makes a worker use this scratch memory. */
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch);
 
-/* The number in [0, 1) from which all paths of sample `index` take their time, where they merge; else below 0: each
- * path has its own. */
+/* The number in [0, 1) that determines the common time of all paths of sample `index`, if the tracer merges paths.
+ * Otherwise a number below 0: each path has its own time. */
 float vl_two_way_time(const vlTwoWayRun *run, uint32_t index);
-/* The camera's views for the n numbers u that times are sampled by; time: those times, the world's (VL_PAD(n) elements,
- * may be null). The result is the worker's memory. Null where the camera does not move or light paths do not connect to
- * it. */
+/* The camera's views at the n times that are sampled by the numbers u. `time` (VL_PAD(n) elements, may be null)
+ * receives these times in world time, 0 to 1. The result is memory of the worker. It is null if the camera does not
+ * move or light paths do not connect to it. */
 const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u,
                                        float *time);
 /* Traces the light paths of sample `index`. Errors: MEMORY, CANCELLED. */
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error);
-/* Moves the pixels' splats to their samples (of filter weight `weight`): each pixel once per pass, any thread. */
+/* Moves the splats of n pixels to their samples, whose filter weights are `weight`. To be called once per pixel and
+ * pass, on any thread. */
 void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
                      float *g, float *b);
 

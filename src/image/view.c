@@ -1,5 +1,5 @@
 /* image/view.c: view transforms: conversion of linear light to display values. The input is linear Rec.709 R G B, or Y;
- * the result is 8-bit sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used: results are the same on
+ * the result is 8-bit sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used, so results are the same on
  * every machine. */
 #include "base/error.h"
 #include "image/image.h"

@@ -1,7 +1,7 @@
 /* color/color.h: spectra, colour spaces, and conversion between spectra and RGB.
- *
- * Wavelengths in nm, 360 to 830. A dense spectrum is 471 floats, one per nm, linear between. RGB reflectances become
- * smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019), by a table made at build time. */
+ * Wavelengths are in nm, from 360 to 830. A dense spectrum is an array of 471 floats, one per nm, interpolated
+ * linearly. RGB reflectances become smooth spectra s(l) = sigmoid(c0 l^2 + c1 l + c2) (Jakob and Hanika 2019). The
+ * coefficients come from a table made at build time. */
 #ifndef COLOR_COLOR_H
 #define COLOR_COLOR_H
 
@@ -20,11 +20,13 @@ static inline float vl_sigmoid(vlSigmoid s, float lambda) {
   float x = (s.c0 * t + s.c1) * t + s.c2;
   return 0.5f + 0.5f * (x / __builtin_sqrtf(1.0f + x * x)); /* within [0,1]: the root is never below |x| */
 }
-/* rgb in [0,1] of the space, clamped. Black, white and greys give constant spectra. Takes some microseconds; exact
- * to 1e-6 for colours that a reflectance can have. For texels use vl_rgb_table_lookup (color/rgb_table.h). */
+/* Coefficients of the reflectance spectrum of an RGB colour. r, g and b are clamped to [0,1]. Black, white and greys
+ * give constant spectra. A call takes some microseconds. The result is exact to 1e-6 for colours that a reflectance can
+ * have. For texels use the faster vl_rgb_table_lookup (color/rgb_table.h). */
 vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b);
 
-/* Dense tables, VL_LAMBDA_COUNT floats each: CIE 1931 2-degree observer, standard illuminant of a colour space. */
+/* Dense spectra of VL_LAMBDA_COUNT floats in static storage: the CIE 1931 2-degree observer and the standard illuminant
+ * of a colour space. */
 const float *vl_cie_x(void);
 const float *vl_cie_y(void);
 const float *vl_cie_z(void);
@@ -33,35 +35,37 @@ const float *vl_space_illuminant(vlColorSpace space);
 /* The role of a spectrum, which determines how RGB becomes a spectrum (pbrt book 4.6.6). */
 typedef enum vlSpectrumRole { VL_ROLE_ALBEDO, VL_ROLE_UNBOUNDED, VL_ROLE_ILLUMINANT } vlSpectrumRole;
 
-/* Fills dense (VL_LAMBDA_COUNT) with the spectrum, including its scale; RGB illuminants are multiplied by the
- * space's illuminant. Errors: SCENE for an unknown name (with the nearest one), wavelengths not ascending, values
- * not finite. */
+/* Writes the spectrum, including its scale, to `dense` (VL_LAMBDA_COUNT floats). RGB illuminants are multiplied by the
+ * illuminant of the colour space. Errors: SCENE for an unknown name (with the nearest one), wavelengths not ascending,
+ * values not finite. */
 vlResult vl_spectrum_dense(const vlSpectrum *spectrum, vlSpectrumRole role, float *dense, vlError *error);
 /* Whether the spectrum is constant over all wavelengths; *value is then that constant. */
 bool vl_spectrum_is_constant(const vlSpectrum *spectrum, float *value);
-/* Integral of Y times s (for RGB illuminants: of the space's illuminant alone), pbrt's SpectrumToPhotometric. Lights
- * are divided by it, so that an RGB light of (1,1,1) has luminance 1. */
+/* Integral of Y times the spectrum, as pbrt's SpectrumToPhotometric. For RGB illuminants it is the integral of Y times
+ * the colour space's illuminant alone. Lights are divided by it, so that an RGB light of (1,1,1) has luminance 1. */
 double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error);
-/* Linear RGB of the space, for VL_COLOR_RGB mode. Albedo and unbounded: the colour under the space's illuminant (RGB
- * kinds: exact, converted between spaces). Illuminant: the light's own colour, with the same luminance as in
- * spectral mode after the photometric division. */
+/* Converts a spectrum to linear RGB of a colour space, for VL_COLOR_RGB mode. For the roles albedo and unbounded, the
+ * result is the colour under the space's illuminant; RGB spectra are converted between spaces exactly. For the role
+ * illuminant, the result is the light's own colour, with the same luminance as in spectral mode after the division by
+ * vl_spectrum_photometric. */
 vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlColorSpace space, float rgb[3],
                             vlError *error);
 
-/* Partition of each wavelength between the channels of linear sRGB (Mallett and Yuksel 2019): three spectra within
- * [0, 1] with sum 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). r, g, b, 0 per nm. A
- * medium with the channel transmittances T_r, T_g, T_b has T(lambda) = sum_i share_i(lambda) T_i: in [0, 1] if the
- * T_i are, and of exactly that colour, however small they are. */
+/* Share of each channel of linear sRGB at each wavelength (Mallett and Yuksel 2019): three spectra within [0, 1] with
+ * sum 1, whose colours under the space's illuminant are (1,0,0), (0,1,0), (0,0,1). The array holds r, g, b, 0 for each
+ * nm. A medium with the channel transmittances T_r, T_g, T_b has the spectral transmittance T(lambda) = sum_i
+ * share_i(lambda) T_i. It lies in [0, 1] if all T_i do, and its colour is exactly T_r, T_g, T_b, even for very small
+ * values. */
 extern const float vl_channel_shares[VL_LAMBDA_COUNT * 4];
 
 /* Matrix from XYZ to linear RGB of the space, row-major 3x3. */
 void vl_rgb_from_xyz(vlColorSpace space, float m[9]);
 void vl_xyz_from_rgb(vlColorSpace space, float m[9]);
-/* xy chromaticities: r_x r_y g_x g_y b_x b_y w_x w_y. */
+/* xy chromaticities of red, green, blue and white: r_x r_y g_x g_y b_x b_y w_x w_y. */
 void vl_space_chromaticities(vlColorSpace space, float xy[8]);
 
-/* Linear interpolation in a dense spectrum; 0 outside. (The index is clamped as an integer: if it were clamped as a
- * float, gcc would not make a gather.) */
+/* Interpolates linearly in a dense spectrum; 0 outside of 360 to 830 nm. (The index is clamped as an integer: if it
+ * were clamped as a float, gcc would not make a gather.) */
 static inline float vl_dense_at(const float *dense, float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
@@ -73,7 +77,8 @@ static inline float vl_dense_at(const float *dense, float lambda) {
   return x <= 470.0f ? value : 0.0f;
 }
 
-/* T(lambda) from transmittances t of linear sRGB's channels; linear between integer nm. */
+/* Transmittance at a wavelength from the transmittances t of linear sRGB's channels (vl_channel_shares), interpolated
+ * linearly between integer nm. */
 static inline float vl_channels_at(const float t[3], float lambda) {
   float x = lambda - 360.0f;
   int i = (int)x;
@@ -84,8 +89,8 @@ static inline float vl_channels_at(const float t[3], float lambda) {
   return a + (x - (float)i) * (b - a);
 }
 
-/* Hero wavelength sampling: lambda with density proportional to the observer's sensitivity (Radziszewski et al.
- * 2009, pbrt book 4.5.4). u in [0,1). */
+/* Samples a wavelength with a density proportional to the observer's sensitivity (Radziszewski et al. 2009, pbrt book
+ * 4.5.4). u in [0,1). */
 static inline float vl_visible_lambda(float u) {
   float t = 0.85691062f - 1.82750197f * u;
   float atanh_t = 0.5f * vl_ln((1.0f + t) / (1.0f - t));

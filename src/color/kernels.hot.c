@@ -9,7 +9,7 @@ static inline float turned(float u, int channel) {
 }
 
 /* The four hero wavelengths are u rotated by quarters, so that they stratify the range. The density is that of
- * vl_visible_pdf: there 1 / cosh^2(atanh t) = 1 - t^2. */
+ * vl_visible_pdf, since 1 / cosh^2(atanh t) = 1 - t^2. */
 static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {

@@ -1,6 +1,6 @@
 /* color/refine.c: exact conversion of single RGB values to spectra: the table's result refined by Newton's method.
- * For constants and lights; texels use the table directly. Only + - * / sqrt in double: the same bits on every
- * machine. */
+ * It serves constants and lights; texels use the table directly. Only + - * / and sqrt in double are used, so the
+ * results have the same bits on every machine. */
 #include <string.h>
 
 #include "color/rgb_table.h"
@@ -16,8 +16,8 @@ static double dot(const double *a, const double *b) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/* The colour under the space's illuminant, and its Jacobian by c0, c1, c2 (one row per component). Weights are
- * padded with zeros. */
+/* Computes the colour under the space's illuminant and its derivatives by c0, c1, c2 (the Jacobian, one row per colour
+ * component). Weights are padded with zeros. */
 static void shown(const double weight[3][PADDED], const double c[3], double rgb[3], double jacobian[9]) {
   double s[PADDED], slope[3][PADDED];
   for (int i = 0; i < PADDED; i++) {
@@ -49,7 +49,7 @@ static double error_of(const double weight[3][PADDED], vlSigmoid s, const double
   return worst_of(rgb, target);
 }
 
-/* Cramer's rule. */
+/* Solves a 3x3 system by Cramer's rule. */
 static bool solve(const double m[9], const double b[3], double x[3]) {
   double c0 = m[4] * m[8] - m[5] * m[7], c1 = m[5] * m[6] - m[3] * m[8], c2 = m[3] * m[7] - m[4] * m[6];
   double det = m[0] * c0 + m[1] * c1 + m[2] * c2;
@@ -81,7 +81,7 @@ vlSigmoid vl_sigmoid_from_rgb(vlColorSpace space, float r, float g, float b) {
   double c[3] = {(double)s.c0, (double)s.c1, (double)s.c2}, value[3], jacobian[9];
   shown(weight, c, value, jacobian);
   double error = worst_of(value, target);
-  /* Colours that no reflectance can have keep the table's nearest one. */
+  /* Colours that no reflectance can have keep the spectrum from the table. */
   double factor = 1;
   for (int round = 0; round < 12 && error < 3e-3 && error > 1e-9 && factor > 0.05; round++) {
     double miss[3], step[3], next[3], next_value[3], next_jacobian[9];

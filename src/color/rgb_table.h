@@ -1,14 +1,13 @@
-/* color/rgb_table.h: lookup in the RGB to spectrum table (Jakob and Hanika 2019), for hot loops: branch-free,
- * vectorises with gathers, the same bits on every machine. The tables are constant data that tools/color_tables makes
- * when velo is built.
- *
+/* color/rgb_table.h: lookup in the RGB to spectrum table (Jakob and Hanika 2019) for hot loops. The code has no
+ * branches, vectorises with gathers and gives the same bits on every machine. The tables are constant data that
+ * tools/color_tables makes when velo is built.
  * Three differences from the paper make a small table exact to 1e-3:
- *     - light colours use the complement, sigmoid(-x) = 1 - sigmoid(x): the table of dark colours serves both ends, and
- *     its resolution increases towards black, where the coefficients vary most;
- *     - the table stores c sqrt(m (1 - m)), m the mean of r, g, b: near black c grows as m^-1/2, while this product
- *     stays smooth; along the greys it is linear, so that greys become constant spectra;
- *     - the nodes of the axes are denser towards both ends (2 u^2), with interpolation weights linear in the colour
- *     itself. */
+ * - Light colours use the complement, sigmoid(-x) = 1 - sigmoid(x), so that one table of dark colours serves both. Its
+ * resolution increases towards black, where the coefficients vary most.
+ * - The table stores c sqrt(m (1 - m)), where m is the mean of r, g, b. Near black c grows as m^-1/2, while this
+ * product stays smooth. Along the greys it is linear, so that greys become constant spectra.
+ * - The nodes of the axes are denser towards both ends (2 u^2). Interpolation weights are linear in the colour
+ * itself. */
 #ifndef COLOR_RGB_TABLE_H
 #define COLOR_RGB_TABLE_H
 
@@ -17,12 +16,14 @@
 enum { VL_RGB_TABLE_XY = 40, VL_RGB_TABLE_Z = 48 };
 
 typedef struct vlRgbTable {
-  const float *coefficients; /* [largest component 3][z][y][x][3]; z the largest, x and y the next two over it */
+  const float *coefficients; /* [largest component 3][z][y][x][3]; z: the largest component; x, y: the other two divided
+                                by it, in cyclic order */
 } vlRgbTable;
 /* Static storage. */
 const vlRgbTable *vl_rgb_table(vlColorSpace space);
 
-/* Position u in [0,1] of v in [0,1] on an axis, and the inverse. */
+/* Converts the value v in [0,1] of a component to its position u in [0,1] on a table axis; the second function is the
+ * inverse. */
 static inline float vl_rgb_axis(float v) {
   float w = 1.0f - v, near = v < w ? v : w;
   float u = __builtin_sqrtf(0.5f * near);
@@ -45,8 +46,8 @@ static inline vlRgbCell vl_rgb_cell(float v, int size) {
   return (vlRgbCell){i, (v - low) / (high - low)};
 }
 
-/* Position of a colour in the table: its cell, the weights of the upper nodes, and the factor on the stored values.
- * Reads no memory. */
+/* Position of a colour in the table: its cell, the weights of the cell's upper nodes, and the factor on the stored
+ * coefficients. The computation reads no memory. */
 typedef struct vlRgbPlace {
   int index;
   float x, y, z, scale;
@@ -86,7 +87,7 @@ static inline __attribute__((always_inline)) vlRgbPlace vl_rgb_place(float r, fl
   return (vlRgbPlace){i, cx.t, cy.t, cz.t, scale};
 }
 
-/* Interpolates coefficient k of the three. */
+/* Interpolates one of the three coefficients; k is its index. */
 static inline __attribute__((always_inline)) float vl_rgb_coefficient(const float *p, int k, vlRgbPlace at) {
   enum { X = 3, Y = 3 * VL_RGB_TABLE_XY, Z = 3 * VL_RGB_TABLE_XY * VL_RGB_TABLE_XY };
   int i = at.index + k;
@@ -100,9 +101,9 @@ static inline __attribute__((always_inline)) float vl_rgb_coefficient(const floa
   return at.scale * (a + at.z * (c - a));
 }
 
-/* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's illuminant. Loops that
- * must vectorise under clang call the parts instead: clang loses the simd pragma when this function is inlined
- * through another. */
+/* Coefficients of the reflectance with colour r, g, b (clamped to [0,1]) under the space's illuminant. Loops that must
+ * vectorise under clang call the functions above instead, since clang loses the simd pragma when this function is
+ * inlined through another. */
 static inline __attribute__((always_inline)) vlSigmoid vl_rgb_table_lookup(const vlRgbTable *table, float r, float g,
                                                                            float b) {
   vlRgbPlace at = vl_rgb_place(r, g, b);

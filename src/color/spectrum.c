@@ -59,7 +59,7 @@ static float blackbody(double lambda, double kelvin) {
   const double xm = 4.965114231744276, hc_k = 1.438776877e7 /* nm K */, peak = 142.32492159405578; /* e^xm - 1 */
   double x = hc_k / (lambda * kelvin);
   double u = x / xm, value = u * u * (u * u) * u * peak / vl_precise_expm1(x);
-  return isfinite(value) ? (float)value : 0.0f; /* cold: infinity over infinity */
+  return isfinite(value) ? (float)value : 0.0f; /* low temperatures give infinity / infinity */
 }
 
 static void sampled(const vlSpectrum *s, float *dense) {
@@ -78,8 +78,9 @@ static void sampled(const vlSpectrum *s, float *dense) {
   }
 }
 
-/* RGB by role. Albedo: reflectance. Unbounded: scale * reflectance, scale = 2 max(r, g, b), which keeps the sigmoid
- * in its accurate range. Illuminant: the same times the illuminant (pbrt book 4.6.6). */
+/* Converts RGB to a spectrum by its role. Albedo: a reflectance. Unbounded: scale * reflectance with scale = 2 max(r,
+ * g, b), which keeps the sigmoid in its accurate range. Illuminant: the unbounded spectrum times the illuminant of the
+ * colour space (pbrt book 4.6.6). */
 static void from_rgb(const vlSpectrum *s, vlSpectrumRole role, float *dense) {
   float rgb[3], scale = s->scale, high = 0;
   for (int i = 0; i < 3; i++) {
@@ -168,8 +169,8 @@ double vl_spectrum_photometric(const vlSpectrum *spectrum, vlError *error) {
   return xyz[1];
 }
 
-/* Converts between spaces. Reflectances are adapted to the other white (Bradford cone responses, von Kries scaling);
- * lights keep their colour. No difference if the whites are equal. */
+/* Converts RGB between colour spaces. Reflectances are adapted to the white of the new space (Bradford cone responses,
+ * von Kries scaling). Lights are not adapted. If the whites are equal, there is no difference. */
 static void convert(vlColorSpace from, vlColorSpace to, bool adapt, const double rgb[3], double out[3]) {
   static const double cone[9] = {0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296};
   static const double back[9] = {0.9869929, -0.1470543, 0.1599627, 0.4323053, 0.5183603,
@@ -224,7 +225,7 @@ vlResult vl_spectrum_to_rgb(const vlSpectrum *spectrum, vlSpectrumRole role, vlC
     }
   }
   for (int i = 0; i < 3; i++) {
-    double v = out[i] > 0 ? out[i] : 0; /* negative outside of the gamut */
+    double v = out[i] > 0 ? out[i] : 0; /* negative for colours outside of the gamut */
     rgb[i] = (float)(role == VL_ROLE_ALBEDO && v > 1 ? 1 : v);
   }
   return VL_OK;

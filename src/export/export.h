@@ -1,4 +1,4 @@
-/* export/export.h: exporters: scenes become files of other formats. export.c (interface, losses, files) calls gltf*.c
+/* export/export.h: exporters write scenes to files of other formats. export.c (interface, losses, files) calls gltf*.c
  * or pbrt*.c. Whatever a format cannot represent is counted as a loss, with one line of text per kind of loss. */
 #ifndef EXPORT_EXPORT_H
 #define EXPORT_EXPORT_H
@@ -51,7 +51,7 @@ typedef struct vlExport {
   bool dry; /* nothing is written; only losses are collected */
   vlLoss losses[VL_EXPORT_LOSSES];
   uint32_t loss_count;
-  char stem[200]; /* the file name without suffix, for the files beside it */
+  char stem[200]; /* the scene's file name without suffix; names of further files start with it */
   VL_ARRAY(vlExportImage) images;
   /* glTF */
   bool binary;
@@ -65,30 +65,30 @@ typedef struct vlExport {
 /* ---- export.c ---------------------------------------------------------------------------------------------------- */
 
 void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Remembers the first error. Always false. */
+/* Stores the error if it is the first one. Always returns false. */
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Writes a whole file beside the scene's; name null: the scene's own file. */
+/* Writes a whole file to the folder of the scene file; a null name means the scene file itself. */
 bool vl_export_file(vlExport *x, const char *name, const void *data, size_t size);
-/* Path of a file beside the scene's. */
+/* Path of a file in the folder of the scene file. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
 /* The decoded image of a texture. */
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t);
-/* The image as a file: the original bytes for PNG and JPEG (*suffix), otherwise encoded as PNG. A block of the context.
- */
+/* The texture's image as bytes of an image file: the original bytes of a PNG or JPEG, otherwise the image encoded as
+ * PNG. *suffix receives the format. The bytes are a block of the context. */
 bool vl_export_image(vlExport *x, const vlTextureDef *t, char **data, size_t *size, const char **suffix);
-/* Encodes an image in the format of that suffix. */
+/* Encodes an image in the format that the suffix names. */
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size);
 
 /* ---- values.c ---------------------------------------------------------------------------------------------------- */
 
-/* The input as linear sRGB. Lights are divided by their luminance, as in the tracer. A textured input gives its
- * texture's mean where that is easily found. */
+/* Converts the input to linear sRGB. Lights are divided by their luminance, as in the tracer. A textured input gives
+ * the mean of its texture if that is easily computed. */
 void vl_export_light_rgb(const vlSpectrum *s, float rgb[3]);
 void vl_export_rgb(vlExport *x, const vlSpectrumInput *input, float rgb[3]);
 float vl_export_number(vlExport *x, const vlFloatInput *input);
-/* The texture of an input when it is an image; otherwise null. */
+/* The texture of an input if it is an image texture; otherwise null. */
 const vlTextureDef *vl_export_texture(const vlExport *x, vlTextureId id);
 /* The uv transform: (s, t) = 2x3 matrix times (u, v, 1). */
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
@@ -101,8 +101,8 @@ float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *r
 
 /* ---- meshes.c ---------------------------------------------------------------------------------------------------- */
 
-/* A shape as triangles. `own` holds blocks freed by vl_export_free_mesh. False: no mesh; the error was reported or the
- * loss counted. */
+/* A shape as triangles. vl_export_free_mesh frees the blocks in `own`. The function returns false when there is no
+ * mesh; it has then reported an error or counted a loss. */
 typedef struct vlExportMesh {
   uint32_t vertices, faces;
   const float *positions, *normals, *tangents, *uvs[4], *colors, *signs;
@@ -115,13 +115,13 @@ void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh);
 /* ---- glTF, pbrt -------------------------------------------------------------------------------------------------- */
 
 bool vl_export_gltf(vlExport *x);
-/* Appends bytes to the buffer and returns the index of their bufferView. target 0: none. */
+/* Appends bytes to the buffer and returns the index of their bufferView. target 0: the bufferView has no target. */
 json_int_t vl_gltf_put_view(vlExport *x, const void *data, size_t size, int target);
 /* Appends to the array `key` of the root and returns the index. Takes ownership of value. */
 json_int_t vl_gltf_put(vlExport *x, const char *key, json_t *value);
 void vl_gltf_use(vlExport *x, const char *extension);
 json_t *vl_gltf_array_of(const float *values, size_t count);
-/* Index of the shape's material; -1: none. */
+/* Index of the shape's material in the glTF file; -1: none. */
 json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, bool *tangents);
 bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);
 /* A textureInfo object for an image; null: none. */

@@ -1,4 +1,4 @@
-/* image/codec.c: the table of formats; reading by content, writing by suffix. */
+/* image/codec.c: the table of image formats. Readers are chosen by content, writers by file name suffix. */
 #include "image/codec.h"
 
 #include <string.h>

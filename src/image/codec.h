@@ -1,5 +1,5 @@
-/* image/codec.h: file formats behind one table. A reader turns bytes in memory into an image, a writer an image into
- * bytes of a vlFileWriter. Messages start with the file's name. */
+/* image/codec.h: the table of image file formats. A reader converts bytes in memory to an image. A writer converts an
+ * image to bytes of a vlFileWriter. Messages start with the file's name. */
 #ifndef IMAGE_CODEC_H
 #define IMAGE_CODEC_H
 
@@ -11,19 +11,18 @@
 typedef struct vlImageFile {
   vlContext *context;
   const char *name;
-  const uint8_t *data; /* followed by a zero byte */
+  const uint8_t *data; /* the file's bytes, followed by a zero byte */
   size_t size;
   vlError *error;
   const char *const *wanted; /* names of the channels to read; null: all. Used by OpenEXR only */
   uint32_t wanted_count;
   uint64_t most_pixels; /* limit of the image's size; 0: none */
-  vlImage *
-      *header; /* not null: only the header is wanted. vl_codec_create stores an image there and stops the reading */
+  vlImage **header; /* not null: only the header is read; vl_codec_create stores an image here and stops the reader */
 } vlImageFile;
 
 typedef struct vlCodec {
   const char *name;        /* for messages: "PNG" */
-  const char *suffixes[4]; /* with the dot, for writing; ends with null */
+  const char *suffixes[4]; /* file name suffixes with the dot, for writing; the list ends with null */
   bool (*probe)(const uint8_t *data, size_t size);
   vlResult (*read)(const vlImageFile *file, vlImage **image);
   vlResult (*write)(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
@@ -33,25 +32,25 @@ typedef struct vlCodec {
 extern const vlCodec vl_codecs[];
 extern const uint32_t vl_codec_count;
 
-/* SCENE: "name: broken PNG file: <what>". */
+/* Reports a SCENE error: "name: broken PNG file: <what>". */
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
-/* UNSUPPORTED: "name: PNG file with <what> is not supported". */
+/* Reports an UNSUPPORTED error: "name: PNG file with <what> is not supported". */
 vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
-/* Checks the image's size before memory is allocated. need: bytes of pixels; ratio: the most of them that one byte of
- * the file can encode. SCENE when the file is too small ("promises WxH pixels, more than its N bytes can hold") or the
- * image is empty. */
+/* Checks the image's size before memory is allocated. need: bytes of the pixels. ratio: the largest number of these
+ * bytes that one byte of the file can encode. The result is a SCENE error when the file is too small ("promises WxH
+ * pixels, more than its N bytes can hold") or the image is empty. */
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio);
-/* Makes an image with default channel names; fills the error. CANCELLED when only the header is wanted: the decoder
- * then stops. */
+/* Makes an image with default channel names and reports errors. Returns CANCELLED when only the header is read; the
+ * decoder then stops. */
 vlResult vl_codec_create(const vlImageFile *file, uint32_t width, uint32_t height, uint32_t channels, vlPixelType type,
                          vlEncoding encoding, vlImage **image);
 
-/* The same for any def. */
+/* Like vl_codec_create, for any image def. */
 vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage **image);
 
-/* Row y of the displayed channels (vl_image_shown) as 8 bits. 8-bit images are copied, 16-bit ones rounded, others
- * sRGB-encoded (alpha stays linear). scratch: width*count floats. */
+/* Converts row y of the displayed channels (vl_image_shown) to 8 bits. 8-bit values are copied, 16-bit values rounded,
+ * and other values sRGB-encoded, except alpha, which stays linear. scratch has room for width*count floats. */
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);
 

@@ -6,7 +6,8 @@
 #include "image/image.h"
 #include "math/elementary.h"
 
-/* R G B of every pixel; an image with Y only gives it three times. The caller finds non-finite pixels. */
+/* Loads R, G and B of every pixel; an image with only Y gives Y three times. The caller checks for values that are not
+ * finite. */
 static vlResult load(const vlImage *image, float **rgb) {
   uint32_t channel[4], count = vl_image_color(image, channel);
   if (count < 3) channel[1] = channel[2] = channel[0];
@@ -35,7 +36,7 @@ typedef struct Pair {
   const vlImage *image;
   float *a, *b;
   float *flip;
-  uint8_t *skip; /* 1: not finite */
+  uint8_t *skip; /* per pixel, 1: a value of either image is not finite */
   size_t count;
 } Pair;
 
@@ -48,7 +49,8 @@ static void numbers(Pair *p, vlImageDiff *diff) {
     if (!finite3(a) || !finite3(b)) {
       diff->not_finite++;
       p->skip[n] = 1;
-      for (int c = 0; c < 3; c++) a[c] = b[c] = 0.0f; /* FLIP filters over neighbours: no difference here */
+      for (int c = 0; c < 3; c++)
+        a[c] = b[c] = 0.0f; /* FLIP filters over neighbouring pixels, so this pixel must not differ */
       continue;
     }
     used++;

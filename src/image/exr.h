@@ -1,4 +1,4 @@
-/* image/exr.h: declarations shared by the OpenEXR reader and writer: error text, attributes. */
+/* image/exr.h: declarations shared by the OpenEXR reader and writer: error handling and attributes. */
 #ifndef IMAGE_EXR_H
 #define IMAGE_EXR_H
 
@@ -7,12 +7,11 @@
 
 #include "image/codec.h"
 
-/* The user data of an OpenEXR context. OpenEXR prints errors unless it has a handler; this one keeps the first message
- * of a reader.
- */
+/* The user data of an OpenEXR context. OpenEXR prints errors unless a handler is set. vl_exr_on_error is that handler;
+ * it stores the first message of a reader here. */
 typedef struct vlExr {
-  const vlImageFile *file; /* when reading */
-  vlFileWriter *writer;    /* when writing */
+  const vlImageFile *file; /* the file being read; null in a writer */
+  vlFileWriter *writer;    /* the file being written; null in a reader */
   atomic_flag failed;      /* an error was stored; chunks are packed by several threads */
   char message[256];
 } vlExr;

@@ -12,7 +12,7 @@ void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char 
   if (!atomic_flag_test_and_set(&x->failed)) snprintf(x->message, sizeof x->message, "%s", message ? message : "");
 }
 
-/* Attributes of the file's layout; the writer makes them anew. */
+/* Attributes that describe the file's layout. The reader skips them and the writer makes new ones. */
 static const char *const LAYOUT[] = {"channels",          "compression", "lineOrder", "tiles",   "type",
                                      "version",           "chunkCount",  "name",      "preview", "dwaCompressionLevel",
                                      "maxSamplesPerPixel"};
@@ -36,7 +36,7 @@ static void copy_box(vlAttribute *to, const exr_attr_box2i_t *box) {
   to->numbers[3] = box->max.y;
 }
 
-/* Joins strings by line ends. A vector of strings that does not fit is cut. */
+/* Joins strings with newlines. A string vector that does not fit is truncated. */
 static void join_strings(const exr_attr_string_vector_t *from, char *text, size_t size) {
   size_t length = 0;
   text[0] = 0;
@@ -47,7 +47,8 @@ static void join_strings(const exr_attr_string_vector_t *from, char *text, size_
   }
 }
 
-/* False: a type that vlAttribute does not hold. `text` is room for joined strings. */
+/* Converts an attribute. Returns false for a type that vlAttribute does not support. `text` is a buffer for joined
+ * strings. */
 static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, size_t size) {
   memset(to, 0, sizeof *to);
   to->name = from->name;
@@ -92,7 +93,7 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
   }
 }
 
-/* Attributes of every header are kept only when they differ from the default. */
+/* Whether an attribute that every header has is at its default; such attributes are not kept. */
 static bool is_default(const vlAttribute *a, const vlImage *image) {
   if (strcmp(a->name, "pixelAspectRatio") == 0 || strcmp(a->name, "screenWindowWidth") == 0)
     return a->numbers[0] == 1.0;

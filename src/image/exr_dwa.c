@@ -1,10 +1,10 @@
 /* image/exr_dwa.c: decoding of DWA (DreamWorks' lossy compression, OpenEXR 2.2), from its description in OpenEXR's
  * sources.
- *
  * A chunk holds four streams: "unknown" channels (deflate); the DCT's AC coefficients as run lengths of zeros (Huffman
  * or deflate); the DC coefficients (ZIP); run-length encoded channels (deflate), usually alpha. Rules in the chunk
  * assign channels to streams by name and type, and say which three channels form one colour (stored as Y'CbCr,
- * Rec.709). Coefficients are halves. The values behind the DCT are encoded: power 2.2 up to 1, exponential above. */
+ * Rec.709). Coefficients are halves. The DCT is applied to encoded values: a power curve of exponent 2.2 up to 1, an
+ * exponential above. */
 #include "image/exr_dwa.h"
 
 #include <string.h>
@@ -19,9 +19,9 @@ enum { HEAD_WORDS = 11, UINT = 0, HALF = 1, FLOAT = 2 };
 
 typedef struct Plan {
   int scheme;
-  int place; /* component 0, 1, 2 of a colour; -1: none */
+  int place; /* component of a colour: 0, 1 or 2; -1: none */
   bool done;
-  size_t offset; /* in its stream (unknown, runs), bytes */
+  size_t offset; /* offset of the channel in its stream (unknown or runs), bytes */
   size_t line;   /* offset of the channel's line in a line of the chunk, bytes */
 } Plan;
 
@@ -36,7 +36,7 @@ typedef struct Dwa {
   uint8_t *unknown, *runs;
   uint16_t *ac, *dc;
   size_t ac_count, dc_count, ac_at, dc_at;
-  size_t unknown_size, runs_size; /* sums over the channels, bytes */
+  size_t unknown_size, runs_size; /* sizes of the streams, summed over the channels, bytes */
 } Dwa;
 
 static uint64_t le64(const uint8_t *p) {
@@ -106,7 +106,8 @@ static void legacy_rules(Dwa *d) {
     }
 }
 
-/* Rules of a chunk: each is a text, a byte (component, scheme, case) and a byte of type. */
+/* Reads the rules of a chunk. Each rule is a zero-terminated suffix, a byte with component, scheme and case, and a byte
+ * with the pixel type. */
 static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
   size_t at = 0;
   while (at < size) {
@@ -128,7 +129,7 @@ static bool read_rules(Dwa *d, const uint8_t *p, size_t size) {
   return true;
 }
 
-/* Number of DC values of the channels; also fills offsets. */
+/* Returns the number of DC values of all channels and sets the channels' offsets. */
 static size_t lay_out(Dwa *d) {
   size_t pixels = (size_t)d->width * d->height, lossy = 0;
   for (uint32_t i = 0; i < d->count; i++) {
@@ -219,8 +220,8 @@ static void store_block(Dwa *d, uint32_t channel, uint32_t bx, uint32_t by, bool
     }
 }
 
-/* Decodes one channel, or the three of a colour. The three's blocks alternate in AC; their DC planes follow each other.
- */
+/* Decodes one channel, or the three channels of a colour. The AC blocks of the three channels alternate; their DC
+ * planes follow each other. */
 static bool unpack_lossy(Dwa *d, const uint32_t *channel, uint32_t count) {
   uint32_t blocks_x = (d->width + 7) / 8, blocks_y = (d->height + 7) / 8;
   size_t plane = (size_t)blocks_x * blocks_y;
@@ -291,7 +292,7 @@ static bool unpack_channels(Dwa *d) {
       size_t at = plan->offset + (size_t)y * d->width * (plan->scheme == RUNS ? 1 : size);
       if (plan->scheme == UNKNOWN) memcpy(to, d->unknown + at, d->width * size);
       for (size_t k = 0; plan->scheme == RUNS && k < d->width * size;
-           k++) /* planes: all first bytes, all second bytes, ... */
+           k++) /* the first bytes of all values, then all second bytes, ... */
         to[k] = d->runs[at + k / size + k % size * pixels];
     }
   }
@@ -346,7 +347,8 @@ static vlResult unpack(Dwa *d, const uint8_t *packed, size_t size) {
   if (head[0] < 2) {
     legacy_rules(d);
   } else {
-    size_t rules = size - at >= 2 ? packed[at] | (size_t)packed[at + 1] << 8 : 0; /* includes its own two bytes */
+    size_t rules = size - at >= 2 ? packed[at] | (size_t)packed[at + 1] << 8
+                                  : 0; /* size of the rules, including the two bytes of the size itself */
     if (rules < 2 || rules > size - at || !read_rules(d, packed + at + 2, rules - 2)) return VL_ERROR_SCENE;
     at += rules;
   }

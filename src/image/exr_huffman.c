@@ -1,5 +1,6 @@
-/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits. Symbols are 65536 values and one more, the largest in
- * use: it repeats the last value n times, with n in the next eight bits. Longer codes are numerically lower. */
+/* image/exr_huffman.c: canonical Huffman codes of up to 58 bits. The symbols are the 65536 values and one more, which
+ * is the largest symbol in use. It repeats the last value n times; the next eight bits hold n. Longer codes are
+ * numerically lower. */
 #include "image/exr_huffman.h"
 
 #include <string.h>

@@ -17,7 +17,7 @@ typedef struct Reader {
   exr_attr_box2i_t window;
   exr_compression_t compression;
   uint32_t width, height;
-  uint32_t *place; /* channel of the image for each channel of the file; or NOT_WANTED */
+  uint32_t *place; /* for each channel of the file, its channel in the image or NOT_WANTED */
   uint32_t count;  /* number of the image's channels */
   int user_type, user_size;
   vlImage *image;
@@ -67,8 +67,9 @@ static size_t after_text(const vlImageFile *file, size_t at) {
   return end > at && end < file->size && !file->data[end] ? end + 1 : 0;
 }
 
-/* OpenEXRCore allocates whatever size an attribute claims before it checks the file. So this first walks the headers
- * (several in a multi-part file): name, type, size, and that many bytes. */
+/* OpenEXRCore allocates whatever size an attribute claims before it checks the file. Therefore this function first
+ * walks the headers (several in a multi-part file) and checks for each attribute that its bytes lie in the file. An
+ * attribute is a name, a type, a size and that many bytes. */
 static bool headers_fit(const vlImageFile *file) {
   if (file->size < 9) return false;
   bool parts = le32(file->data + 4) & 0x1000u;
@@ -232,7 +233,7 @@ static void convert_value(int from, const uint8_t *p, int to, void *result) {
     memcpy(result, p, from == EXR_PIXEL_HALF ? 2 : 4);
     return;
   }
-  uint16_t half = 0; /* otherwise the image has floats */
+  uint16_t half = 0; /* the types differ, so the image holds floats */
   uint32_t integer = 0;
   memcpy(&half, p, 2);
   if (from == EXR_PIXEL_UINT) memcpy(&integer, p, 4);

@@ -24,7 +24,7 @@ enum { GATHERED = 1 << 16 };
  * disk blocks. */
 enum { SMALL = 1 << 16 };
 
-/* A channel of the file: its image and its index in it. */
+/* A channel of the file: the image that it comes from and its index there. */
 typedef struct Channel {
   const vlImage *image;
   uint32_t index;
@@ -147,7 +147,7 @@ static void fill_row(const Channel *c, Slot *slot, uint32_t y, char *to) {
   }
 }
 
-/* Replaces OpenEXRCore's write step: the compressed bytes stay in the pipeline. */
+/* Replaces OpenEXRCore's write step, so that the compressed bytes stay in the pipeline. */
 static exr_result_t keep(exr_encode_pipeline_t *pipeline) {
   (void)pipeline;
   return EXR_ERR_SUCCESS;
@@ -247,7 +247,8 @@ vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   return vl_exr_write_layers(&image, 1, def, writer, error);
 }
 
-/* OpenEXR calls it with the lock of its context held, which the getter of the user data would take again. */
+/* Ignores an error. OpenEXR calls this handler while it holds the lock of its context, so vl_exr_on_error cannot be
+ * used: reading the user data would take the lock again. */
 static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message) {
   (void)context, (void)code, (void)message;
 }

@@ -21,7 +21,7 @@ typedef struct Vec {
 typedef struct Flip {
   uint32_t width, height;
   float *color[2][3]; /* Y Cx Cz of both images; filtered in place */
-  float *feature[2];  /* 0: edges of the first image, then the larger feature difference; 1: points */
+  float *feature[2];  /* [0]: edges of the first image, later the larger feature difference; [1]: points */
   float *work[3];
 } Flip;
 
@@ -69,7 +69,7 @@ static float hyab(Vec a, Vec b) {
   return (l < 0.0f ? -l : l) + __builtin_sqrtf(da * da + db * db);
 }
 
-/* exp in double by squaring, for the kernels' weights. */
+/* exp(x) in double by repeated squaring, for the weights of the kernels. */
 static double weight_exp(double x) {
   double y = x / 1024.0, sum = 1.0;
   for (int k = 12; k >= 1; k--) sum = sum * y / k + 1.0;

@@ -1,5 +1,6 @@
 /* image/gif.c: the first image of a GIF (87a, 89a), interlaced or not. A transparent colour or an uncovered part of the
- * screen gives alpha. LZW: codes of 3 to 12 bits stand for strings, each an earlier string and one more byte. */
+ * screen gives alpha. The LZW codes have 3 to 12 bits and stand for strings; each string is an earlier string and one
+ * more byte. */
 #include <string.h>
 
 #include "image/codec.h"
@@ -85,7 +86,9 @@ static vlResult unpack(Gif *g, Lzw *z, vlImage *image) {
       continue;
     }
     if (code == end) return vl_codec_broken(g->file, "GIF", "ends too early");
-    if (code > next || (code == next && (old == CODES || next == CODES))) /* next itself: the string being defined */
+    if (code > next ||
+        (code == next &&
+         (old == CODES || next == CODES))) /* the code `next` stands for the string that is being defined */
       return vl_codec_broken(g->file, "GIF", "a code that is not defined");
     if (old != CODES && next < CODES) {
       z->before[next] = (uint16_t)old;

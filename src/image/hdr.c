@@ -13,12 +13,12 @@ bool vl_hdr_probe(const uint8_t *data, size_t size) {
 
 typedef struct Header {
   uint32_t width, height;
-  bool upward; /* rows start at the bottom */
+  bool upward; /* rows are stored from the bottom upwards */
   size_t pixels;
   bool xyze, other_order;
 } Header;
 
-/* The next line without its end; false at the end of the file or when it does not fit. */
+/* Reads the next line without its newline. Returns false at the end of the file or when the line does not fit. */
 static bool next_line(const vlImageFile *file, size_t *at, char *line, size_t size) {
   size_t n = 0;
   while (*at < file->size) {
@@ -155,12 +155,12 @@ static void to_rgbe(const float rgb[3], uint8_t out[4]) {
   if (peak < 1.0e-38f) return;
   int e;
   frexpf(peak, &e);
-  if (peak >= ldexpf(255.5f, e - 8)) e++; /* it would round up to 256 */
+  if (peak >= ldexpf(255.5f, e - 8)) e++; /* the mantissa would round up to 256 */
   for (int c = 0; c < 3; c++) out[c] = (uint8_t)(ldexpf(v[c], 8 - e) + 0.5f);
   out[3] = (uint8_t)(e + 128);
 }
 
-/* Encodes one plane of a row. Runs from 4 bytes on save space. */
+/* Encodes one plane of a row. Runs of at least 4 bytes save space. */
 static size_t write_plane(const uint8_t *rgbe, uint32_t width, uint32_t c, uint8_t *out) {
   size_t at = 0;
   for (uint32_t x = 0; x < width;) {

@@ -1,5 +1,6 @@
-/* image/jpeg.c: JPEG through libjpeg-turbo: grey and colour; CMYK is converted to RGB when read. Errors return by
- * longjmp. Damage that libjpeg only warns of is an error, too, since the rest of the image would be grey. */
+/* image/jpeg.c: JPEG through libjpeg-turbo: grey and colour; CMYK is converted to RGB when read. libjpeg reports errors
+ * by longjmp. Damage for which libjpeg only gives a warning is an error, too, since the rest of the image would be
+ * grey. */
 #include <setjmp.h>
 #include <stdio.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static void source_skip(j_decompress_ptr d, long count) {
   d->src->bytes_in_buffer -= (size_t)count;
 }
 
-/* Converts one row of CMYK to RGB. Adobe's programs write it inverted; other rows are inverted first. */
+/* Converts one row of CMYK to RGB. Adobe's programs write inverted CMYK; CMYK of other programs is inverted first. */
 static void cmyk_row(const uint8_t *line, uint32_t width, bool inverted, uint8_t *out) {
   for (uint32_t x = 0; x < width; x++) {
     unsigned k = inverted ? line[4 * x + 3] : 255u - line[4 * x + 3];

@@ -10,7 +10,7 @@ enum { STARTS = 4096 };
 
 typedef struct Builder {
   vlMipmap *map;
-  float begin[4][256];      /* [c][code]: the smallest linear value whose nearest code is this */
+  float begin[4][256];      /* [c][code]: the smallest linear value whose nearest code is `code` */
   uint8_t start[4][STARTS]; /* [c][i]: code at i / STARTS, where the search starts */
   bool one_table;           /* all channels have the same decoding */
   float *column;            /* one row: weighted sum of source rows */
@@ -33,7 +33,7 @@ void vl_mipmap_destroy(vlMipmap *map) {
   vl_free(map->context, map);
 }
 
-/* The nearest code of v in [0, 1], which holds for means of decoded bytes. */
+/* The code nearest to v. v lies in [0, 1], as means of decoded bytes do. */
 static uint8_t nearest_code(const Builder *b, uint32_t channel, float v) {
   uint32_t i = (uint32_t)(v * STARTS), code = b->start[channel][i < STARTS ? i : STARTS - 1];
   while (code < 255 && v >= b->begin[channel][code + 1]) code++;
@@ -187,7 +187,7 @@ static vlResult add_level(Builder *b, float **kept) {
   return VL_OK;
 }
 
-/* The colour space with the image's chromaticities, to a thousandth (as pbrt). */
+/* Finds the colour space whose chromaticities agree with the image's to 0.001, as in pbrt. */
 static void find_space(const vlImage *image, vlMipmap *map) {
   vlAttribute a;
   if (vl_image_find_attribute(image, "chromaticities", &a) != VL_OK || a.type != VL_ATTRIBUTE_CHROMATICITIES) return;

@@ -1,6 +1,7 @@
-/* image/mipmap.h: mipmaps for textures. Each level has half the size of the one before (rounded down, at least 1).
- * Every texel is the exactly weighted mean of the linear values in its area, also where a size is odd. 8-bit images
- * keep one byte per value on all levels (means are taken in floats and rounded once); others become floats. */
+/* image/mipmap.h: MIP maps of textures. The width and height of each level are half of those of the level before,
+ * rounded down and at least 1. Every texel is the exactly weighted mean of the linear values in its area, even if a
+ * size is odd. Levels of 8-bit images hold one byte per value; their means are computed in floats and rounded once.
+ * Levels of other images hold floats. */
 #ifndef IMAGE_MIPMAP_H
 #define IMAGE_MIPMAP_H
 
@@ -11,7 +12,7 @@ enum { VL_MIP_LEVELS = 32 };
 
 typedef struct vlMipLevel {
   uint32_t width, height;
-  const uint8_t *bytes; /* bytes or floats, the other is null; width*height*channels, rows from the top */
+  const uint8_t *bytes; /* width*height*channels values, rows from the top; one of bytes and floats is null */
   const float *floats;
 } vlMipLevel;
 
@@ -20,7 +21,7 @@ typedef struct vlMipmap {
   uint32_t channels; /* 1 to 4 */
   uint32_t level_count;
   bool is_bytes;
-  bool space_given;     /* the image names its colour space, and it is a known one */
+  bool space_given;     /* the image has chromaticities, and they are those of a known colour space */
   vlColorSpace space;   /* sRGB unless space_given */
   float decode[4][256]; /* per channel: byte -> linear */
   vlMipLevel levels[VL_MIP_LEVELS];

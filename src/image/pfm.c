@@ -9,7 +9,7 @@ bool vl_pfm_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 'P' && (data[1] == 'F' || data[1] == 'f') && (data[2] <= ' ');
 }
 
-/* The next word. Exactly one white-space byte after it is consumed. */
+/* Reads the next word and exactly one white-space byte after it. */
 static bool next_word(const vlImageFile *file, size_t *at, char *word, size_t size) {
   while (*at < file->size && file->data[*at] <= ' ') ++*at;
   size_t n = 0;

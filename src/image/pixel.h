@@ -26,7 +26,7 @@ static inline float vl_half_to_float(uint16_t h) {
   return f;
 }
 
-/* Round to nearest even; too large becomes infinity, NaN stays NaN. */
+/* Rounds to nearest, ties to even. Values that are too large become infinity; NaN stays NaN. */
 static inline uint16_t vl_float_to_half(float f) {
   uint32_t bits;
   memcpy(&bits, &f, 4);
@@ -47,19 +47,19 @@ static inline uint16_t vl_float_to_half(float f) {
 
 /* ---- curves ------------------------------------------------------------------------------------------------------ */
 
-/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the ranges that round to them: code c stands for linear values
- * from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1]. Correctly rounded floats. */
+/* The sRGB curve (IEC 61966-2-1) for the 256 codes, and the range of linear values that rounds to each code: code c
+ * stands for values from vl_srgb8_begin[c] up to vl_srgb8_begin[c + 1]. All values are correctly rounded floats. */
 extern const float vl_srgb8_to_linear[256];
 extern const float vl_srgb8_begin[256];
 
-/* The nearest 8-bit sRGB code of a linear value; clamped, NaN gives 0. */
+/* The nearest 8-bit sRGB code of a linear value. The value is clamped to [0, 1]; NaN gives 0. */
 uint8_t vl_linear_to_srgb8(float linear);
-/* The nearest of 256 even steps; clamped, NaN gives 0. */
+/* The nearest of 256 equally spaced codes for a value clamped to [0, 1]; NaN gives 0. */
 static inline uint8_t vl_linear_to_unorm8(float x) {
   return (uint8_t)((x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f) * 255.0f + 0.5f);
 }
 
-/* log2 of x > 0, normal. Relative error below 1e-15. */
+/* Base-2 logarithm of a positive, normal x. The relative error is below 1e-15. */
 double vl_log2_exact(double x);
 /* 2^x for |x| < 1000. */
 double vl_exp2_exact(double x);

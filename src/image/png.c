@@ -1,5 +1,6 @@
 /* image/png.c: PNG through libpng: 8 and 16 bits. Palettes and grey of fewer bits are expanded; transparency becomes
- * alpha. libpng reports errors by longjmp: whatever is used afterwards is in the Png struct, not in locals. */
+ * alpha. libpng reports errors by longjmp, so values that are used afterwards are in the Png struct, not in local
+ * variables. */
 #include <png.h>
 #include <setjmp.h>
 #include <string.h>

@@ -13,7 +13,7 @@ bool vl_pnm_probe(const uint8_t *data, size_t size) {
   return size >= 3 && data[0] == 'P' && data[1] >= '1' && data[1] <= '6' && (data[2] <= ' ' || data[2] == '#');
 }
 
-/* The next number after white space and comments; at most `limit`. */
+/* Reads the next number after white space and comments; it must be at most `limit`. */
 static bool number(Pnm *p, uint32_t limit, uint32_t *value) {
   const uint8_t *d = p->file->data;
   size_t size = p->file->size;
@@ -33,7 +33,7 @@ static bool number(Pnm *p, uint32_t limit, uint32_t *value) {
   return true;
 }
 
-/* One digit 0 or 1; P1 needs no white space between digits. */
+/* Reads one digit 0 or 1. P1 needs no white space between digits. */
 static bool bit(Pnm *p, uint32_t *value) {
   const uint8_t *d = p->file->data;
   while (p->at < p->file->size && d[p->at] <= ' ') p->at++;

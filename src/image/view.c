@@ -1,5 +1,6 @@
-/* image/view.c: views: from linear light to display values. Input is linear Rec.709 R G B, or Y; the result is 8-bit
- * sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used: results are the same on every machine. */
+/* image/view.c: view transforms: conversion of linear light to display values. The input is linear Rec.709 R G B, or Y;
+ * the result is 8-bit sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used, so results are the same on
+ * every machine. */
 #include "base/error.h"
 #include "image/image.h"
 #include "image/pixel.h"

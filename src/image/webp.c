@@ -6,7 +6,7 @@
 
 #include "image/codec.h"
 
-/* Limit of unchecked size: an image of one colour takes almost no bytes, so a small file may be a large image. */
+/* Images up to this size are accepted from files of any size, since an image of one colour takes almost no bytes. */
 enum { BELIEVED = 1 << 24 };
 
 bool vl_webp_probe(const uint8_t *data, size_t size) {

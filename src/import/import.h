@@ -1,5 +1,5 @@
-/* import/import.h: importers: files of other formats become scenes. The interface of this room. Errors are kept in the
- * scene (sticky) with their place; warnings go to the context's log. */
+/* import/import.h: importers read files of other formats into scenes. This is the interface of the room. The scene
+ * keeps the first error with its place in the file; warnings go to the context's log. */
 #ifndef IMPORT_IMPORT_H
 #define IMPORT_IMPORT_H
 
@@ -20,12 +20,12 @@
 VL_SCENE_FORMATS(VL_DECLARE_IMPORT)
 #undef VL_DECLARE_IMPORT
 
-/* pbrt: a pbrt-v4 scene file, gzip or plain. gltf: a glTF 2.0 file, by its content; where it has no camera or light the
- * scene's defs say so. obj, ply: plain geometry, Wavefront OBJ with its MTL libraries, and PLY; the scene's defs say
- * that camera and light are missing. */
+/* pbrt: a pbrt-v4 scene file, plain or compressed by gzip. gltf: a glTF 2.0 file, .gltf or .glb as its content shows;
+ * the scene's defs are marked when camera or lights are missing. obj, ply: geometry without camera and lights, from
+ * Wavefront OBJ with its MTL libraries or from PLY; the scene's defs are marked accordingly. */
 
-/* A pbrt-v4 scene from memory; `name` stands for the file in errors and gives the folder of relative names. data is
- * copied. */
+/* A pbrt-v4 scene from memory; errors use `name` as the file's name, and relative file names start from its folder.
+ * data is copied. */
 vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
                                vlError *error);
 

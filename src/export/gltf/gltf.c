@@ -1,5 +1,6 @@
-/* export/gltf/gltf.c: a scene as glTF 2.0: JSON, buffer, meshes and the node tree. When the scene's camera mirrors (as
- * pbrt's do), all nodes have a parent that mirrors the world, so that the camera need not. */
+/* export/gltf/gltf.c: a scene as glTF 2.0: JSON, buffer, meshes and the node tree. When the scene's camera mirrors the
+ * image, as pbrt's cameras do, all nodes have a parent that mirrors the world. The exported camera then does not
+ * mirror. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -83,8 +84,8 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
                                small ? TYPE_USHORT : TYPE_UINT, "count", (json_int_t)count, "type", "SCALAR"));
 }
 
-/* Normalises directions, as glTF demands. Nearly unit ones stay unchanged; zero ones become an arbitrary unit vector.
- */
+/* Normalises directions, as glTF requires. Directions of nearly unit length stay unchanged; zero vectors become an
+ * arbitrary unit vector. */
 static void make_unit(const float *v, float sign, float *to) {
   float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), k = fabsf(l - 1) < 1e-4f ? sign : sign / l;
   for (int i = 0; i < 3; i++) to[i] = l > 1e-20f ? v[i] * k : (i == 2 ? 1.0f : 0.0f);
@@ -136,8 +137,8 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
   return true;
 }
 
-/* Whether the normals of vl_export_mesh must be reversed. A mirroring transform also reverses those of spheres, disks
- * and cylinders (velo/scene.h); glTF's nodes never do. */
+/* Whether the normals of vl_export_mesh must be reversed. A mirroring transform also reverses the normals of spheres,
+ * disks and cylinders (velo/scene.h); transforms of glTF nodes never reverse normals. */
 static bool is_turned(const vlShapeDef *d) {
   bool quadric = vl_kind_row(&vl_shape_family, (int)d->kind)->traits & VL_SHAPE_TRAIT_QUADRIC;
   return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
@@ -193,7 +194,8 @@ static bool is_sheared(const double m[16]) {
   return false;
 }
 
-/* Nodes of a shape's mesh, appended to `list`: one, or one for each of many spheres, whose mesh is the unit sphere. */
+/* Appends the nodes of a shape's mesh to `list`: one node, or for a shape of many spheres one node per sphere, whose
+ * mesh is the unit sphere. */
 static void put_nodes(vlExport *x, const vlShapeDef *d, json_int_t mesh, json_t *list) {
   for (uint32_t i = 0; i < (d->centers ? d->faces : 1); i++) {
     vlMat4 m = vl_mat4_load(d->group_from_shape);

@@ -26,7 +26,7 @@ static double unit(double v) {
   return v > 0 ? v < 1 ? v : 1 : 0;
 }
 
-/* A factor times a channel of an image. */
+/* Writes a factor times a channel of an image. */
 static void put_channel(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, int channel,
                         const vlFloatInput *input) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -39,7 +39,7 @@ static void put_channel(vlExport *x, json_t *to, const char *factor_key, const c
   if (info) json_object_set_new(to, texture_key, info);
 }
 
-/* A colour factor times an sRGB image. *alpha (may be null) receives the texture, for its fourth channel. */
+/* Writes a colour factor times an sRGB image. *alpha (may be null) receives the texture, for its fourth channel. */
 static void put_color(vlExport *x, json_t *to, const char *factor_key, const char *texture_key, bool bounded,
                       const vlSpectrumInput *input, double coverage) {
   const vlTextureDef *t = vl_export_texture(x, input->texture);
@@ -375,7 +375,7 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
     if (info) json_object_set_new(json, "normalTexture", info);
   }
   if (d->emission.index) put_emission(x, json, &x->scene->emissions.items[d->emission.index - 1]);
-  /* transmissive surfaces are always met from both sides */
+  /* rays hit transmissive surfaces from both sides */
   bool body = json_object_get(json_object_get(json, "extensions"), "KHR_materials_volume") != NULL;
   if (!d->one_sided && !body) json_object_set_new(json, "doubleSided", json_true());
   if (!json_object_size(json_object_get(json, "extensions"))) json_object_del(json, "extensions");

@@ -131,7 +131,7 @@ static bool put_principled(vlExport *x, const vlMaterialDef *m, uint32_t id) {
 
 /* ---- pbrt's own -------------------------------------------------------------------------------------------------- */
 
-/* Of alternative parameters, the one in effect is always written and the others never. */
+/* Of alternative parameters, only the one that has an effect is written, even if it has its default. */
 static vlPbrtWished one_of(bool counts) {
   return counts ? VL_PBRT_ALWAYS : VL_PBRT_NEVER;
 }

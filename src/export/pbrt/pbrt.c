@@ -46,8 +46,8 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 
 /* ---- before the world -------------------------------------------------------------------------------------------- */
 
-/* The film's parameters except its size, which the camera's text holds. shutter: seconds that the shutter is open.
- * pbrt's exposure is proportional to it. */
+/* The film's parameters except its size, which the camera's text holds. shutter: time in seconds that the shutter is
+ * open; pbrt's exposure is proportional to it. */
 static void put_film(vlExport *x, double shutter) {
   const vlSceneDefs *defs = &x->scene->defs;
   const vlFilmDef *film = &defs->film;
@@ -71,7 +71,7 @@ static void put_film(vlExport *x, double shutter) {
   if (defs->render.sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
 }
 
-/* The camera's text is a whole scene: copies its part before WorldBegin. */
+/* The text of the camera is a whole scene. This function copies its part before WorldBegin. */
 static const char *film_kind(const vlSceneDefs *defs) {
   vlFilmKind kind = defs->gbuffer ? VL_FILM_GBUFFER : defs->film.buckets ? VL_FILM_SPECTRAL : VL_FILM_RGB;
   return vl_kind_row(&vl_film_family, (int)kind)->name;
@@ -127,7 +127,8 @@ static bool put_camera(vlExport *x) {
   return true;
 }
 
-/* The name by which pbrt knows the kind; null after a loss: it does not, and `instead` is written. */
+/* pbrt's name of the kind. When pbrt has no such kind, a loss is counted, the result is null and the caller writes
+ * `instead`. */
 static const char *pbrt_name(vlExport *x, const vlKindFamily *family, int kind, const char *thing,
                              const char *instead) {
   const vlKindRow *row = vl_kind_row(family, kind);

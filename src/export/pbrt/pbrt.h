@@ -7,12 +7,12 @@
 
 #define PUT(...) vl_bytes_print(x->context, &x->text, __VA_ARGS__)
 
-/* Writes ConcatTransform unless it is the identity. */
+/* Writes ConcatTransform unless the matrix is the identity. */
 void vl_pbrt_matrix(vlExport *x, const double m[16]);
-/* Starts a parameter of that name. */
+/* Starts a spectrum parameter of that name. */
 void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
-/* Writes the members of a def that differ from the row's defaults (all: every one that is set), except arrays, files,
- * inputs and the member `skip` (may be null). */
+/* Writes the members of a def that differ from the row's defaults. With `all`, every member that is set is written.
+ * Arrays, files, inputs and the member `skip` (may be null) are left out. */
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip);
 /* Writes "medium<index + 1>", before WorldBegin. */
 bool vl_pbrt_medium(vlExport *x, size_t index);
@@ -35,13 +35,13 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);
-/* The same without changes to the values. depth: nesting of textures. */
+/* Prepares the input without changes to its values. depth: nesting of textures. */
 bool vl_pbrt_inner_number(vlExport *x, const vlFloatInput *input, int depth, vlPbrtInput *result);
 bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, vlPbrtInput *result);
 
-/* Writes all parameters of a row in the same two steps (parameters.c). Only those that differ from their defaults are
- * written, unless `wish` (may be null) decides otherwise. list: one entry per parameter of the row. spectrum: which
- * half of EITHER_INPUT is written. */
+/* Writes all parameters of a row in the same two steps, prepare and put (parameters.c). Only parameters that differ
+ * from their defaults are written, unless `wish` (may be null) decides otherwise. list has one entry per parameter of
+ * the row. spectrum selects the spectrum or the float input of EITHER_INPUT. */
 enum { VL_PBRT_PARAMETERS = 64 };
 typedef struct vlPbrtParameter {
   bool wanted;

@@ -69,8 +69,9 @@ static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
   return true;
 }
 
-/* pbrt's emissive images do not repeat. When all uvs lie in one other cell, they are shifted to the unit square,
- * provided that the scene's image repeats and has the uv mapping. *moved receives the new uvs, otherwise null. */
+/* pbrt's emissive images do not repeat. When all uvs lie in one cell other than the unit square, this function shifts
+ * them there, provided that all image textures of the scene repeat and use the plain uv mapping. *moved receives the
+ * new uvs, or null. */
 static bool move_uvs(vlExport *x, const vlShapeDef *d, float **moved) {
   const vlEmissionDef *e = &x->scene->emissions.items[d->emission.index - 1];
   *moved = NULL;

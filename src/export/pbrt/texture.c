@@ -56,7 +56,7 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300
 /* How the values of an image are changed. */
 typedef struct Change {
   bool squared;
-  float turned_back; /* internal reflection of a coat that is compensated (share of the light); 0: none */
+  float turned_back; /* share of the light that a coat reflects back internally and that is compensated; 0: none */
 } Change;
 static const Change as_is = {false, 0};
 
@@ -64,7 +64,7 @@ static float under_coat(float value, float turned_back) {
   return value / (1 - turned_back + value * turned_back);
 }
 
-/* One channel as the tracer reads it, or three tinted channels. */
+/* Changes an image: one channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 2 + (change.squared ? 1u : 0u);
   const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
@@ -182,7 +182,7 @@ static vlPbrtWished wish(const void *def, const vlParameter *p) {
   return VL_PBRT_UNLESS_DEFAULT;
 }
 
-/* Writes the texture anew for each use; names are numbered in file order. name is empty when there is none. */
+/* Writes the texture again for each use; names are numbered in file order. name is empty when there is no texture. */
 static bool put_texture(vlExport *x, uint32_t id, Change change, int depth, char name[64]) {
   const vlTextureDef *t = &x->scene->textures.items[id - 1];
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);

@@ -17,7 +17,7 @@ typedef struct Denoise {
   vlContext *context;
   vlDenoiseChannels channels;
   vlDenoisePlanes planes;
-  float *memory; /* holds all planes */
+  float *memory; /* one block that holds all planes */
   float nearest; /* largest disparity in the image */
   vlDenoiseScratch *scratch;
   const vlDenoiseKernels *kernels;
@@ -90,8 +90,8 @@ static ptrdiff_t place(const vlDenoisePlanes *p, uint32_t x, uint32_t y) {
   return (ptrdiff_t)y * p->stride + (ptrdiff_t)x;
 }
 
-/* The largest disparity. read_row raises smaller disparities, and the 0 of pixels that hit nothing, to a thousandth
- * of it. 1 without features. */
+/* The largest disparity in the image; 1 without features. read_row raises disparities below a thousandth of it to that
+ * value, also the 0 of pixels that hit nothing. */
 static float find_nearest(const Denoise *d) {
   float most = 0.0f;
   for (uint32_t y = 0; y < d->planes.height && d->channels.features; y++)
@@ -128,7 +128,8 @@ static void read_row(void *user, uint32_t y, uint32_t worker) {
   }
 }
 
-/* Mean and variance of the valid pixels in the smallest square around `at` that has any; 0 if the window has none. */
+/* Mean and variance of the valid pixels in the smallest square around `at` that contains a valid pixel; 0 if the window
+ * contains none. */
 static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], ptrdiff_t at, float mean[COLOR],
                           float variance[COLOR]) {
   float sums[COLOR] = {0}, squares[COLOR] = {0}, count = 0.0f;
@@ -223,8 +224,8 @@ static ptrdiff_t mirror(ptrdiff_t i, uint32_t size) {
   return i < 0 ? 0 : i > last ? last : i;
 }
 
-/* Mirrors the image into the border, as far as patches in windows reach. Mirrored pixels are used to compare patches;
- * since they are not valid, they have no weight in the fit. */
+/* Mirrors the image into the border, as far as patches in windows reach. Mirrored pixels are used to compare patches.
+ * They are not valid and so have no weight in the fit. */
 static void mirror_plane(const vlDenoisePlanes *p, float *plane) {
   const ptrdiff_t reach = VL_DENOISE_RADIUS + VL_DENOISE_PATCH, width = p->width, height = p->height;
   for (ptrdiff_t y = 0; y < height; y++) {

@@ -8,27 +8,27 @@
 #include "velo/denoise.h"
 
 /* A tile of pixels is the unit of work. The neighbours of a pixel lie in a window of (2 VL_DENOISE_RADIUS + 1)^2
- * pixels; they are compared by patches of (2 VL_DENOISE_PATCH + 1)^2. */
+ * pixels. Two pixels are compared by patches of (2 VL_DENOISE_PATCH + 1)^2 pixels around them. */
 enum {
   VL_DENOISE_TILE_X = 64,
   VL_DENOISE_TILE_Y = 16,
   VL_DENOISE_TILE = VL_DENOISE_TILE_X * VL_DENOISE_TILE_Y,
   VL_DENOISE_RADIUS = 7,
   VL_DENOISE_PATCH = 2,
-  VL_DENOISE_BORDER = 16, /* of the planes; at least radius + patch */
+  VL_DENOISE_BORDER = 16, /* width of the planes' border in pixels; at least radius + patch */
   VL_DENOISE_WINDOW = 2 * VL_DENOISE_RADIUS + 1,
   VL_DENOISE_FEATURES = 7,                          /* albedo, normal, logarithm of the disparity */
-  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 + 1 /* slopes of the features, of x and y; the constant */
+  VL_DENOISE_UNKNOWNS = VL_DENOISE_FEATURES + 2 + 1 /* slopes of the features, slopes of x and y, and the constant */
 };
 _Static_assert((int)VL_DENOISE_BORDER >= (int)VL_DENOISE_RADIUS + (int)VL_DENOISE_PATCH, "windows end in the border");
 
-/* Planes with a border all around: pointers are to pixel (0, 0), rows are `stride` floats apart. */
+/* Planes with a border on all sides. The pointers are to pixel (0, 0); rows are `stride` floats apart. */
 typedef struct vlDenoisePlanes {
   uint32_t width, height;
   ptrdiff_t stride;
-  float *color[3], *variance[3]; /* and the variance of its noise */
+  float *color[3], *variance[3]; /* the colour, and the variance of its noise */
   float *feature[VL_DENOISE_FEATURES];
-  float *valid; /* 1; 0 outside of the image and where a value is not finite */
+  float *valid; /* 1 for valid pixels; 0 outside of the image and where a value is not finite */
   float *result[3];
 } vlDenoisePlanes;
 
@@ -48,11 +48,11 @@ VL_KERNEL_TABLE(vlDenoiseKernels, vl_denoise)
 /* The image's channels that the denoisers read; -1: there is none. */
 typedef struct vlDenoiseChannels {
   int color[3], error[3], alpha, feature[VL_DENOISE_FEATURES];
-  bool features; /* all of them are there */
+  bool features; /* the image has all feature channels */
 } vlDenoiseChannels;
 
-/* In oidn.c: colours of the image by Intel Open Image Denoise to `clean`, a float image of `channels` channels.
- * Errors: MISSING, UNSUPPORTED, MEMORY. */
+/* Denoises the image's colours by Intel Open Image Denoise (oidn.c). The result goes to `clean`, a float image of
+ * `channels` channels. Errors: MISSING, UNSUPPORTED, MEMORY. */
 vlResult vl_denoise_oidn(const vlImage *image, const vlDenoiseChannels *channels, const char *library, vlImage *clean,
                          vlError *error);
 

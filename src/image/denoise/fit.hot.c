@@ -16,14 +16,15 @@ enum {
   TERMS = U * (U + 1) / 2
 };
 
-static const float BANDWIDTH2 = 0.25f;                         /* square of k in docs/denoising.md */
-static const float PIXEL_SHARE = 0.06f;                        /* factor on the distance of the two pixels alone */
-static const float RIDGE_FEATURE = 1e-3f, RIDGE_PLACE = 3e-2f; /* lambda, per unit of weight */
+static const float BANDWIDTH2 = 0.25f;  /* square of k in docs/denoising.md */
+static const float PIXEL_SHARE = 0.06f; /* factor on the distance between the two single pixels */
+static const float RIDGE_FEATURE = 1e-3f,
+                   RIDGE_PLACE = 3e-2f; /* ridge terms lambda of features and positions, per unit of weight */
 
 /* ---- weights ----------------------------------------------------------------------------------------------------- */
 
-/* For each pixel of the tile and of a margin of P pixels: the squared difference from the pixel at the offset (dx, dy),
- * less the variance of that difference, divided by a multiple of this variance; summed over the channels. */
+/* For each pixel of the tile and of a margin of P pixels: the squared difference from the pixel at the offset (dx, dy)
+ * minus the variance of that difference, divided by a multiple of this variance and summed over the channels. */
 static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy) {
   for (int j = 0; j < Y + 2 * P; j++) {
     ptrdiff_t at = ((ptrdiff_t)y + j - P) * p->stride + (ptrdiff_t)x - P, to = at + dy * p->stride + dx;
@@ -41,9 +42,9 @@ static void pixel_distances(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint3
 }
 
 /* For each pixel of the tile, the weight of its neighbour at the offset (dx, dy): exp(-distance). The distance is the
- * larger of the mean over the patches and PIXEL_SHARE times the distance of the two pixels alone. The latter excludes a
- * neighbour that clearly differs, as the test of Sakai et al. 2024 does, although the patches are similar: a pixel at
- * the edge of a lamp has so large a variance that the patches hardly differ. */
+ * larger of the mean over the patches and PIXEL_SHARE times the distance between the two single pixels. The latter
+ * excludes a neighbour that clearly differs, as the test of Sakai et al. 2024 does, although the patches are similar: a
+ * pixel at the edge of a lamp has so large a variance that the patches hardly differ. */
 static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y, int dx, int dy, float *to) {
   pixel_distances(p, s, x, y, dx, dy);
   for (int j = 0; j < Y + 2 * P; j++) {

@@ -34,7 +34,7 @@ static vlResult load(Oidn *o, const char *library, vlError *error) {
   if (!o->library)
     return vl_fail(error, VL_ERROR_MISSING, "Open Image Denoise: %s cannot be loaded", library ? library : usual[0]);
   const struct {
-    const char *name, *other; /* in version 2; in version 1 if it differs */
+    const char *name, *other; /* name in version 2; name in version 1 if it differs */
     void *to;
   } symbols[] = {{"oidnNewDevice", NULL, &o->new_device},
                  {"oidnCommitDevice", NULL, &o->commit_device},
@@ -71,7 +71,7 @@ static float *copy3(const vlImage *image, const int channel[3]) {
   return to;
 }
 
-/* Denoises. planes: colour, result, albedo, normal, 3 floats per pixel; the last two may be null. */
+/* Runs the denoiser. planes: colour, result, albedo and normal, 3 floats per pixel; albedo and normal may be null. */
 static vlResult run(const Oidn *o, const vlImage *image, float *const planes[4], vlError *error) {
   static const char *const names[4] = {"color", "output", "albedo", "normal"};
   void *device = o->new_device(DEFAULT_DEVICE);

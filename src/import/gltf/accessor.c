@@ -119,7 +119,8 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
     if (!fits(g, at, view, offset, a->count, size, a->stride)) return NULL;
     a->data = g->views[view].data + offset;
   } else if (a->count >
-             g->total + 65536) { /* without a view the elements are zeros, which no bytes of the file bound */
+             g->total +
+                 65536) { /* without a view all elements are zero, so the file's size does not limit their number */
     return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count), NULL;
   }
   if (!read_sparse(g, at, json, a, size)) return NULL;

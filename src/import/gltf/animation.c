@@ -11,7 +11,7 @@
 
 typedef enum { STEP, LINEAR, CUBIC } Mode;
 
-/* A sampler's keys: count times and count * width values (CUBICSPLINE: three times as many values). */
+/* The keys of a sampler: `count` times and count * width values; for CUBICSPLINE three times as many values. */
 typedef struct {
   size_t count, width;
   float *times, *values;
@@ -152,7 +152,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   if (what < 0 && *path)
     vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%s\" is ignored",
                  vl_short_text(path).text);
-  if (node < 0 || what < 0) return true; /* the specification lets these channels be ignored */
+  if (node < 0 || what < 0) return true; /* the specification allows to ignore these channels */
   const json_t *json = json_array_get(samplers, (size_t)sampler);
   const vlGltfPlace *at_sampler = VL_GLTF_ITEM(up, "samplers", (size_t)sampler);
   if (!json_is_object(json)) return vl_gltf_fail(g, at_sampler, "must be an object");

@@ -49,7 +49,8 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   return true;
 }
 
-/* A glTF camera has y up and looks along -z. Only position and orientation of the node count, not its scale. */
+/* A glTF camera has y up and looks along -z. The position and orientation of the node are used; its scale is
+ * ignored. */
 static void set_pose(const vlMat4 *world, double m[16]) {
   memcpy(m, world->m, 16 * sizeof *m);
   for (int column = 0; column < 3; column++) {

@@ -58,7 +58,7 @@ static const vlMat4 *world_of(const vlGltf *g, const vlGltfNode *node) {
   return g->closing ? &node->keys[VL_GLTF_KEYS - 1] : &node->world;
 }
 
-/* world_from_mesh of each joint. */
+/* Computes the matrix world_from_mesh of each joint. */
 static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *count) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "skins", skin);
   const json_t *json = vl_gltf_item(g, "skins", skin), *joints;
@@ -103,8 +103,8 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
   return ok;
 }
 
-/* sums (12 numbers per vertex, row-major) += weight * matrix, by the attributes JOINTS_set and WEIGHTS_set. *found: the
- * mesh has these attributes. */
+/* Adds weight * matrix of each joint to sums (12 numbers per vertex, row-major), as the attributes JOINTS_set and
+ * WEIGHTS_set give them. *found: whether the mesh has these attributes. */
 static bool add_influences(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *joints_name,
                            const char *weights_name, const vlMat4 *matrices, size_t count, size_t vertices,
                            double *sums, bool *found) {

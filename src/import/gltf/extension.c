@@ -20,7 +20,8 @@ static const char *const known[] = {
     "EXT_lights_image_based",    "KHR_animation_pointer",
     "KHR_node_visibility",
 };
-/* Of the registry of Khronos, not read. A message shows them whole, others short. */
+/* Extensions of the Khronos registry that velo does not read. Messages show their names in full and shorten unknown
+ * names. */
 static const char *const registered[] = {
     "ADOBE_materials_clearcoat_specular",
     "AGI_articulations",

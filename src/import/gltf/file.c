@@ -13,7 +13,7 @@ static uint32_t little(const uint8_t *p) {
   return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
-/* The .glb container: a header of 12 bytes, then chunks. A chunk is its length, its type and its data. */
+/* The .glb container: a header of 12 bytes, then chunks. A chunk consists of its length, its type and its data. */
 static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
   if (g->file_size < 20) return vl_gltf_fail(g, NULL, "broken .glb: only %zu bytes", g->file_size);
   uint32_t version = little(g->file + 4), length = little(g->file + 8);

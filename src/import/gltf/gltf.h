@@ -39,7 +39,8 @@ enum {
   VL_GLTF_FLOAT = 5126
 };
 
-/* Element i lies at data + i * stride. data null: all elements are zero. Sparse elements replace others by index. */
+/* Element i lies at data + i * stride. data null: all elements are zero. Sparse elements replace the elements at their
+ * indices. */
 typedef struct vlGltfAccessor {
   enum { VL_GLTF_UNREAD, VL_GLTF_GOOD } state;
   const uint8_t *data;
@@ -55,17 +56,17 @@ typedef struct vlGltfNode {
   const json_t *json;
   uint32_t parent; /* UINT32_MAX: none */
   bool has_matrix, has_pose, reached;
-  double matrix[16]; /* row-major */
+  double matrix[16]; /* the node's matrix, row-major, when has_matrix */
   double translation[3], rotation[4], scale[3];
   vlMat4 world;   /* world_from_node, when has_pose */
   vlMat4 *keys;   /* world_from_node at each of the VL_GLTF_KEYS key times; null: no motion */
-  float *weights; /* animated weights of the morph targets; null: those of the node or the mesh */
+  float *weights; /* animated weights of the morph targets; null: the weights of the node or the mesh apply */
   uint32_t weight_count;
-  float *weights_close; /* the same when the shutter closes */
+  float *weights_close; /* weights at shutter close */
   uint32_t weight_close_count;
 } vlGltfNode;
 
-/* The scene's objects made from a material, and what meshes need to know of it. */
+/* The scene objects made from a material, and the properties of it that meshes need. */
 typedef struct vlGltfMaterial {
   bool made;
   vlMaterialId material;
@@ -73,7 +74,7 @@ typedef struct vlGltfMaterial {
   vlEmissionId emission;
   bool double_sided, needs_tangents, needs_uvs;
   vlMediumId inside;
-  uint32_t tangent_set; /* uv set that the tangents follow */
+  uint32_t tangent_set; /* uv set from which the tangents are computed */
 } vlGltfMaterial;
 
 /* An encoded image: bytes in memory (owned by the scene) or the path of a file. */
@@ -87,7 +88,7 @@ typedef struct vlGltfImage {
 enum { VL_GLTF_KEYS = 9 }; /* number of poses from shutter open to shutter close, evenly spaced */
 
 typedef struct vlGltfMesh {
-  uint32_t uses; /* number of nodes that place the mesh undeformed; each instance counts */
+  uint32_t uses; /* number of nodes and instances that place the mesh undeformed */
   bool emissive; /* a primitive emits light: the mesh cannot be instanced */
   bool grouped;  /* the mesh's group has been made */
   vlGroupId group;
@@ -107,8 +108,8 @@ typedef struct vlGltf {
   vlGltfView *views;
   vlGltfAccessor *accessors;
   vlGltfNode *nodes;
-  vlGltfMaterial *materials; /* two (without and with vertex colours) per material of the file and for the default one:
-                                2 * (count + 1) */
+  vlGltfMaterial
+      *materials; /* 2 * (count + 1): each material of the file and the default one, without and with vertex colours */
   vlGltfImage *images;
   vlGltfMesh *meshes;
   size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count, texture_count, mesh_count,
@@ -117,12 +118,12 @@ typedef struct vlGltf {
   uint64_t total;       /* size of all buffers in bytes */
   uint64_t spent;       /* bytes of geometry made so far; see vl_gltf_spend */
   int64_t variant;      /* index of the material variant; -1: none */
-  double time;          /* at which nodes are posed, seconds */
+  double time;          /* time in seconds at which nodes are posed */
   double open, close;   /* shutter times, seconds */
   bool moves;           /* close is later than open, and there are animations */
-  bool closing;         /* meshes are deformed as at shutter close */
+  bool closing;         /* meshes are currently deformed as at shutter close */
   vlMat4 *keys;         /* world matrices of all nodes at the key times */
-  uint32_t reported;    /* bit mask of warnings that were given once */
+  uint32_t reported;    /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
 } vlGltf;
@@ -140,14 +141,14 @@ enum {
 /* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false ----------
  */
 
-/* Reports "path: place: message". Always false. */
+/* Report the error "path: place: message". Always return false. */
 bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_gltf_fail_memory(vlGltf *g);
 void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* True on the first call for this bit. */
+/* Returns true on the first call for this bit. */
 bool vl_gltf_once(vlGltf *g, uint32_t bit);
 
 /* Typed members of a JSON object. An absent member leaves the value as it is and returns true. A member of the wrong
@@ -158,7 +159,7 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
                      double *values);
 bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value);
 bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value);
-/* The index of the member's string among the names. */
+/* *value receives the index of the member's string among the names. */
 bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *const *names,
                     int count, int *value);
 /* A non-negative integer. */
@@ -171,7 +172,7 @@ bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
                    size_t *count);
 /* object.extensions.name, or null. */
 const json_t *vl_gltf_extension(const json_t *object, const char *name);
-/* Element i of an array at the root, for example nodes[3]. The caller has checked i. */
+/* Element i of an array at the root, for example nodes[3]. The caller must have checked i. */
 const json_t *vl_gltf_item(const vlGltf *g, const char *array, size_t index);
 
 /* ---- files (file.c) ---------------------------------------------------------------------------------------------- */
@@ -205,15 +206,15 @@ void vl_gltf_read_uints(const vlGltfAccessor *accessor, uint32_t components, uin
  * components and count elements (0: any; *read receives the count). Null after an error. */
 float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint32_t components, size_t count,
                            size_t *read);
-/* Accounts for bytes of geometry about to be made. An error when the sum is out of proportion to the file's size. */
+/* Adds to the bytes of geometry made so far. Reports an error when the sum is out of proportion to the file's size. */
 bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
-bool vl_gltf_animate(vlGltf *g);    /* at g->time */
+bool vl_gltf_animate(vlGltf *g);    /* applies the animations at g->time */
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
-/* Poses all nodes at def->time and, when motion is asked for, at the key times until def->time_close. */
+/* Poses all nodes at def->time and, for motion blur, at the key times up to def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
 /* Whether the node's world matrix changes between shutter open and shutter close. */
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
@@ -223,7 +224,7 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 
 /* ---- meshes ------------------------------------------------------------------------------------------------------ */
 
-/* A primitive as triangles in plain arrays (blocks of the context). */
+/* A primitive as triangles. Its arrays are blocks of the context. */
 typedef struct vlGltfPrimitive {
   size_t vertices, faces;
   float *positions, *normals, *tangents;  /* 3, 3, 4 per vertex; all but the positions may be null */
@@ -234,12 +235,12 @@ typedef struct vlGltfPrimitive {
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
 
-/* Adds mesh `index` for a node. node null: to a group, in the mesh's own space. */
+/* Adds mesh `index` for a node. A null node adds the mesh to a group, in the mesh's own space. */
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group, vlMat4 pose);
 /* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
-/* topology.c: turns the primitive's indices (without indices: 0, 1, 2, ...) into triangles by its mode. Points and
- * lines become small solids with new vertices. */
+/* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles, according to its mode. Points
+ * and lines become small solids with new vertices. */
 bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t *indices, size_t count,
                        vlGltfPrimitive *p);
 /* Removes the vertices that no face uses. */
@@ -259,8 +260,8 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p);
 /* The material `index` (-1: the default material) for a primitive with or without vertex colours. Null after an error.
  */
 const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors);
-/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1: a colour texture. An absent
- * textureInfo gives *id 0. */
+/* Adds the texture of a textureInfo object. tint: factors of its channels. channel -1 makes a colour texture. Without a
+ * textureInfo *id is 0. */
 typedef struct vlGltfTextureUse {
   bool spectrum;
   int channel; /* 0 to 3 for a float texture; -1: a colour */
@@ -269,7 +270,7 @@ typedef struct vlGltfTextureUse {
   bool colors; /* multiplied by the vertex colour */
   float scale; /* float textures only: value = bias + scale * channel */
   float bias;
-  float cutoff; /* not NaN: the value is 1 from the cutoff on and 0 below it */
+  float cutoff; /* not NaN: the value becomes 1 from the cutoff on and 0 below it */
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);
@@ -280,8 +281,8 @@ bool vl_gltf_read_image(vlGltf *g, size_t index);
 /* The uv set of a textureInfo; the one of KHR_texture_transform takes precedence. */
 bool vl_gltf_texture_set(vlGltf *g, const vlGltfPlace *at, const json_t *info, uint32_t *set);
 
-/* volume.c: KHR_materials_volume of a solid, and the conversion of a texture of directions to one of angles (radians,
- * plus rotation). */
+/* volume.c: vl_gltf_volume reads KHR_materials_volume of a solid. vl_gltf_angle_texture converts a texture of
+ * directions to a texture of angles in radians and adds rotation. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result);
 bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatInput *input);
 

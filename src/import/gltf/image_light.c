@@ -38,7 +38,8 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
   return ok;
 }
 
-/* Radiance from direction d, bilinear within one face. Order and axes of the faces: OpenGL's cube maps. */
+/* Radiance from direction d, interpolated bilinearly within one face. The faces have the order and axes of OpenGL's
+ * cube maps. */
 static void look(const Cube *cube, vlVec3 d, float out[3]) {
   float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z), s, t, m;
   int face;

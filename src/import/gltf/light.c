@@ -1,5 +1,5 @@
-/* import/gltf/light.c: KHR_lights_punctual. Its candela and lux are velo's units of luminous intensity and illuminance
- * when radiance is in nits. */
+/* import/gltf/light.c: KHR_lights_punctual. The extension's units, candela and lux, match velo's if radiance is in
+ * nits. */
 #include <math.h>
 #include <string.h>
 

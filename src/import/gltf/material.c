@@ -72,7 +72,7 @@ static bool normal_input(const Reader *r, const vlGltfPlace *at, const json_t *j
 
 /* ---- coverage ---------------------------------------------------------------------------------------------------- */
 
-/* Coverage: the base colour's fourth channel, by alphaMode. */
+/* Reads the coverage: the base colour's fourth channel, interpreted by alphaMode. */
 static bool read_alpha(const Reader *r, const vlGltfPlace *at, const json_t *json, const char *texture_key,
                        float factor) {
   static const char *const modes[] = {"OPAQUE", "MASK", "BLEND"};
@@ -114,7 +114,8 @@ static bool read_metallic_roughness(const Reader *r, float base[4]) {
          read_alpha(r, at, json, "baseColorTexture", base[3]);
 }
 
-/* KHR_materials_pbrSpecularGlossiness: not metallic. The reflectance at normal incidence is the specular colour. */
+/* Reads KHR_materials_pbrSpecularGlossiness as a material that is not metallic. The reflectance at normal incidence is
+ * the specular colour. */
 static bool read_specular_glossiness(const Reader *r, const json_t *json, float base[4]) {
   const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_pbrSpecularGlossiness");
   vlPrincipledDef *p = &r->def->principled;
@@ -206,7 +207,7 @@ static bool read_anisotropy(const Reader *r) {
          vl_gltf_angle_texture(r->g, p->anisotropy.texture, rotation, &p->anisotropy_rotation);
 }
 
-/* Transmission: thin surfaces and solids. */
+/* Reads the transmission of thin surfaces and solids. */
 static bool read_transmission(const Reader *r) {
   const json_t *glass = extension(r, "KHR_materials_transmission"), *volume = extension(r, "KHR_materials_volume"),
                *diffuse = extension(r, "KHR_materials_diffuse_transmission"),
@@ -292,7 +293,7 @@ static bool read_material(const Reader *r) {
     return false;
   bool passes = p->transmission.texture.index || p->transmission.value > 0.0f ||
                 p->diffuse_transmission.texture.index || p->diffuse_transmission.value > 0.0f;
-  if (passes) r->result->double_sided = true; /* light inside must meet the back side of the surface */
+  if (passes) r->result->double_sided = true; /* light inside the solid must hit the back side of the surface */
   return true;
 }
 

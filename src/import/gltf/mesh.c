@@ -6,7 +6,8 @@
 
 #include "import/gltf/gltf.h"
 
-/* Attribute `name` as floats, `components` per vertex (VEC3 colours get alpha 1). Null when the primitive lacks it. */
+/* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null when the primitive lacks
+ * the attribute. */
 static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, const char *name, uint32_t least,
                       uint32_t components, size_t vertices, float **out) {
   int64_t index;
@@ -93,7 +94,7 @@ static bool choose_material(vlGltf *g, const vlGltfPlace *at, const json_t *prim
 
 /* ---- the shape --------------------------------------------------------------------------------------------------- */
 
-/* A singular pose cannot be a transform of the scene: it is applied to the vertices. */
+/* Applies a singular pose to the vertices, since it cannot be a transform of the scene. */
 static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
   for (size_t i = 0; i < p->vertices; i++) {
     double q[3] = {p->positions[3 * i], p->positions[3 * i + 1], p->positions[3 * i + 2]}, w[3];

@@ -191,8 +191,8 @@ static void look(vlGltf *g, const vlGltfPlace *at, const char *key, uint32_t *re
                  vl_short_text(key).text, near);
 }
 
-/* Names that the format does not have are short in places, too. Extras and extensions that velo does not read are not
- * checked. jansson bounds the depth. */
+/* Unknown names are also shortened where they are part of a place. Extras and extensions that velo does not read are
+ * not checked. jansson limits the depth of the recursion. */
 static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *reported) {
   const char *name;
   json_t *part;

@@ -60,7 +60,7 @@ bool vl_gltf_read_nodes(vlGltf *g) {
   for (size_t i = 0; i < g->node_count; i++)
     if (!read_node(g, i)) return false;
   for (size_t i = 0; i < g->node_count;
-       i++) { /* a node has at most one parent: following a cycle upwards never reaches a root */
+       i++) { /* a node has at most one parent, so a walk upwards from a node of a cycle never reaches a root */
     size_t steps = 0;
     for (uint32_t k = g->nodes[i].parent; k != UINT32_MAX && !g->nodes[k].reached; k = g->nodes[k].parent)
       if (++steps > g->node_count) return vl_gltf_fail(g, VL_GLTF_ITEM(NULL, "nodes", i), "is among its own children");
@@ -173,7 +173,7 @@ static bool group_mesh(vlGltf *g, size_t mesh, size_t node_index) {
 }
 
 /* Adds a moving instance. A deforming mesh gets a group of its own. Returns -1 when two successive poses cannot be
- * interpolated; otherwise whether it succeeded. */
+ * interpolated, otherwise 1 for success and 0 after an error. */
 static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local, bool deforms) {
   double times[VL_GLTF_KEYS], poses[16 * VL_GLTF_KEYS];
   for (int k = 0; k < VL_GLTF_KEYS; k++) {
@@ -310,7 +310,7 @@ static bool count_uses(vlGltf *g, const uint32_t *order, size_t count) {
   return true;
 }
 
-/* Finds the wanted scene by name or number. Without a wish the file's default scene stays. */
+/* Finds the wanted scene by name or number. Without such a choice the file's default scene is kept. */
 static bool choose_scene(vlGltf *g, size_t *chosen) {
   const char *wanted = g->def->scene;
   char names[200] = "", *end;

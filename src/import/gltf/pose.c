@@ -21,7 +21,7 @@ bool vl_gltf_pose(vlGltf *g) {
   g->keys = vl_alloc_array(g->context, g->node_count + 1, VL_GLTF_KEYS * sizeof *g->keys);
   if (!g->keys) return vl_gltf_fail_memory(g);
   for (int k = VL_GLTF_KEYS - 1; k >= 0;
-       k--) { /* the order is free: an animation sets the same properties at any time */
+       k--) { /* the order of the times does not matter, since an animation sets the same properties at any time */
     double f = (double)k / (VL_GLTF_KEYS - 1);
     if (!pose_at(g, k ? g->open + f * (g->close - g->open) : g->open)) return false;
     for (size_t i = 0; i < g->node_count; i++) {

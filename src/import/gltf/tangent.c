@@ -226,7 +226,7 @@ static bool make_flat(vlGltf *g, vlGltfPrimitive *p) {
   return (p->normals && (p->normals_close || !p->positions_close)) || vl_gltf_fail_memory(g);
 }
 
-/* One vertex for each pair of vertex and group. */
+/* Makes one vertex for each pair of a vertex and a group. */
 static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *sums) {
   size_t corners = 3 * p->faces, size = table_size(corners), count = 0;
   uint32_t *table = vl_alloc_zero(g->context, size, sizeof *table);

@@ -40,8 +40,8 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   return true;
 }
 
-/* The image of a texture; extensions may replace it by another format. *image -1 with true: the texture has no image,
- * which was reported as a warning. */
+/* The image of a texture; extensions may replace it by an image of another format. *image is -1, with the result true,
+ * when the texture has no image; a warning was then given. */
 static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   static const char *const others[] = {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"};
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "textures", texture);

@@ -27,8 +27,8 @@ static bool exists(const char *path) {
   return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/* The image's path, or a file of the same name beside the library, since paths are often of another machine. Null with
- * a warning: not found. */
+/* Finds the image at its path or, since paths are often those of another machine, a file of the same name in the folder
+ * of the library. When there is none, the result is null and a warning is given. */
 static bool find_image(vlObj *obj, char *name, const char **path) {
   static const char *const known[] = {".png", ".jpg", ".jpeg", ".tga", ".exr", ".hdr", ".pfm",
                                       ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
@@ -71,7 +71,8 @@ static bool option_word(vlObj *obj, const char *name, const char **word, size_t 
   return (*n = vl_obj_word(obj, word)) || vl_obj_fail(obj, "%s: its value is missing", name);
 }
 
-/* Reads one option before an image's name. False when there is none or when it is broken (*fine is then false). */
+/* Reads one option before an image's name. Returns false when there is none, or when it is broken; *fine is then
+ * false. */
 static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   static const char *const words[] = {"-blendu", "-blendv", "-cc", "-type"}, *const numbers[] = {"-boost", "-texres"};
   const char *word, *value;
@@ -267,7 +268,7 @@ bool vl_obj_read_libraries(vlObj *obj) {
   bool fine = true;
   if (!*rest) return vl_obj_fail(obj, "mtllib: the name of a file is missing");
   if (vl_path_join(obj->path, rest, whole, sizeof whole) &&
-      exists(whole)) { /* the whole rest as one name with blanks */
+      exists(whole)) { /* the rest of the statement is one name with blanks */
     fine = read_library(obj, rest);
   } else {
     char *next = rest;

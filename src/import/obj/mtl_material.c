@@ -54,7 +54,7 @@ static bool number(vlObj *obj, const vlMtlMap *map, float factor, vlFloatInput *
   return input->texture.index != 0;
 }
 
-/* Whether a bump map is really a normal map, which many files have. Decided by its name. */
+/* Whether the file name of a bump map is that of a normal map. Many files name normal maps as bump maps. */
 static bool is_normal_map(const char *path) {
   static const char *const signs[] = {"normal", "_nrm", "_nor.", "_n.", "_ddn", "-n.", "_norm"};
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -113,12 +113,12 @@ static void surface(const vlMtl *m, vlMaterialDef *def, float base[3]) {
     for (int i = 0; i < 3; i++) base[i] = clamp01(m->ks[i]);
   } else if (spoken && isnan(m->pr) && isnan(m->pm)) {
     p->specular_color.value =
-        /* Ks 0.5 is the reflectance given by Ni */ vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
+        /* Ks 0.5 stands for the reflectance that Ni gives */ vl_spectrum_rgb(2 * m->ks[0], 2 * m->ks[1], 2 * m->ks[2]);
     has_specular = has_specular && brightest(m->ks) > 0;
   }
   p->metallic = vl_float_input(clamp01(metal));
   p->specular = vl_float_input(has_specular || metal > 0 ? 1.0f : 0.0f);
-  /* Blinn's exponent as GGX (Walter et al. 2007): alpha^2 = 2 / (Ns + 2), alpha = roughness^2. */
+  /* Converts Blinn's exponent to GGX (Walter et al. 2007): alpha^2 = 2 / (Ns + 2), alpha = roughness^2. */
   p->roughness = vl_float_input(clamp01(given(m->pr, (float)vl_precise_pow(2 / (fmaxf(ns, 0) + 2), 0.25f))));
   def->eta = vl_spectrum_input(vl_spectrum_constant(ni > 1 && ni < 10 ? ni : 1.5f));
 }

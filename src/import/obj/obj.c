@@ -177,7 +177,7 @@ static bool read_normal(vlObj *obj) {
 
 /* ---- faces ------------------------------------------------------------------------------------------------------- */
 
-/* An integer from 1, or from -1 backwards. *index 0: the field is empty. */
+/* Reads an index: from 1 upwards, or from -1 downwards, counted from the last element. *index 0: the field is empty. */
 static bool read_index(vlObj *obj, const char *what, size_t count, uint32_t *index) {
   char *p = obj->at;
   bool negative = p < obj->end && *p == '-';
@@ -217,7 +217,8 @@ static bool read_corner(vlObj *obj, vlObjCorner *c) {
   return vl_obj_fail(obj, "f: \"%s\" is no corner (v, v/vt, v//vn or v/vt/vn)", vl_short_text_of(word, n).text);
 }
 
-/* Successive faces with one material and object. From MAX_PARTS on, all faces of a material. */
+/* Starts a part for successive faces with the same material and object. From MAX_PARTS parts on, all faces of a
+ * material form one part. */
 static bool open_part(vlObj *obj) {
   if (obj->part_open) return true;
   vlObjMaterial *m = &obj->materials.items[obj->material];

@@ -7,7 +7,7 @@
 
 #include "scene/scene.h"
 
-/* 1-based indices of a corner's position, uv and normal; 0: none. */
+/* Indices of a corner's position, uv and normal, counted from 1; 0: none. */
 typedef struct vlObjCorner {
   uint32_t v, vt, vn;
 } vlObjCorner;
@@ -42,10 +42,10 @@ typedef struct vlMtl {
 
 typedef struct vlObjMaterial {
   const char *name; /* owned by the scene */
-  uint32_t next;    /* next material of the same hash, 1-based; 0: none */
-  uint32_t line;    /* line that uses it first */
+  uint32_t next;    /* next material with the same hash, counted from 1; 0: none */
+  uint32_t line;    /* first line that uses the material */
   bool defined, made;
-  uint32_t part; /* part of its faces when there are too many parts, 1-based */
+  uint32_t part; /* part for all faces of the material when there are too many parts, counted from 1 */
   vlMtl mtl;
   vlMaterialId material;
   vlEmissionId emission;
@@ -56,7 +56,7 @@ typedef struct vlObjMaterial {
 typedef struct vlObjPart {
   uint32_t material; /* index */
   uint32_t triangles, first;
-  bool normals, uvs; /* whether some corner has them */
+  bool normals, uvs; /* whether any corner has normals, uvs */
 } vlObjPart;
 
 enum { VL_OBJ_HEADS = 4096, VL_OBJ_LIBRARIES = 64 };
@@ -67,7 +67,7 @@ typedef struct vlObj {
   const char *path;
   uint32_t line, more_lines;     /* first line of the statement, and number of continued lines */
   char nothing[1];               /* target of the pointers of an empty statement */
-  char *line_start, *at, *end;   /* of the current statement */
+  char *line_start, *at, *end;   /* start of the line, reading position and end of the current statement */
   VL_ARRAY(float) positions;     /* 3 per vertex */
   VL_ARRAY(float) colors;        /* 3 per vertex, linear; empty when no vertex has a colour */
   VL_ARRAY(float) uvs;           /* 2 each */
@@ -76,30 +76,32 @@ typedef struct vlObj {
   VL_ARRAY(uint32_t) triangle_part;
   VL_ARRAY(uint32_t) triangle_smooth; /* smoothing group; 0: none */
   VL_ARRAY(vlObjPart) parts;
-  VL_ARRAY(vlObjMaterial) materials; /* the first is the default one */
+  VL_ARRAY(vlObjMaterial) materials; /* index 0 is the default material */
   VL_ARRAY(vlObjCorner) polygon;
   VL_ARRAY(uint32_t) ears; /* scratch of vl_obj_triangulate */
   VL_ARRAY(const char *) libraries;
-  uint32_t heads[VL_OBJ_HEADS]; /* first material of each hash, 1-based */
+  uint32_t heads[VL_OBJ_HEADS]; /* first material with each hash, counted from 1 */
   uint32_t material, smooth, part;
   bool part_open;
-  uint32_t reported; /* bit mask of warnings that were given once */
+  uint32_t reported; /* bit mask of warnings that are given only once and were given */
   double low[3], high[3];
 } vlObj;
 
-/* Errors and warnings at the statement's place. Always false. */
+/* Report an error or a warning at the current statement. vl_obj_fail always returns false. */
 bool vl_obj_fail(vlObj *obj, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) __attribute__((format(printf, 3, 4)));
 bool vl_obj_fail_memory(vlObj *obj);
-/* Reads the next statement of [*from, end) with its continued lines and sets line, at and end. False at the end. */
+/* Reads the next statement of [*from, end) with its continued lines and sets line, at and end. Returns false at the end
+ * of the text. */
 bool vl_obj_statement(vlObj *obj, char **from, char *end);
-/* The statement's next word, not terminated; length 0 at its end. */
+/* Finds the statement's next word, which is not zero-terminated, and returns its length; 0 at the end of the
+ * statement. */
 size_t vl_obj_word(vlObj *obj, const char **word);
 /* Reads up to `most` numbers; *count receives how many. False when a word is not a number. */
 bool vl_obj_numbers(vlObj *obj, uint32_t most, double *values, uint32_t *count);
-/* The rest of the statement, without surrounding blanks, terminated. */
+/* The rest of the statement without surrounding blanks, zero-terminated. */
 char *vl_obj_rest(vlObj *obj);
-/* Index of a material by name; it is added when it is new. UINT32_MAX after an error. */
+/* Index of the material of that name. A new name adds a material. UINT32_MAX after an error. */
 uint32_t vl_obj_material(vlObj *obj, const char *name);
 
 /* Triangulates obj->polygon. obj->ears receives indices into it, 3 per triangle. */

@@ -1,5 +1,5 @@
-/* import/pbrt/builder.c: executes the statements of a pbrt file: where each may stand, which function handles it, and
- * the import of a whole file. */
+/* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand and which function
+ * handles it. Also imports a whole file. */
 #include "import/pbrt/builder.h"
 
 #include <string.h>
@@ -54,7 +54,7 @@ static const char *directive_name(vlDirective d) {
   return "this directive";
 }
 
-/* Records a directive that precedes WorldBegin. The last one given counts. */
+/* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
     vl_import_remark(import, s->place, "%s a second time: this one counts", directive_name(s->directive));
@@ -222,14 +222,13 @@ static bool obey(vlImport *import, const vlStatement *s) {
   return true;
 }
 
-/* While diagnosing, an invalid statement is skipped. The name of its medium stays known, so that it is reported once.
- */
+/* While diagnosing, an invalid statement is skipped. The name of a medium that it defines stays known, so that later
+ * uses are not reported, too. */
 static bool statement(void *user, const vlStatement *s) {
   vlImport *import = user;
   bool misplaced = !in_right_part(import, s);
   if (!misplaced && obey(import, s)) return true;
-  if (misplaced &&
-      !import->in_world) { /* a fragment without WorldBegin: every later statement would be misplaced, too */
+  if (misplaced && !import->in_world) { /* a file without WorldBegin: every later statement would be an error, too */
     import->problems = VL_IMPORT_PROBLEMS;
     return false;
   }

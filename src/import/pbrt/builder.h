@@ -19,8 +19,8 @@ typedef enum vlAttributeTarget {
 } vlAttributeTarget;
 
 typedef struct vlGraphicsState {
-  vlMat4 ctm[2];   /* at the start and the end of the transform times */
-  uint32_t active; /* transforms that directives change: bit 0 start, bit 1 end */
+  vlMat4 ctm[2];   /* current transforms at the start and at the end time */
+  uint32_t active; /* bit mask of the transforms that directives change: bit 0 start, bit 1 end */
   bool reverse_orientation;
   vlColorSpace space;
   uint32_t material;         /* 1 + index in import->materials; 0: material_name, or the default */
@@ -28,12 +28,12 @@ typedef struct vlGraphicsState {
   vlSource material_place;
   vlEmissionId emission;
   bool emission_given;
-  const char *inside, *outside;       /* names of media */
-  size_t attributes[VL_ATTR_TARGETS]; /* number of import->attributes[target] that apply */
+  const char *inside, *outside;       /* names of the media inside and outside of shapes */
+  size_t attributes[VL_ATTR_TARGETS]; /* number of parameters in import->attributes[target] that apply */
 } vlGraphicsState;
 
 typedef struct vlStackEntry {
-  char kind; /* 'a' attribute, 't' transform, 'o' object, 'i' import */
+  char kind; /* the block: 'a' attribute, 't' transform, 'o' object, 'i' import */
   vlSource place;
   vlGraphicsState state;
 } vlStackEntry;
@@ -96,7 +96,7 @@ typedef struct vlObject {
   const char *name;
   vlGroupId group;
   bool defined;
-  vlSource place; /* of the first use */
+  vlSource place; /* of the first directive that uses the file */
 } vlObject;
 
 /* Media that are looked up at the end. target: 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
@@ -131,8 +131,7 @@ typedef struct vlMeshRun {
   VL_ARRAY(uint32_t) indices;
 } vlMeshRun;
 
-/* Whole spheres that become one shape, while they are gathered (sphere_run.c): from the VL_MESH_RUN_FROM-th shape on.
- */
+/* Whole spheres that are gathered into one shape (sphere_run.c), from the VL_MESH_RUN_FROM-th shape on. */
 typedef struct vlSphereRun {
   bool open;
   vlShapeDef def;
@@ -166,8 +165,9 @@ struct vlImport {
   bool in_world;
   vlGraphicsState state;
   VL_ARRAY(vlStackEntry) stack;
-  vlParamList attributes[VL_ATTR_TARGETS]; /* a stack per target, cut when the graphics state is restored */
-  vlNameTable coordinate_systems;          /* to indices in matrices */
+  vlParamList
+      attributes[VL_ATTR_TARGETS]; /* a stack per target; restoring the graphics state removes the newer entries */
+  vlNameTable coordinate_systems;  /* to indices in matrices */
   VL_ARRAY(vlTransforms) matrices;
   VL_ARRAY(vlPending) textures;
   VL_ARRAY(vlPending) materials;
@@ -175,20 +175,20 @@ struct vlImport {
   VL_ARRAY(vlObject) object_list;
   VL_ARRAY(vlShapeLink) links;
   VL_ARRAY(vlMeshFile) mesh_files;
-  VL_ARRAY(char *) strings; /* kept until the end */
+  VL_ARRAY(char *) strings; /* strings kept until the end of the import */
   bool in_object;           /* between ObjectBegin and ObjectEnd */
   vlGroupId object;
   double film_diagonal; /* mm */
   vlChoice camera, film, sampler, integrator, filter, accelerator;
-  vlMat4 camera_from_world[2]; /* at the start and the end of the transform times */
+  vlMat4 camera_from_world[2]; /* current transforms at the start and at the end time */
   vlNameTable media;           /* to ids in the scene */
   VL_ARRAY(vlMediumLink) medium_links;
-  double times[2]; /* TransformTimes: of the two current transforms, seconds */
+  double times[2]; /* TransformTimes: times of the two current transforms in seconds */
   VL_ARRAY(vlMovingGroup) moving;
   vlCurveRun curves;
   vlMeshRun mesh_runs[VL_MESH_RUNS];
   vlSphereRun sphere_runs[VL_MESH_RUNS];
-  uint32_t next_sphere_run; /* that gives way to a new one */
+  uint32_t next_sphere_run; /* the run that is ended when a new one needs its place */
   uint32_t next_run;
   double edge_scale; /* Option "displacementedgescale" */
   uint32_t depth;    /* nesting of textures or materials that refer to each other */
@@ -207,27 +207,29 @@ void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const ch
 bool vl_import_recover(vlImport *import);
 /* While diagnosing: reports a note on valid input that is probably unintended. */
 void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Valid pbrt that velo does not support: an error, or a warning and true when permissive. */
+/* Reports valid pbrt that velo does not support: as an error, or, when permissive, as a warning; it then returns
+ * true. */
 bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not support. */
 bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count);
-/* The same; the known names are the kinds of the family. */
-/* The name of a kind for messages: whole if velo knows it, else short. */
+/* Like vl_import_unknown; the known names are the kinds of the family. */
+/* The name of a kind for messages. Names that velo does not know are shortened. */
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
 bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name);
 const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end of the import; null when out of memory */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
                       const vlParamList *attributes);
-/* Path of the file that a string parameter names. False after an error: not readable, or too long. */
+/* Writes the path of the file that a string parameter names. Returns false after an error: the file is not readable or
+ * the path too long. */
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
 bool vl_import_color_space(const char *name, vlColorSpace *space);
 
 /* Appends copies of the parameters, marked optional, to `to`. */
 bool vl_import_copy_params(vlImport *import, const vlParamList *from, vlParamList *to);
-/* The attributes that apply to this kind of directive now. */
+/* The parameters of Attribute directives that currently apply to this kind of directive. */
 const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget target);
 /* State (state.c). */
 bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
@@ -236,10 +238,11 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s);
 bool vl_import_push(vlImport *import, char kind, vlSource place);
 bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
 void vl_import_restore(vlImport *import);
-/* Motion (motion.c). The current transform for something that cannot move; a warning when start and end differ. */
+/* Motion (motion.c). vl_import_ctm returns the current transform for something that cannot move and warns when the
+ * start and end transforms differ. */
 bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
 bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
-bool vl_import_moves(const vlImport *import);                 /* whether the two current transforms differ */
+bool vl_import_moves(const vlImport *import);                 /* whether the start and end transforms differ */
 /* The group for a shape under the current, animated transform. The shape's own transform becomes the identity. */
 bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group);
 bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place);
@@ -247,33 +250,36 @@ bool vl_import_finish_motion(vlImport *import); /* places moving groups inside o
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
 bool vl_import_camera(
-    vlImport *import); /* applies the directives before WorldBegin to the scene's defs; camera after film */
+    vlImport *import); /* applies the directives before WorldBegin to the scene's defs; the camera follows the film */
 bool vl_import_film(vlImport *import);
 bool vl_import_sampling(vlImport *import); /* sampler, filter, integrator */
 bool vl_import_option(vlImport *import, const vlStatement *s);
 
 /* The spectrum of a parameter (rgb, spectrum, blackbody). Sampled values are kept with the import's strings. */
 bool vl_import_spectrum(vlImport *import, vlParam *param, vlSpectrum *spectrum);
-/* Reads a number or a float texture; a spectrum or a spectrum texture. given may be null. False after an error. */
+/* The first function reads a number or a float texture, the second a spectrum or a spectrum texture. given may be null.
+ * Both return false after an error. */
 bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, bool *given);
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given);
 
 /* Reads the parameters of the row into the members of def (parameters.c). A member whose parameter is not given is
- * unchanged. spectrum: which half of EITHER_INPUT is read. given: one entry per parameter of the row, whether the file
- * gives it; may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the caller. False after an error. */
+ * unchanged. spectrum selects the spectrum or the float input of EITHER_INPUT. given receives, for each parameter of
+ * the row, whether the file gives it; it may be null. Parameters with VL_PARAMETER_RULE and BLOCKs are left to the
+ * caller. False after an error. */
 bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum, bool *given);
-/* Whether the parameter was given. The name must be one of the row's. */
+/* Whether the file gives the parameter. The name must be one of the row's parameters. */
 bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
-bool vl_import_finish_texture(vlImport *import, uint32_t index); /* resolves the textures that it refers to first */
+bool vl_import_finish_texture(vlImport *import,
+                              uint32_t index); /* first resolves the textures that this one refers to */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
 /* Absorption and scattering per millimetre of the substance named by parameter `name` (scattering.h). */
 bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
                                  bool *given);
 bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
 
-/* Takes the parameters of a statement beyond its end; the scene keeps their file names. */
+/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file names of their places. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
 bool vl_import_object_begin(vlImport *import, const vlStatement *s);
@@ -291,22 +297,22 @@ bool vl_import_shape(vlImport *import, const vlStatement *s);
 bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
                          const vlShapeLink *link);
 bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
-/* Adds a shape; the def's arrays move to the scene. */
+/* Adds a shape. The scene takes ownership of the def's arrays. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_flush_curves(vlImport *import); /* called before any other shape, and at the end */
 void vl_import_free_curves(vlImport *import);
-/* taken: the mesh was copied into a run. */
+/* Copies a small mesh into a run. *taken: whether the mesh was copied. */
 bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
 bool vl_import_flush_meshes(vlImport *import); /* called at the end */
 void vl_import_free_meshes(vlImport *import);
-/* A sphere goes into a run (*taken), or is a shape of its own. */
+/* Adds a sphere to a run. *taken is false when the sphere must become a shape of its own. */
 bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, bool *taken);
 bool vl_import_flush_spheres(vlImport *import); /* at the end */
 void vl_import_free_spheres(vlImport *import);
-/* May shapes of these two links be one? */
+/* Whether shapes with these two links may become one shape. */
 bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
-bool vl_import_same_text(const char *a, const char *b); /* null is the empty one */
+bool vl_import_same_text(const char *a, const char *b); /* null equals the empty string */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c'). */
 bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);

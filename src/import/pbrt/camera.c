@@ -1,6 +1,6 @@
-/* import/pbrt/camera.c: the Camera directive to a vlCameraDef: pbrt's perspective, orthographic and spherical cameras,
- * the lecture's pinhole and thin lens in its own words, and in the same words velo's further projections and calibrated
- * lenses. */
+/* import/pbrt/camera.c: converts the Camera directive to a vlCameraDef. The file reads pbrt's cameras, and velo's own
+ * ones (pinhole, thin lens, other projections, calibrated lenses) with the parameters of the lecture
+ * (docs/lecture.md). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 
 static const double degrees = 0.017453292519943295;
 
-/* velo's camera has y down; pbrt's y up, both x right, z forward. The world's numbers stay as they are: pbrt reads them
- * as left-handed, so that seen from velo its cameras mirror. */
+/* Camera space of velo has y down, that of pbrt y up; in both, x points right and z forward. World coordinates are not
+ * changed. Since pbrt's world is left-handed and velo's is right-handed, pbrt's cameras mirror the image in velo. */
 static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
   vlMat4 m;
   if (!vl_mat4_inverse(*ctm, &m))
@@ -25,7 +25,7 @@ static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
     double v = m.m[12 + column] * (column == 1 ? -1.0 : 1.0);
     pose[12 + column] = affine ? (column == 3 ? 1.0 : 0.0) : v;
   }
-  double w = affine ? m.m[15] : 1.0; /* a transform's last number need not be 1 */
+  double w = affine ? m.m[15] : 1.0; /* the last element of the matrix need not be 1 */
   for (int i = 0; i < 12; i++) pose[i] /= w;
   return true;
 }
@@ -50,7 +50,8 @@ static bool check_shutter(vlDict *dict, vlCameraDef *def) {
                         def->shutter_open);
 }
 
-/* pbrt's cameras (book 5.2). The window on the screen is -1 to 1 along the smaller side, unless given. */
+/* pbrt's cameras (book 5.2). Unless the file gives the screen window, it extends from -1 to 1 along the shorter side of
+ * the image. */
 static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   vlImport *import = dict->import;
   double frame = (double)def->width / def->height, window[4], focus = 1e6;
@@ -72,16 +73,16 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   return check_shutter(dict, def) && vl_dict_done(dict) && pose_from_ctm(import, def);
 }
 
-/* pbrt's spherical camera: the whole sphere, whatever the frame. Its poles are up and down; its equirectangular image
- * begins at the right and turns left (seen in its left-handed axes), its equal-area one has the zenith in the middle.
- * velo's own maps look ahead in the middle: the axes are exchanged. */
+/* pbrt's spherical camera shows the whole sphere, whatever the aspect ratio. Its equirectangular image has the poles up
+ * and down; its columns start at the right and turn left in pbrt's left-handed camera space. Its equal-area image has
+ * the zenith at the centre. The centre of velo's maps is the forward direction, so the axes are exchanged. */
 static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   static const char *const mappings[] = {"equalarea", "equirectangular"};
   static const double axes[2][9] = {{1, 0, 0, 0, 0, -1, 0, 1, 0}, {0, 0, -1, 0, 1, 0, -1, 0, 0}};
   int mapping = 0;
   double unused;
   vl_dict_choice(dict, "mapping", mappings, 2, &mapping);
-  vl_dict_double(dict, "lensradius", &unused); /* read and not used, as pbrt does */
+  vl_dict_double(dict, "lensradius", &unused); /* read and ignored, as in pbrt */
   vl_dict_double(dict, "focaldistance", &unused);
   vl_dict_double(dict, "frameaspectratio", &unused);
   double window[4];
@@ -98,7 +99,7 @@ static bool read_spherical(vlDict *dict, vlCameraDef *def) {
   return true;
 }
 
-/* The shutter's curve, by a name or by points (at, value, at, value, ...), and the rows' readout: velo's own words. */
+/* Reads velo's own parameters of the shutter curve: a name, or points (time, value, time, value, ...). */
 static bool read_curve(vlDict *dict, vlCameraDef *def) {
   static const char *const curves[] = {"box", "triangle", "trapezoid"};
   int curve = 0;
@@ -131,7 +132,7 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
   return true;
 }
 
-/* "coefficients", as many as there are; vl_camera_make judges their number. */
+/* Reads a list of coefficients of any length up to 14; vl_camera_make checks their number. */
 static bool read_coefficients(vlDict *dict, const char *name, double *values, uint32_t *count) {
   vlParam *p = vl_dict_find(dict, name, VL_BIT_FLOAT);
   if (!p) return false;
@@ -144,7 +145,7 @@ static bool read_coefficients(vlDict *dict, const char *name, double *values, ui
   return true;
 }
 
-/* The fisheye's mapping, or the cube's layout. */
+/* Reads the mapping of a fisheye or the layout of a cube map. */
 static int read_choice(vlDict *dict, const vlKindRow *row, const char *name) {
   const vlParameter *p = vl_row_find(row, name);
   int choice = 0;
@@ -167,7 +168,7 @@ static bool read_colmap(vlDict *dict, vlCameraDef *def) {
                         error.message + strlen("camera: "));
 }
 
-/* Degrees; right and up count as above zero. */
+/* Reads the angular limits of the image in degrees; right and up are positive. */
 static void read_limits(vlDict *dict, vlCameraDef *def) {
   double window[4] = {-180.0, 180.0, -90.0, 90.0};
   bool given = vl_dict_floats(dict, "longitude", 2, window);
@@ -177,7 +178,7 @@ static void read_limits(vlDict *dict, vlCameraDef *def) {
   def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
 }
 
-/* What the row of a projection or a calibrated lens cannot say. */
+/* Reads the parameters of projections and calibrated lenses that their rows do not describe. */
 static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
   uint32_t *count = &def->distortion_count;
   bool given = kind != VL_CAMERA_COLMAP && vl_row_find(row, "coefficients") &&
@@ -193,8 +194,8 @@ static bool read_model(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const 
   return dict->import->scene->error.code == VL_OK;
 }
 
-/* velo's words for all its cameras: eye, lookat, up, roll; d, zoom, s or a field of view; exposure time. Their world
- * is right-handed. */
+/* Reads the parameters common to velo's own cameras: eye, lookat, up, roll; d, zoom, s or a field of view; exposure
+ * time. Their world is right-handed. */
 static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
   vlImport *import = dict->import;
   if (!read_model(dict, def, kind, row)) return false;
@@ -209,7 +210,7 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind, cons
   return true;
 }
 
-/* The camera that results, for errors at their place. */
+/* Makes the camera once, so that its errors are reported at the directive. */
 static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   vlCamera camera;
   vlError error = {0};
@@ -227,7 +228,7 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   return true;
 }
 
-/* "camera" as a coordinate system: pbrt's axes, x right, y up, z forward. */
+/* Defines the coordinate system "camera" with pbrt's axes: x right, y up, z forward. */
 static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
   vlCamera camera;
   vlError error;
@@ -241,7 +242,7 @@ static bool name_lecture_system(vlImport *import, const vlCameraDef *def) {
   return true;
 }
 
-/* By kind; false after an error. */
+/* Reads the parameters of a kind of camera. Returns false after an error. */
 static bool read_kind(vlDict *dict, vlCameraDef *def, vlCameraKind kind, const vlKindRow *row) {
   vlImport *import = dict->import;
   switch (kind) {
@@ -274,7 +275,7 @@ bool vl_import_camera(vlImport *import) {
   const vlKindRow *row = vl_kind_row(&vl_camera_family, kind);
   for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
   defs->camera_source = choice->place;
-  if (!row) { /* permissive: pbrt's perspective camera from the same place */
+  if (!row) { /* permissive: pbrt's perspective camera at the same pose replaces it */
     if (!vl_import_unknown_kind(import, choice->place, &vl_camera_family, choice->kind)) return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
@@ -286,10 +287,10 @@ bool vl_import_camera(vlImport *import) {
   }
   if (!check(import, what, &def)) return false;
   defs->camera = def;
-  /* pbrt's sensor: the longer the shutter is open, the brighter; velo's cameras say it with their own factor. */
+  /* in pbrt the exposure grows with the time that the shutter is open; velo's own cameras have a separate factor */
   bool pbrts = row && kind <= (int)VL_CAMERA_REALISTIC;
   if (pbrts) defs->develop.exposure *= (float)(def.shutter_close - def.shutter_open);
-  /* pbrt limits what its sensor measures, the film what falls on it. */
+  /* pbrt limits the sensor's output, velo's film its input. */
   if (defs->develop.exposure > 0.0f) defs->film.max_component /= defs->develop.exposure;
   return pbrts || !row || name_lecture_system(import, &def);
 }

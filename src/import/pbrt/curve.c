@@ -49,8 +49,8 @@ void vl_import_free_curves(vlImport *import) {
   VL_ARRAY_FREE(import->context, &import->curves.normals);
 }
 
-/* The Bezier control points of segment k of control points p. B-splines are converted by knot insertion; degree 2 is
- * raised to 3. */
+/* Writes the Bezier control points of segment k of the curve with control points p. B-splines are converted by knot
+ * insertion; degree 2 is raised to 3. */
 static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree, float out[12]) {
   for (int i = 0; i < 3; i++) {
     const float *a = p + 3 * (spline ? k : k * degree) + i;

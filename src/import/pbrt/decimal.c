@@ -20,7 +20,8 @@ static double product_error(double a, double b, double product) {
   return ((ah * bh - product) + ah * bl + al * bh) + al * bl;
 }
 
-/* digits * 10^exponent by a pair of doubles. False: not certain, another double may be nearer. */
+/* Computes digits * 10^exponent with a pair of doubles. Returns false when the result is not certain, that is, another
+ * double may be nearer. */
 static bool by_pair(uint64_t mantissa, int exponent, double *value) {
   int size = exponent < 0 ? -exponent : exponent;
   if (size > 2 * EXACT_POWER || mantissa >= UINT64_C(1) << 62) return false;
@@ -31,7 +32,7 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
     power = a * b;
     rest = product_error(a, b, power);
   }
-  double v, left; /* v + left, to about 2^-102 of it */
+  double v, left; /* the value is v + left, with a relative error of about 2^-102 */
   if (exponent < 0) {
     v = high / power;
     double back = v * power;
@@ -48,11 +49,12 @@ static bool by_pair(uint64_t mantissa, int exponent, double *value) {
 /* ---- whole numbers
  * ---------------------------------------------------------------------------------------------------- */
 
-/* 767 digits decide on which side of the middle between two doubles a number lies. Of digits beyond MOST_DIGITS only
- * whether one is not 0 counts. */
+/* 767 digits decide on which side of the midpoint between two doubles a number lies. Of the digits beyond MOST_DIGITS
+ * only one fact matters: whether any of them is not 0. */
 enum { MOST_DIGITS = 800, LIMBS = 176 };
 
-/* Limbs of 32 bits, the lowest first; the highest is not 0. 800 digits take 84, 5^1200 takes 88. */
+/* A non-negative integer in limbs of 32 bits, the lowest limb first; the highest limb is not 0. 800 digits take 84
+ * limbs, 5^1200 takes 88. */
 typedef struct Whole {
   int count;
   uint32_t limb[LIMBS];
@@ -88,7 +90,7 @@ static void shift_left(Whole *w, int bits) {
   multiply_add(w, UINT32_C(1) << bits % 32, 0);
 }
 
-/* Subtracts b from a if a >= b. False: a < b, and a is unchanged. */
+/* Subtracts b from a if a >= b. Otherwise returns false and leaves a unchanged. */
 static bool subtract(Whole *a, const Whole *b) {
   if (a->count < b->count) return false;
   for (int i = a->count - 1; a->count == b->count && i >= 0; i--) {

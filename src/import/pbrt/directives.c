@@ -276,7 +276,7 @@ bool vl_parse_find_file(const char *including, const char *first, const char *na
   return true;
 }
 
-/* Parses one file. `at`: the token in `parent` that names it; null for the first file. */
+/* Parses one file. `at` is the token in `parent` that names the file; null for the first file. */
 static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, const char *path, bool included) {
   struct stat info;
   vlParserFile file = {.parser = parser, .parent = parent, .included = included, .path = path};

@@ -1,12 +1,12 @@
-/* import/pbrt/entity.c: statements whose parameters outlive them: attributes, objects, and the textures and materials
- * that are resolved at the end. */
+/* import/pbrt/entity.c: statements whose parameters are kept: attributes, objects, and the textures and materials that
+ * are resolved at the end. */
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 
 /* ---- parameters that outlive their directive -------------------------------------------------------------------- */
 
-/* Moves the statement's parameters to `to`. The scene keeps the file names of their places. */
+/* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters' places. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
   for (size_t i = 0; i < s->params->list.count; i++)
     if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
@@ -110,7 +110,7 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
       !vl_import_keep_params(import, s, &own))
     return NULL;
   bool fine = true;
-  for (size_t i = 0; i < own.list.count; i++) { /* after the attributes: the last one given counts */
+  for (size_t i = 0; i < own.list.count; i++) { /* copied after the attributes, since the last one given counts */
     vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
     if (slot)
       *slot = own.list.items[i];

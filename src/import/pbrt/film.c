@@ -7,7 +7,8 @@
 #include "import/pbrt/token.h"
 #include "velo/render.h"
 
-/* pbrt: pixelbounds x0 x1 y0 y1 in pixels; cropwindow the same in fractions, rounded up, and it wins. */
+/* Reads the crop window. pbrt's "pixelbounds" are x0 x1 y0 y1 in pixels. "cropwindow" gives the same as fractions of
+ * the image size, which are rounded up; it takes precedence. */
 static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
   double w = s->film.width, h = s->film.height, box[4] = {0, w, 0, h}, crop[4];
@@ -29,7 +30,7 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
              b = crop[i] < crop[i + 1] ? crop[i + 1] : crop[i];
       a = a < 0 ? 0 : a > 1 ? 1 : a;
       b = b < 0 ? 0 : b > 1 ? 1 : b;
-      /* in single precision as pbrt computes it, so that the same pixels come out */
+      /* single precision, as in pbrt, so that the result is the same pixels */
       box[i] = ceilf((float)size * (float)a);
       box[i + 1] = ceilf((float)size * (float)b);
     }
@@ -43,8 +44,8 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   return import->scene->error.code == VL_OK;
 }
 
-/* A measured camera's white is daylight of 6500 K, unless the file says another; permissively that also goes for a
- * name that nobody knows, which the standard observer stands for. */
+/* Reads the name of the sensor. The default white of a measured sensor is daylight of 6500 K. When permissive, the
+ * standard observer with the same white replaces an unknown sensor. */
 static bool read_sensor_name(vlDict *dict, double *white) {
   enum { MOST = 64 };
   const char *names[MOST], *name = vl_sensor_name(0);
@@ -62,7 +63,7 @@ static bool read_sensor_name(vlDict *dict, double *white) {
   return vl_import_unknown(import, p->place, "sensor", name, names, count, NULL, 0);
 }
 
-/* The sensor, its white, its limit. */
+/* Reads the sensor, its white balance and its largest component value. */
 static bool read_sensor(vlDict *dict) {
   vlImport *import = dict->import;
   double white = 0.0, usual = 0.0, top = INFINITY;
@@ -79,7 +80,8 @@ static bool read_sensor(vlDict *dict) {
   return import->scene->error.code == VL_OK;
 }
 
-/* What is not the row's alone: the file's name, factors of the exposure, the crop, the sensor. */
+/* Reads the parameters that the rows do not describe: the file name, the factors of the exposure, the crop window, the
+ * sensor. */
 static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
   double iso = 100.0, time = 1.0, ratio = 1.0;
@@ -88,8 +90,8 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   vl_dict_string(dict, "filename", &output);
   import->film_diagonal = 35.0;
-  vl_dict_double(dict, "diagonal", &import->film_diagonal); /* matters to realistic cameras only */
-  vl_dict_bool(dict, "savefp16", &half);                    /* how the file is written: the program's business */
+  vl_dict_double(dict, "diagonal", &import->film_diagonal); /* used by realistic cameras only */
+  vl_dict_bool(dict, "savefp16", &half);                    /* ignored: the program decides how the file is written */
   vl_dict_double(dict, "iso", &iso);
   vl_dict_double(dict, "exposuretime", &time);
   vl_dict_double(dict, "imagingratio", &ratio);
@@ -119,7 +121,7 @@ static bool check_wavelengths(vlDict *dict, vlSceneDefs *s) {
                         s->film.lambda_max);
 }
 
-/* Rules that the rows do not express, by kind; null: none. */
+/* Functions, by kind, for what the rows do not describe; null: none. */
 static bool (*const rules[0 VL_FILM_KINDS(VL_COUNT_KIND)])(vlDict *dict, vlSceneDefs *s) = {
     [VL_FILM_GBUFFER] = read_gbuffer,
 };
@@ -158,7 +160,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   vlSceneDefs *defs = vl_scene_defs(import->scene);
   const struct {
     const char *name;
-    bool *value; /* null: changes the image, and velo has nothing of the kind */
+    bool *value; /* null: the option changes the image and velo does not support it */
   } switches[] = {{"disablepixeljitter", &defs->render.centred},
                   {"disabletexturefiltering", &defs->render.sharp_textures},
                   {"disablewavelengthjitter", &defs->render.same_wavelengths},

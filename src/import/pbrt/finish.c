@@ -51,7 +51,8 @@ static float alpha_of(const vlMaterialDef *m, const vlFloatInput *roughness) {
   return m->remap_roughness ? sqrtf(roughness->value > 0 ? roughness->value : 0) : roughness->value;
 }
 
-/* pbrt-v4 overestimates the light through rough coats (docs/decisions/0006), which matters when images are compared. */
+/* pbrt-v4 overestimates the light through rough coats (docs/decisions/0006). The note matters when images of both
+ * renderers are compared. */
 static void note_rough_coats(vlImport *import) {
   const vlScene *scene = import->scene;
   const vlMaterialDef *first = NULL;

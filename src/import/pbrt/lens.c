@@ -19,7 +19,7 @@ static bool fail_with(vlDict *dict, vlSource place, vlResult code, const vlError
                         dict->what, error->file[0] ? error->file : "", error->file[0] ? ": " : "", error->message);
 }
 
-/* The mean of red, green and blue, as in pbrt, or the only channel. */
+/* Makes an aperture from the mean of the image's red, green and blue, as in pbrt, or from its first channel. */
 static vlResult aperture_from_image(vlImport *import, const vlImage *image, vlAperture **aperture, vlError *error) {
   uint32_t w = vl_image_width(image), h = vl_image_height(image);
   int c[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"), vl_image_find_channel(image, "B")};
@@ -72,7 +72,7 @@ bool vl_import_lens(vlDict *dict, vlCameraDef *def) {
   return read_aperture(dict, &def->lens.aperture);
 }
 
-/* Defaults are pbrt's. */
+/* All defaults are pbrt's. */
 bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
   vlImport *import = dict->import;
   vlOpticsDef optics = vl_default_optics_def();

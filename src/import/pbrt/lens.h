@@ -4,9 +4,10 @@
 
 #include "import/pbrt/builder.h"
 
-/* What the rows of cameras leave to a rule: the pixel in focus, the shape of the aperture. */
+/* Reads the lens parameters that the rows of cameras do not describe: the pixel in focus and the shape of the
+ * aperture. */
 bool vl_import_lens(vlDict *dict, vlCameraDef *def);
-/* pbrt's realistic camera: lens file, aperture, focus. film_diagonal in mm. */
+/* Reads the parameters of pbrt's realistic camera: lens file, aperture, focus. film_diagonal is in mm. */
 bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal);
 
 #endif

@@ -1,4 +1,4 @@
-/* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. Scale, power and illuminance are stored here; the
+/* import/pbrt/light.c: LightSource and AreaLightSource of pbrt-v4. This file stores scale, power and illuminance; the
  * world applies them. */
 #include <stdio.h>
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "color/color.h"
 #include "import/pbrt/builder.h"
 
-/* As in pbrt, a value that is not positive counts as not given. */
+/* Ignores a power or illuminance that is not positive, as in pbrt. */
 static void drop_target(double *value) {
   if (!(*value > 0.0)) *value = VL_UNSET;
 }
@@ -53,7 +53,7 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
   return true;
 }
 
-/* A portal needs an image: a constant environment becomes an image of one pixel, as in pbrt. */
+/* Makes an image of one pixel for a constant environment with a portal, since a portal needs an image, as in pbrt. */
 static bool plain_sky(vlImport *import, const vlLightDef *def, vlImage **sky) {
   vlImageDef image = vl_default_image_def(1, 1, 3);
   vlError error = {0};
@@ -86,7 +86,8 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
     return false;
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
   if (def.path)
-    def.space = VL_SPACE_SRGB; /* for an image without its own colour space, whatever ColorSpace says, as in pbrt */
+    def.space = VL_SPACE_SRGB; /* as in pbrt, sRGB for an image without a colour space of its own, whatever the
+                                  directive ColorSpace names */
   vlImage *sky = NULL;
   if (def.has_portal && !def.path && !plain_sky(import, &def, &sky)) return false;
   def.image = sky;
@@ -103,7 +104,7 @@ bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
-  if (s->names[0][0] == 0) return true; /* as in pbrt: ends the current area light */
+  if (s->names[0][0] == 0) return true; /* as in pbrt, an empty name ends the current area light */
   int kind = vl_kind_find(&vl_emission_family, s->names[0]);
   if (kind < 0) return vl_import_unknown_kind(import, s->place, &vl_emission_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);

@@ -1,6 +1,6 @@
-/* import/pbrt/loop.c: see loop.h. A level consists of plain arrays. Walks around a vertex go from face to face over
- * shared edges. Faces must run along a shared edge in opposite directions, so that each walk ends at a border or where
- * it began. */
+/* import/pbrt/loop.c: see loop.h. The mesh of each level is a set of arrays. A walk around a vertex goes from face to
+ * face across shared edges. The two faces of an edge must have it in opposite directions, so that each walk ends at a
+ * border or where it began. */
 #include "import/pbrt/loop.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "math/approx_double.h"
 
 static const uint32_t NONE = UINT32_MAX;
-/* Limits the output of a short file. Beyond 5 levels (a thousandfold) the smaller limit applies. */
+/* Limits the output of a short file. Beyond 5 levels (1024 times as many faces) the smaller limit applies. */
 enum { MAX_FACES = 1 << 24, MAX_DEEP_FACES = 1 << 20, DEEP = 5 };
 
 typedef struct Level {
@@ -191,7 +191,7 @@ static vlResult first_level(vlContext *context, uint32_t vertices, const float *
 
 /* ---- one step --------------------------------------------------------------------------------------------------- */
 
-/* Numbers the new vertex on each edge of each face. */
+/* Assigns an index to the new vertex on each edge of each face. */
 static uint32_t number_edges(const Level *l, uint32_t *odd) {
   uint32_t count = l->vertices;
   for (uint32_t f = 0; f < l->faces; f++)
@@ -305,7 +305,7 @@ static float cosine(float x) {
   return (float)vl_sincos_double((double)x).cos;
 }
 
-/* Weight of ring vertex k of n in the tangent across a border. */
+/* Weight of neighbour k of n in the mask of the tangent that crosses the border. */
 static float border_weight(uint32_t n, uint32_t k) {
   if (n == 2) return 1.0f;
   if (n == 3) return k == 1 ? 1.0f : 0.0f;

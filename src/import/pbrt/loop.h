@@ -7,13 +7,13 @@
 
 typedef struct vlLoopMesh {
   uint32_t vertices, faces;
-  float *positions,
-      *normals; /* 3 per vertex, on the limit surface. Normals as in pbrt: against the winding and not normalised */
-  uint32_t *indices; /* 3 per face */
+  float *positions, *normals; /* 3 per vertex, on the limit surface. As in pbrt, normals are opposite to the winding and
+                                 not normalised */
+  uint32_t *indices;          /* 3 per face */
 } vlLoopMesh;
 
-/* Subdivides `levels` times. Indices must be in range. The arrays are blocks of the context. Errors: MEMORY; SCENE with
- * a message in error (not a surface, too many faces). */
+/* Subdivides `levels` times. Indices must be in range. The result's arrays are blocks of the context. Errors: MEMORY;
+ * SCENE, with a message in `error`, for a mesh that is not a surface or has too many faces. */
 vlResult vl_loop_subdivide(vlContext *context, uint32_t vertices, const float *positions, uint32_t faces,
                            const uint32_t *indices, uint32_t levels, vlLoopMesh *mesh, vlError *error);
 

@@ -1,5 +1,5 @@
-/* import/pbrt/material.c: Material and MakeNamedMaterial become materials of the scene; a mix after its parts. The
- * parameters are those of the rows (scene/schema/materials.c). */
+/* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene. The parts of a mix are
+ * converted first. The rows describe the parameters (scene/schema/materials.c). */
 #include <assert.h>
 #include <stdio.h>
 
@@ -69,7 +69,7 @@ static bool finish_mix(const Reading *r, vlMaterialDef *def) {
   return true;
 }
 
-/* As in pbrt, the first of sigma_a, reflectance and the melanins that is given counts. */
+/* As in pbrt, only the first of sigma_a, reflectance and the melanins that is given has an effect. */
 static bool finish_hair(const Reading *r, vlMaterialDef *def) {
   bool sigma = given(r, "sigma_a"), reflectance = given(r, "reflectance"), pheomelanin = given(r, "pheomelanin");
   bool melanin = given(r, "eumelanin") || pheomelanin;

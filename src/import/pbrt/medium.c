@@ -53,7 +53,7 @@ static void sort_box(vlMediumDef *def) {
   }
 }
 
-/* `per` numbers per cell; null when not given. */
+/* Reads a grid with `per` numbers per cell. The result is null when the parameter is not given. */
 static bool read_cells(vlDict *dict, const char *name, vlParamType type, const vlMediumDef *def, const float **values) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (!p) return dict->import->scene->error.code == VL_OK;
@@ -97,7 +97,7 @@ static ReadMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
     [VL_MEDIUM_RGB_GRID] = read_rgb_grid,
 };
 
-/* The arrays of the row: numbers or colours per cell. */
+/* Reads the arrays of the row: numbers or colours per cell. */
 static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
@@ -174,8 +174,8 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
   return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%s\"", vl_short_text(name).text);
 }
 
-/* pbrt's surface integrators ignore media. Velo's light-tracing and photon-mapping tracers do not: a warning says so.
- */
+/* Warns when a scene with media names one of pbrt's surface integrators, which ignore media. Velo's light-tracing and
+ * photon-mapping tracers do not ignore media; the message says which case applies. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
   vlTracer tracer = vl_scene_defs(import->scene)->render.tracer;

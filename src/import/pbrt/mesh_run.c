@@ -1,5 +1,5 @@
-/* import/pbrt/mesh_run.c: merges small meshes. Some exporters write every quad as its own Shape, which would cost two
- * kilobytes each in scene, world and accelerator. From the VL_MESH_RUN_FROM-th shape of a file on, meshes of few
+/* import/pbrt/mesh_run.c: merges small meshes. Some exporters write every quad as its own Shape, and each Shape would
+ * take two kilobytes in scene, world and accelerator. From the VL_MESH_RUN_FROM-th shape of a file on, meshes of few
  * triangles with equal graphics state are merged. Nothing is merged before that, or while diagnosing. Several runs are
  * open at a time, since exporters alternate between materials. */
 #include <math.h>
@@ -77,7 +77,8 @@ static bool move_points(const vlMat4 *m, const float *from, size_t count, float 
   return all_finite(to, 3 * count);
 }
 
-/* side: -1 when the transform mirrors and the mirroring is moved into reverse_orientation, which also flips normals. */
+/* Transforms normals. side is -1 when the transform mirrors; the mirroring is then moved to reverse_orientation, which
+ * also flips normals. */
 static void move_normals(const vlMat4 *inverse, double side, const float *from, size_t count, float *to) {
   for (size_t i = 0; i < count; i++) {
     double n[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];

@@ -17,7 +17,7 @@ static vlNamed *slot_of(const vlNameTable *t, const char *name) {
   return &t->slots[i];
 }
 
-/* An existing name gets the new index. */
+/* Adds a name. An existing name gets the new index. */
 bool vl_names_add(vlContext *context, vlNameTable *t, const char *name, uint32_t index) {
   if (2 * (t->count + 1) > t->capacity) {
     vlNameTable grown = {.capacity = t->capacity ? 2 * t->capacity : 16, .count = t->count};

@@ -23,7 +23,8 @@ typedef enum vlParamType {
   VL_PARAM_TYPES
 } vlParamType;
 
-/* Type by its name ("point3"). The old spellings point, vector and color mean point3, vector3 and rgb. */
+/* Conversions between types and their names, such as "point3". The old spellings point, vector and color mean point3,
+ * vector3 and rgb. */
 const char *vl_param_type_name(vlParamType type);
 bool vl_param_type_find(const char *text, size_t length, vlParamType *type);
 /* The nearest type name for an error message, or null. */
@@ -32,16 +33,16 @@ const char *vl_param_type_nearest(const char *text);
 typedef struct vlParam {
   vlParamType type;
   char *name;
-  vlSource place; /* of the declaration; file is not owned */
+  vlSource place; /* place of the declaration; its file name is not owned */
   /* One of these is filled: integers for type integer, floats for other numbers. */
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
   VL_ARRAY(char *) strings;
   VL_ARRAY(uint8_t) bools;
-  double exact[16]; /* the first numbers unrounded */
+  double exact[16]; /* the first 16 numbers in double precision */
   vlColorSpace space;
   bool used;
-  bool optional; /* from Attribute: may stay unused or have another type */
+  bool optional; /* given by an Attribute directive: may stay unused or have another type */
 } vlParam;
 
 typedef struct vlParamList {
@@ -56,8 +57,8 @@ size_t vl_param_count(const vlParam *param); /* number of values of any type */
 
 typedef struct vlImport vlImport;
 
-/* The parameters of one directive and the attributes that apply; the last one given counts. Lives on the stack. Names
- * passed to the functions are string literals. */
+/* The parameters of one directive and the attributes that apply; the last one given counts. A vlDict lives on the
+ * stack. Names passed to its functions are string literals. */
 typedef struct vlDict {
   vlImport *import;
   const char *what; /* 'Shape "sphere"', for errors */
@@ -74,7 +75,7 @@ enum { VL_BITS_SPECTRUM = 1 << VL_PARAM_RGB | 1 << VL_PARAM_SPECTRUM | 1 << VL_P
 /* The parameter `name` with one of the types of the bit mask. Null when it is not given. A parameter of another type is
  * an error. */
 vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t type_bits);
-/* These read a value. They return whether the parameter was given; otherwise *value is unchanged. */
+/* These functions read a value. They return whether the parameter was given; otherwise *value is unchanged. */
 bool vl_dict_float(vlDict *dict, const char *name, float *value);
 bool vl_dict_double(vlDict *dict, const char *name, double *value);
 bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value);
@@ -89,9 +90,9 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
 /* The texture's name; null when the parameter is not a texture. */
 vlParam *vl_dict_texture(vlDict *dict, const char *name);
 
-/* Reports every parameter that was not read. False after an error. */
+/* Reports every parameter that was not read as an error. Returns false after an error. */
 bool vl_dict_done(vlDict *dict);
-/* Marks all parameters as read: for skipped directives. */
+/* Marks all parameters of a skipped directive as read. */
 void vl_dict_skip(vlDict *dict);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "import/pbrt/builder.h"
 
-/* Ignores upper and lower case, as pbrt. */
+/* Reads a choice. Upper and lower case are not distinguished, as in pbrt. */
 static bool read_choice(vlDict *dict, const char *name, const vlParameter *p, int *at) {
   const char *text;
   int count = 0;
@@ -23,13 +23,14 @@ static bool read_string(vlDict *dict, const char *name, const vlParameter *p, co
   vlParam *param = vl_dict_find(dict, name, 1u << VL_PARAM_STRING);
   if (!param) return false;
   if (p->type == VL_PARAMETER_STRING) return vl_dict_string(dict, name, at);
-  if (param->strings.items[0][0] == 0 && !(p->flags & VL_PARAMETER_REQUIRED)) return false; /* counts as not given */
+  if (param->strings.items[0][0] == 0 && !(p->flags & VL_PARAMETER_REQUIRED))
+    return false; /* an empty file name counts as not given */
   if (!vl_import_path(dict->import, param, path, sizeof path)) return false;
   *at = vl_import_keep(dict->import, path);
   return *at != NULL;
 }
 
-/* Converts to the def's unit; rounded once. */
+/* Reads a number and converts it to the def's unit, with one rounding. */
 static bool read_float(vlDict *dict, const char *name, const vlParameter *p, float *at) {
   double number;
   if (p->factor == 0) return vl_dict_float(dict, name, at);
@@ -112,7 +113,7 @@ static bool read_one(vlDict *dict, const char *name, const vlParameter *p, char 
   return false;
 }
 
-/* Factor from the file's unit to the def's. */
+/* Converts a member from the file's unit to the def's unit. */
 static void convert(const vlParameter *p, char *def) {
   if (p->factor == 0) return;
   void *at = def + p->offset;

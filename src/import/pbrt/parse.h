@@ -1,6 +1,6 @@
 /* import/pbrt/parse.h: the grammar of the pbrt language. It turns tokens into directives and passes them to a target of
- * callbacks; it knows nothing of scenes. Include is followed here, up to a depth limit. Import is followed, too,
- * between IMPORT_BEGIN and IMPORT_END. */
+ * callbacks; it does not depend on scenes. The parser itself reads the files of Include, up to a depth limit. It also
+ * reads the files of Import; their directives stand between IMPORT_BEGIN and IMPORT_END. */
 #ifndef IMPORT_PBRT_PARSE_H
 #define IMPORT_PBRT_PARSE_H
 
@@ -60,23 +60,25 @@ typedef struct vlStatement {
   vlSource place;
   double numbers[16];
   const char *names[3]; /* valid during the call */
-  vlParamList
-      *params; /* of the last group; the callee may take the contents (and zero the list), otherwise they are freed */
+  vlParamList *params;  /* parameters of a directive that has them; the callee may take the contents and zero the list,
+                           otherwise they are freed */
 } vlStatement;
 
 typedef struct vlParseTarget {
   void *user;
-  /* Returns false to stop, after setting *error or an error of its own. */
+  /* Handles a statement. Returns false to stop the parser, after it has reported an error. */
   bool (*statement)(void *user, const vlStatement *statement);
   void (*error)(void *user, vlResult code, vlSource place, const char *message);
-  /* Called after an error. Returns true to continue behind the directive or file. May be null. */
+  /* Called after an error. Returns true to continue after the directive or file. May be null. */
   bool (*recover)(void *user);
 } vlParseTarget;
 
-/* Path of an included file: beside the including file, otherwise beside the first file. */
+/* Finds the path of an included file: in the folder of the including file, otherwise in the folder of the first
+ * file. */
 bool vl_parse_find_file(const char *including, const char *first, const char *name, char *path, size_t size);
 
-/* False after an error. _memory parses a copy of data; name stands for the file. */
+/* Both functions return false after an error. vl_parse_memory parses a copy of data and uses name as the file's
+ * name. */
 bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target);
 bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target);
 

@@ -1,5 +1,5 @@
-/* import/pbrt/parser.h: declarations shared by the two halves of the parser: a file being read, its next token, errors
- * at a place. parse_params.c reads parameters, directives.c directives and files. */
+/* import/pbrt/parser.h: declarations shared by the two files of the parser: the file being read, its next token, errors
+ * at a place. parse_params.c reads parameters; directives.c reads directives and files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 
@@ -19,7 +19,7 @@ typedef struct vlParser {
 typedef struct vlParserFile {
   vlParser *parser;
   struct vlParserFile *parent;
-  bool included; /* by Include: a parameter list may continue in the parent file */
+  bool included; /* the file was read by Include: a parameter list may continue in the parent file */
   const char *path;
   dev_t device;
   ino_t inode;
@@ -29,7 +29,7 @@ typedef struct vlParserFile {
   vlToken token;
 } vlParserFile;
 
-/* The token for a message: short, printable, in quotes. */
+/* Text of a token for messages: short, printable, in quotes. */
 typedef struct vlShownToken {
   char text[sizeof(vlShortText) + 2];
 } vlShownToken;

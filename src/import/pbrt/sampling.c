@@ -1,13 +1,13 @@
-/* import/pbrt/sampling.c: Sampler, PixelFilter, Integrator and Accelerator to the scene's defs. Defaults are
- * pbrt-v4's.
- */
+/* import/pbrt/sampling.c: converts the directives Sampler, PixelFilter, Integrator and Accelerator to the scene's defs.
+ * Defaults are pbrt-v4's. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "import/pbrt/builder.h"
 
-/* The row of the kind that the file names; null: it is unknown, which `good` says is an error or not. */
+/* Finds the row of the kind that the file names. Null for an unknown kind; *good then says whether the import
+ * continues. */
 static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family, const vlChoice *choice, int *kind,
                                  bool *good) {
   *good = true;
@@ -20,7 +20,7 @@ static bool is_alias(const vlKindRow *row, const vlChoice *choice) {
   return row->alias && strcmp(row->alias, choice->kind) == 0;
 }
 
-/* pbrt's parameters without a meaning here: their types are checked. */
+/* Checks the types of pbrt's parameters that have no meaning in velo. */
 static void skip_ignored(vlDict *dict, const vlKindRow *row) {
   bool yes;
   float number;
@@ -44,7 +44,8 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   if ((uint64_t)x * y > 0x7fffffff)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: too many samples", dict->what);
   if (!jitter) s->render.sampler = VL_SAMPLER_REGULAR;
-  if (given || !spp_given) s->render.spp = x * y; /* pixelsamples is not pbrt's here, but the same for all samplers */
+  if (given || !spp_given)
+    s->render.spp = x * y; /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
   return true;
 }
 
@@ -98,7 +99,7 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
 
 /* ---- integrator ------------------------------------------------------------------------------------------------- */
 
-/* Longer paths than vl_render follows carry nothing that shows. */
+/* Reads the maximal path length and limits it to MOST. Longer paths do not contribute visibly. */
 static void read_depth(vlDict *dict, vlSceneDefs *s) {
   enum { MOST = 4096 };
   vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);
@@ -119,17 +120,18 @@ static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *
 }
 
 static void read_photons(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
-  int32_t photons = -1; /* as many as pixels */
+  int32_t photons = -1; /* -1: as many photons as pixels */
   if (vl_row_find(row, "photonsperiteration") && vl_dict_integer(dict, "photonsperiteration", &photons) && photons > 0)
     s->render.light_paths = photons < 1 << 24 ? (uint32_t)photons : 1u << 24;
 }
 
-/* Names of pbrt's for which a tracer of another name stands in: a second alias. */
+/* Replaces the name of an integrator that velo lacks by that of a similar tracer. */
 static const char *stand_in(const char *name) {
   return strcmp(name, "mlt") == 0 ? "bdpt" : name;
 }
 
-/* pbrt's two-way integrators by velo's own: of what steers theirs, radius and photons do. */
+/* Reports that one of velo's tracers replaces pbrt's bidirectional integrator. Of pbrt's parameters, radius and photons
+ * have an effect. */
 static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
   bool pbrts = strcmp(kind, "bdpt") == 0 || strcmp(kind, "mlt") == 0 || strcmp(kind, "sppm") == 0;
   if (pbrts)
@@ -147,7 +149,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
-  if (!row) { /* permissive: a path tracer of that depth stands in */
+  if (!row) { /* permissive: a path tracer of the same depth replaces it */
     static const char *const later[] = {"function"};
     const char *names[32];
     size_t count = vl_kind_names(&vl_tracer_family, names, sizeof names / sizeof *names);
@@ -165,7 +167,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   return vl_dict_done(&dict);
 }
 
-/* The accelerator is velo's own choice; only the words are checked. */
+/* velo chooses its own accelerator; only the name is checked. */
 static bool check_accelerator(vlImport *import) {
   static const char *const names[] = {"bvh", "kdtree"};
   const vlChoice *choice = &import->accelerator;

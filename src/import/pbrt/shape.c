@@ -25,7 +25,7 @@ static bool take_floats(vlImport *import, vlParam *p, const float **result) {
   return true;
 }
 
-/* Per-vertex values: an integer number of them per vertex. */
+/* Takes the values of a parameter that must have an integer number of values per vertex. */
 static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type, size_t per, uint32_t vertices,
                                const float **result) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
@@ -178,7 +178,7 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_place);
 }
 
-/* Records the mesh file; it is read later, together with others (meshes.c). */
+/* Records the mesh file. All mesh files are read at the end (meshes.c). */
 static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
@@ -242,7 +242,7 @@ static bool enter_sphere(vlDict *dict, vlShapeDef *def, const vlShapeLink *link,
   return gathered || enter(dict, def, link, taken);
 }
 
-/* Any kind whose row says all. */
+/* Adds a shape of any kind that its row describes completely. */
 static bool enter_row(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)def->kind);
   bool quadric = row->traits & VL_SHAPE_TRAIT_QUADRIC;
@@ -250,7 +250,7 @@ static bool enter_row(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bo
   return enter(dict, def, link, taken);
 }
 
-/* Curves enter later, with their media. */
+/* Reads curves. They are added later, together with their media. */
 static bool enter_curves(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
   *taken = true;
   return vl_import_curve(dict, def, link);

@@ -1,7 +1,7 @@
-/* import/pbrt/sphere_run.c: whole spheres gathered into shapes of many. Particles are written as a million Shapes: each
- * would cost 750 bytes in scene and world, in a run 56. From the VL_MESH_RUN_FROM-th shape of a file on, spheres whose
- * state is the same but for where they stand and how large they are are put together; before that, and in what a doctor
- * reads, every Shape stays one. A few runs are open at a time, since materials take turns. */
+/* import/pbrt/sphere_run.c: merges whole spheres into shapes of many spheres. Particle scenes contain a million sphere
+ * Shapes; each would take 750 bytes in scene and world, but only 56 in a run. From the VL_MESH_RUN_FROM-th shape of a
+ * file on, spheres that differ only in position and radius are merged. Before that, and while diagnosing, nothing is
+ * merged. Several runs are open at a time, since files alternate between materials. */
 #include <math.h>
 #include <string.h>
 
@@ -53,8 +53,8 @@ void vl_import_free_spheres(vlImport *import) {
   for (int i = 0; i < VL_MESH_RUNS; i++) free_rows(import, &import->sphere_runs[i]);
 }
 
-/* The place of the sphere goes from the matrix to `center`, its scale, where that is the same along all axes and does
- * not mirror, to the radius. false: the transform is of another kind. */
+/* Moves the translation of the transform to `center` and its scale to the radius. Returns false unless the scale is the
+ * same along all axes and the transform does not mirror. */
 static bool take_place(vlShapeDef *def, double center[3], float *radius) {
   double *m = def->group_from_shape, at[3] = {m[3], m[7], m[11]}, s = m[0];
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return false;

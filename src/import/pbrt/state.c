@@ -53,7 +53,7 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
   else if (s->directive == VL_DIR_ROTATE)
     apply(import, vl_mat4_rotate(v[0] * 0.017453292519943295, v[1], v[2], v[3]));
   if (s->directive != VL_DIR_TRANSFORM && s->directive != VL_DIR_CONCAT_TRANSFORM) return true;
-  for (int i = 0; i < 4; i++) /* files hold columns one after the other */
+  for (int i = 0; i < 4; i++) /* files store matrices column by column */
     for (int j = 0; j < 4; j++) m.m[4 * i + j] = v[4 * j + i];
   if (s->directive == VL_DIR_TRANSFORM)
     set_ctm(import, m);

@@ -1,6 +1,6 @@
-/* import/ply/ply.h: meshes in PLY files (ASCII, binary of both byte orders, gzip) become plain arrays. Triangles stay,
- * faces of four corners become bilinear patches as in pbrt, larger faces become fans. The counts of a header are
- * trusted only as far as the file's bytes can hold them. */
+/* import/ply/ply.h: meshes in PLY files (ASCII, binary of both byte orders, gzip) become plain arrays. Triangles remain
+ * triangles, faces of four corners become bilinear patches as in pbrt, and larger faces become fans of triangles.
+ * Counts in the header are checked against the number of bytes in the file. */
 #ifndef IMPORT_PLY_PLY_H
 #define IMPORT_PLY_PLY_H
 
@@ -16,8 +16,8 @@ typedef struct vlPlyMesh {
   uint32_t *quad_indices;     /* 4 per patch: p00 p10 p01 p11 */
 } vlPlyMesh;
 
-/* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line for text and header). The
- * _given variant reads a file that the caller names, with its colours (base/file.h). */
+/* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line number in text files and
+ * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours. */
 vlResult vl_ply_read_given(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
 /* Reads a file that a scene names, without colours. */
 vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);

@@ -1,4 +1,4 @@
-/* import/ply/ply_file.c: see ply.h. The data is read once, by the table made from the header. */
+/* import/ply/ply_file.c: see ply.h. The data is read once, as the table made from the header describes it. */
 #include "import/ply/ply.h"
 
 #include <math.h>
@@ -90,7 +90,7 @@ bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {
   return true;
 }
 
-/* Length of a list. The bytes of its items are checked. */
+/* Reads the length of a list and checks that the file has enough bytes for its items. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length) {
   double value;
   if (!vl_ply_read_value(r, p->count_type, &value)) return false;

@@ -65,7 +65,7 @@ typedef struct vlPlyReader {
   vlContext *context;
   const char *name;
   const char *at, *end;
-  uint32_t line; /* of a text file or header; 0 in binary data */
+  uint32_t line; /* line number in a text file or header; 0 in binary data */
   vlPlyFormat format;
   vlPlyElement *elements;
   uint32_t element_count;
@@ -83,10 +83,10 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool vl_ply_fail_memory(vlPlyReader *r);
-bool vl_ply_read_header(vlPlyReader *r); /* up to the data */
-/* The next value of that type, text or binary. */
+bool vl_ply_read_header(vlPlyReader *r); /* stops at the first byte of the data */
+/* Reads the next value of that type from text or binary data. */
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);
-/* Length of a list. The bytes of its items are checked. */
+/* Reads the length of a list and checks that the file has enough bytes for its items. */
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length);
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e);
 bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e);

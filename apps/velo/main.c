@@ -34,7 +34,7 @@ static void print_overview(void) {
       "128 + signal stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM\n");
 }
 
-/* The number of words of argv that name the command; 0: another command. */
+/* Returns the number of words of argv that name the command, or 0 if they name another command. */
 static int name_words(const Command *command, int argc, char **argv) {
   const char *space = strchr(command->name, ' ');
   if (!space) return argc >= 1 && strcmp(argv[0], command->name) == 0 ? 1 : 0;

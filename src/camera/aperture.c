@@ -108,7 +108,7 @@ static vlResult check(uint32_t width, uint32_t height, const float *values, doub
   return VL_OK;
 }
 
-/* Running sums as shares of the total. All zero, and not read, if the total is zero. */
+/* Computes running sums as fractions of the total. If the total is zero, all entries are 0 and are never read. */
 static void accumulate(const double *sums, uint32_t count, float *table) {
   double whole = 0.0, before = 0.0;
   for (uint32_t i = 0; i < count; i++) whole += sums[i];
@@ -184,8 +184,9 @@ static bool inside(const double (*corners)[2], int count, double x, double y) {
   return in;
 }
 
-/* Shapes and sizes are pbrt-v4's; y points up here. The pentagon stands on a side and has radius 0.8. The star's
- * inner corners are the intersections of its outer pentagon's diagonals; one of them is on the right. */
+/* The shapes and sizes are those of pbrt-v4; y points up here. The pentagon has radius 0.8, and one of its sides is at
+ * the bottom. The star's inner corners are the intersections of its outer pentagon's diagonals; one of them is on the
+ * right. */
 static double named_value(int name, double x, double y) {
   double corners[10][2];
   if (name == 0) return fmax(0.0, vl_precise_exp(-(x * x + y * y)) - vl_precise_exp(-1.0));

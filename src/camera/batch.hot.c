@@ -8,11 +8,11 @@
 #include "camera/rays.h"
 #include "camera/stages.h"
 
-/* Meaning of the samples' lens_u and lens_v: random numbers (DISC) or points of the aperture (POINTS). OPTICS: rays
- * start at d->x, d->y. */
+/* The kinds of lens. lens_u and lens_v are random numbers for DISC, and points of the aperture for POINTS. For OPTICS,
+ * rays start at d->x, d->y. */
 enum { NO_LENS, DISC, POINTS, OPTICS };
 
-/* The loop is inlined once per projection and kind of lens; both constants are chosen before it. */
+/* The loop is inlined once for each projection and kind of lens; the caller passes both as constants. */
 static inline __attribute__((always_inline)) void ray_loop(const int orthographic, const int lens,
                                                            const vlCameraCompiled *camera, uint32_t count,
                                                            const vlCameraSamples *s, const vlCameraRays *r) {
@@ -80,7 +80,8 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
   }
 }
 
-/* Natural vignetting of a chunk: cos^4 of the angle between film point and axis at the lens's centre. */
+/* Computes the natural vignetting of a chunk: cos^4 of the angle between the axis and the direction of the film point,
+ * seen from the lens's centre. */
 static void weigh_plain(const vlCameraCompiled *c, uint32_t count, const vlCameraSamples *s, float *weight) {
   for (uint32_t i = 0; i < count; i++) {
     double x = (double)s->pixel_x[i] - c->cx + (double)s->film_x[i];

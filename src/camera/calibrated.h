@@ -1,10 +1,13 @@
-/* camera/calibrated.h: closed-form models of calibrated wide-angle lenses, projection and inverse. Any remaining
- * distortion is distortion.h's. Each function states its domain. FOV            Devernay and Faugeras, "Straight lines
- * have to be straight", 2001; w the field of view division       Fitzgibbon, "Simultaneous linear estimation of
- * multiple view geometry and lens distortion", 2001 unified        Mei and Rives, "Single view point omnidirectional
- * camera calibration from planar grids", 2007 EUCM           Khomutenko, Garcia, Martinet, "An Enhanced Unified Camera
- * Model", 2016 double sphere  Usenko, Demmel, Cremers, "The Double Sphere Camera Model", 2018 (also the domains of the
- * last two) */
+/* camera/calibrated.h: closed-form models of calibrated wide-angle lenses, each as projection and inverse. distortion.h
+ * adds any other distortion. The comment of each function states its domain.
+ *
+ *     FOV            Devernay and Faugeras, "Straight lines have to be straight", 2001; w is the field of view
+ *     division       Fitzgibbon, "Simultaneous linear estimation of multiple view geometry and lens distortion", 2001
+ *     unified        Mei and Rives, "Single view point omnidirectional camera calibration from planar grids", 2007
+ *     EUCM           Khomutenko, Garcia, Martinet, "An Enhanced Unified Camera Model", 2016
+ *     double sphere  Usenko, Demmel, Cremers, "The Double Sphere Camera Model", 2018
+ *
+ * The domains of EUCM and of the double sphere are from the paper on the double sphere. */
 #ifndef CAMERA_CALIBRATED_H
 #define CAMERA_CALIBRATED_H
 

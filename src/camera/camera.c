@@ -62,7 +62,7 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
   return VL_OK;
 }
 
-/* Checks everything but intrinsics and pose. */
+/* Checks all parameters except intrinsics and pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
   if (!vl_projection_row(d->projection))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);

@@ -9,10 +9,10 @@
 #include "math/approx_double.h"
 #include "math/elementary.h"
 
-/* Pixels by which a plane that closes on itself extends beyond its edges; no filter is wider. */
+/* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is wider. */
 static const double overhang = 16.0;
 
-/* The angle that the central pixel subtends. */
+/* Returns the angle (radians) that the central pixel subtends. */
 static double central_spread(const vlCameraCompiled *c) {
   double size = sqrt(c->inv_fx * c->inv_fy);
   const vlProjectionRow *row = vl_projection_row(c->projection);

@@ -15,7 +15,8 @@
 
 #include "camera/plane.h"
 
-/* The cell that contains a plane point. Far outside of the layout it is the cell of no face. */
+/* Returns the number of the cell that contains a plane point. A point far outside the layout gets a cell that belongs
+ * to no face. */
 static inline double vl_cube_cell(double x, double y) {
   double column = __builtin_floor(x);
   return (column >= 0.0 && column < 7.0 ? column : 7.0) + 8.0 * __builtin_floor(y);

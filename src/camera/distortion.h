@@ -1,5 +1,5 @@
-/* camera/distortion.h: distortion by a calibrated lens: maps ideal to real points of the projection's plane and back.
- * One form covers OpenCV's 14 coefficients (rational radial, tangential, thin prism, tilted sensor), the fisheye
+/* camera/distortion.h: lens distortion: maps undistorted points of the projection's plane to distorted points, and
+ * back. One form covers OpenCV's 14 coefficients (rational radial, tangential, thin prism, tilted sensor), the fisheye
  * polynomials of OpenCV and COLMAP, and COLMAP's thin prism (OpenCV documentation, "Camera Calibration and 3D
  * Reconstruction"; Brown, "Decentering distortion of lenses", 1966; Weng, Cohen, Herniou 1992; COLMAP,
  * sensor/models.h):
@@ -26,7 +26,7 @@ static inline vlDistorted vl_distort(const vlDistortionMap *m, double x, double 
   double below = 1.0 + s * (d[0] + s * (d[1] + s * d[2]));
   double above1 = n[0] + s * (2.0 * n[1] + s * (3.0 * n[2] + s * (4.0 * n[3])));
   double below1 = d[0] + s * (2.0 * d[1] + s * (3.0 * d[2]));
-  double q = above / below, q1 = (above1 - q * below1) / below; /* q1: derivative of q by s */
+  double q = above / below, q1 = (above1 - q * below1) / below; /* q1: derivative of q with respect to s */
   double xy = x * y, tu = 2.0 * (t[0] + 2.0 * t[1] * s), tv = 2.0 * (t[2] + 2.0 * t[3] * s);
   vlDistorted r;
   r.u = x * q + 2.0 * p0 * xy + p1 * (s + 2.0 * x * x) + s * (t[0] + t[1] * s);
@@ -46,7 +46,7 @@ static inline vlPlanePoint vl_tilt(const double h[9], double x, double y) {
                         w > VL_TILT_HORIZON ? 1.0 : 0.0};
 }
 
-/* Maps an ideal point to the real one. */
+/* Maps an ideal point to its distorted point. */
 static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_tilt(m->tilt, d.u, d.v);
@@ -60,19 +60,22 @@ static inline vlPlanePoint vl_distortion_apply(const vlDistortionMap *m, double 
 static inline vlPlanePoint vl_distortion_step(const vlDistortionMap *m, double x, double y, double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double det = d.ux * d.vy - d.uy * d.vx, eu = u - d.u, ev = v - d.v;
-  double k = 1.0 / (det > 1e-12 ? det : 1e-12); /* near a fold: a bounded step, which vl_distortion_check judges */
+  double k =
+      1.0 /
+      (det > 1e-12 ? det : 1e-12); /* near a fold the step is bounded; vl_distortion_check then tests the result */
   double nx = x + (d.vy * eu - d.uy * ev) * k, ny = y + (d.ux * ev - d.vx * eu) * k;
   double r = vl_length2(nx, ny), shrink = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){nx * shrink, ny * shrink, 1.0};
 }
 
-/* The start of the Newton iteration. */
+/* Returns the point at which the Newton iteration starts. */
 static inline vlPlanePoint vl_distortion_start(const vlDistortionMap *m, double u, double v) {
   double r = vl_length2(u, v), k = r > m->radius ? m->radius / r : 1.0;
   return (vlPlanePoint){u * k, v * k, 1.0};
 }
 
-/* 1 if the iteration converged: (x, y) maps to (u, v) to 1e-12; else 0, also for NaN. */
+/* Returns 1 if the iteration converged, which means that (x, y) maps to (u, v) with a relative error below 1e-12.
+ * Otherwise, and for NaN, returns 0. */
 static inline double vl_distortion_check(const vlDistortionMap *m, double x, double y, double u, double v) {
   vlDistorted d = vl_distort(m, x, y);
   double error = __builtin_fabs(d.u - u) + __builtin_fabs(d.v - v);

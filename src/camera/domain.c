@@ -67,7 +67,7 @@ static double radial_fold(const vlDistortionMap *m) {
 /* ---- the general case: along 64 directions, the first point with a determinant <= 0
  * --------------------------------- */
 
-/* Least w of the tilt: the sensor is seen edge-on, and a point lies 1e6 focal lengths away. */
+/* Lower bound of the tilt's w. There the sensor is seen edge-on, and a point lies 1e6 focal lengths away. */
 static const double edge_on = 1e-6;
 
 static bool unfolded(const vlDistortionMap *m, double x, double y) {
@@ -102,7 +102,7 @@ static double fold_radius(const vlDistortionMap *m, double most) {
   for (int i = 0; i < 4; i++) radial = radial && m->prism[i] == 0.0;
   double radius = fmin(radial_fold(m), most);
   if (radial) return radius;
-  /* tangential terms shift the fold in both directions, so the search continues beyond the radial one */
+  /* tangential terms move the fold inwards or outwards, so the search continues beyond the radial fold */
   radius = most;
   for (int i = 0; i < DIRECTIONS; i++) {
     double angle = 2.0 * pi * i / DIRECTIONS;
@@ -114,7 +114,7 @@ static double fold_radius(const vlDistortionMap *m, double most) {
 /* ---- number of Newton steps
  * ----------------------------------------------------------------------------------------- */
 
-/* Steps until the inverse of the distorted (x, y) is found; MAX_STEPS + 1: not found. */
+/* Returns the number of Newton steps that invert the distortion of (x, y), or MAX_STEPS + 1 if they fail. */
 static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   vlDistorted d = vl_distort(m, x, y);
   vlPlanePoint p = vl_distortion_start(m, d.u, d.v);
@@ -126,8 +126,8 @@ static uint32_t steps_for(const vlDistortionMap *m, double x, double y) {
   return step;
 }
 
-/* An upper bound of the plane radius that the image needs: the first radius that maps beyond all corners of the
- * image by half. */
+/* Returns an upper bound of the plane radius that the image needs: the first radius whose distorted radius is 1.5 times
+ * that of the farthest corner. */
 static double needed_radius(const vlCamera *c) {
   const vlDistortionMap *m = &c->distortion;
   double corner = 0.0;
@@ -154,7 +154,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
   uint32_t steps = 1;
   for (int i = 0; i < 24; i++)
     for (int k = 1; k <= 40; k++) {
-      /* towards the edge ever closer: a fold is where Newton's method is slow */
+      /* the points get denser towards the edge, because Newton's method is slow near a fold */
       double share = k <= 32 ? k / 33.0 : 1.0 - vl_precise_pow(10.0, 30.5 - k);
       double r = most * share, angle = 2.0 * pi * (i + 0.3) / 24;
       uint32_t here = steps_for(m, r * vl_precise_cos(angle), r * vl_precise_sin(angle));
@@ -166,7 +166,7 @@ static uint32_t steps_everywhere(const vlCamera *c) {
 /* ---- the image ----------------------------------------------------------------------------------------------------
  */
 
-/* For a lens of many elements: the share of the image in film rings that no light reaches. */
+/* Returns, for a lens of many elements, the fraction of the image in film rings that no light reaches. */
 static double dark_share(const vlCamera *camera, const vlCameraCompiled *c) {
   uint32_t dark = 0;
   for (int i = 0; i < GRID * GRID; i++) {
@@ -223,7 +223,7 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
     /* the direction straight back is singular; a nearby one replaces it */
     bool seen = vl_camera_plane_radius(camera, angle < pi ? angle : pi * (1.0 - 1e-9), false, &radius);
     if (seen)
-      limit = fmin(limit, radius * (1.0 + 1e-12)); /* the angle itself is inside, whatever rounding does */
+      limit = fmin(limit, radius * (1.0 + 1e-12)); /* a margin for rounding, so that the angle itself is inside */
     else if (!vl_is_unset(def->max_angle) && kind != VL_PROJECTION_PERSPECTIVE)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the %s projection does not see as far as max_angle, %g degrees",
                      vl_projection_name(kind), angle * 180.0 / pi);

@@ -1,7 +1,7 @@
-/* camera/equal_area.h: the whole sphere in a square, every pixel the same solid angle, projection and inverse
- * (Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The plane is [-1, 1]^2;
- * its centre is straight ahead, its corners are straight back. Slightly beyond an edge (`over`) the plane continues at
- * the other half of that edge, as the sphere does, so that filters see no edge. */
+/* camera/equal_area.h: the equal-area projection of the whole sphere to a square, and its inverse. Each pixel covers
+ * the same solid angle (Clarberg, "Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD", 2008; pbrt book 3.8.3). The
+ * plane is [-1, 1]^2. Its centre is straight ahead; its corners are straight back. The plane extends by `over` beyond
+ * each edge, where it continues at the mirrored half of that edge, as the sphere does. So filters see no edge. */
 #ifndef CAMERA_EQUAL_AREA_H
 #define CAMERA_EQUAL_AREA_H
 

@@ -1,7 +1,8 @@
-/* camera/equirectangular.h: longitude (x) and latitude (y) in radians, projection and inverse. The plane's centre is
- * straight ahead. Longitude is in [-pi, pi], latitude in [-pi/2 (up), pi/2]. Slightly beyond (`over_x`, `over_y`,
- * radians) the plane continues as the sphere does (around it, and over the poles), so that filters see no edge. The
- * projection returns the point within these ranges. */
+/* camera/equirectangular.h: the equirectangular projection and its inverse. x is the longitude and y is the latitude,
+ * both in radians. The plane's centre is straight ahead. The longitude is in [-pi, pi] and the latitude in [-pi/2,
+ * pi/2]; -pi/2 is up. The plane extends by `over_x` and `over_y` (radians) beyond these ranges. There it continues
+ * around the sphere and over the poles, so that filters see no edge. The projection returns points within the ranges.
+ */
 #ifndef CAMERA_EQUIRECTANGULAR_H
 #define CAMERA_EQUIRECTANGULAR_H
 

@@ -9,17 +9,18 @@
 #include "math/elementary.h"
 
 static const double pi = 3.14159265358979323846;
-static const double agreement = 1e-6;          /* relative; values written with 7 digits agree */
-static const double just_inside = 1.0 - 1e-15; /* factor on an angle that is itself singular: 9 roundings less */
+static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
+static const double just_inside =
+    1.0 - 1e-15; /* factor that moves a singular angle inwards by about 9 rounding errors */
 
-/* A quantity that several parameters may give: its first value, and the parameter that gave it (for messages). */
+/* A quantity that several parameters can determine: its first value, and the parameter that gave it (for messages). */
 typedef struct {
   const char *what; /* "focal length fx" */
   double value;     /* unset until given */
   char from[160];
 } Quantity;
 
-/* Takes the value of one more parameter. An error names both parameters if it disagrees with the known value. */
+/* Adds the value from one more parameter. If it disagrees with the known value, the error names both parameters. */
 static vlResult take(Quantity *q, double value, const char *from, vlError *error) {
   if (vl_is_unset(value) || isinf(value))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s gives no finite %s", from, q->what);
@@ -83,8 +84,8 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
   return VL_OK;
 }
 
-/* Half the window in pixels along the axis of the field of view. *horizontal, *vertical: which focal lengths it
- * determines (both for the diagonal: square pixels). */
+/* Returns half the window in pixels along the axis of the field of view. *horizontal and *vertical tell which focal
+ * lengths the field of view determines. The diagonal determines both, with square pixels. */
 static double half_window(const vlCameraDef *d, bool *horizontal, bool *vertical) {
   double w = d->width, h = d->height;
   vlFovAxis axis = d->fov_axis;
@@ -127,7 +128,7 @@ static vlResult take_screen(const vlCameraDef *d, double tangent, const char *fr
   return take(&g->cy, d->screen_max_y / down * d->height, "the screen window", error);
 }
 
-/* Half a field of view along an axis, in plane units. */
+/* Computes half the extent of a field of view along an axis, in plane units. */
 static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool vertical, double *half, vlError *error) {
   vlProjection kind = d->projection;
   if (kind == VL_PROJECTION_PERSPECTIVE) {
@@ -148,7 +149,7 @@ static vlResult plane_half(const vlCameraDef *d, const vlCamera *camera, bool ve
   return VL_OK;
 }
 
-/* Focal lengths of perspective cameras and of all others whose plane scales with a focal length. */
+/* Collects the focal lengths of perspective cameras, and of all others whose plane scales with a focal length. */
 static vlResult gather_focal(const vlCameraDef *d, const vlCamera *camera, bool screen, Gathered *g, vlError *error) {
   char from[160];
   bool has_fov = !vl_is_unset(d->fov), has_d = !vl_is_unset(d->view_distance), has_mm = !vl_is_unset(d->focal_mm);
@@ -226,7 +227,7 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
   return VL_OK;
 }
 
-/* No focal length is given: the projection's own. */
+/* Sets the projection's default focal length, because none is given. */
 static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathered *g) {
   const vlProjectionRow *row = vl_projection_row(d->projection);
   double half = 0.5 * (d->width < d->height ? d->width : d->height), radius, focal[2];
@@ -235,7 +236,7 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
     g->fx.value = focal[0], g->fy.value = focal[1];
     return;
   }
-  /* across the smaller side 180 degrees of fisheyes, 90 of others where the model sees that */
+  /* along the smaller side: 180 degrees for fisheyes, 90 for others if the model covers that angle */
   bool fisheye = row->traits & VL_PROJECTION_FISHEYE;
   if (!vl_camera_plane_radius(camera, fisheye ? 0.5 * pi * just_inside : 0.25 * pi, d->width >= d->height, &radius))
     radius = 1.0;

@@ -7,12 +7,13 @@ static const double pi = 3.141592653589793;
 
 /* ---- focal lengths where nothing is given ------------------------------------------------------------------------ */
 
-/* Perspective: 90 degrees across the smaller side; orthographic: -1 to 1 across it. Both are half of it in pixels. */
+/* Perspective cameras see 90 degrees along the smaller side; orthographic cameras see -1 to 1. In both cases the focal
+ * length is half of that side in pixels. */
 static void half_side(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
   focal[0] = focal[1] = 0.5 * (d->width < d->height ? d->width : d->height);
 }
-/* All of the sphere, the cylinder, the cube. */
+/* The image shows the whole sphere, cylinder or cube. */
 static void whole_sphere(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
   focal[0] = d->width / (2.0 * pi), focal[1] = d->height / pi;

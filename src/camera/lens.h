@@ -10,9 +10,9 @@ typedef struct vlLensPoint {
   float x, y;
 } vlLensPoint;
 
-/* Maps [0,1)^2 to the unit disk, preserving area, concentric squares to circles (Shirley and Chiu, "A low distortion
- * map between disk and square", 1997). The angle within a quarter stays within pi/4, so short Taylor polynomials
- * replace sine and cosine (error below 4e-7 of the radius) without branches. */
+/* Maps [0,1)^2 to the unit disk and preserves area; concentric squares become circles (Shirley and Chiu, "A low
+ * distortion map between disk and square", 1997). The angle within each quarter is at most pi/4, so short Taylor
+ * polynomials replace sine and cosine, without branches. Their error is below 4e-7 of the radius. */
 static inline vlLensPoint vl_lens_disk(float u, float v) {
   float a = 2.0f * u - 1.0f, b = 2.0f * v - 1.0f;
   float aa = a < 0.0f ? -a : a, bb = b < 0.0f ? -b : b;
@@ -28,7 +28,7 @@ static inline vlLensPoint vl_lens_disk(float u, float v) {
 }
 
 /* With r = o + s d and the point of focus at z = F: the ray starts at o + l and aims at o + d F/dz. depth = dz.
- * Projections that see more than the half-space z > 0 focus on a sphere: d of unit length, depth = 1. */
+ * Projections that see more than the half-space z > 0 focus on a sphere: for them d has unit length and depth is 1. */
 static inline vlCameraLocal vl_lens_apply_at(const vlCameraCompiled *c, vlCameraLocal r, vlLensPoint disk,
                                              double depth) {
   double lx = c->lens_radius * (double)disk.x, ly = c->lens_radius * (double)disk.y;
@@ -57,7 +57,7 @@ static inline vlCameraLocal vl_lens_refract(const vlCameraCompiled *c, vlCameraL
   return r;
 }
 
-/* lens_points.c: maps n pairs of random numbers to points of a shaped aperture. */
+/* Maps n pairs of random numbers to points of a shaped aperture. Defined in lens_points.c. */
 void vl_lens_points(const vlCameraCompiled *c, uint32_t n, const float *u, const float *v, float *x, float *y);
 
 #endif

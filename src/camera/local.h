@@ -1,5 +1,5 @@
-/* camera/local.h: a ray in camera space: the output of every projection, the input of lens and pose. Camera space: x
- * right, y down, z forward. */
+/* camera/local.h: a ray in camera space. Every projection returns one; the lens and the pose then transform it. Camera
+ * space: x right, y down, z forward. */
 #ifndef CAMERA_LOCAL_H
 #define CAMERA_LOCAL_H
 

@@ -53,11 +53,11 @@ static vlResult check(const vlOpticsDef *d, const vlLensSurface *s, vlError *err
 /* Index of refraction on the film's side of given surface i; 1 before the first surface. */
 static double index_behind(const vlOptics *o, int i) {
   double ior = i >= 0 ? o->given[i].ior : 1.0;
-  if (i >= 0 && o->given[i].radius == 0.0) return index_behind(o, i - 1); /* a stop has no index of its own */
+  if (i >= 0 && o->given[i].radius == 0.0) return index_behind(o, i - 1); /* a stop does not change the index */
   return ior == 0.0 ? 1.0 : ior;
 }
 
-/* Orders the surfaces from the film's side; vertices relative to a rear surface at z = 0. */
+/* Orders the surfaces from the film's side. Vertices are relative to the rear surface, which is at z = 0. */
 static void arrange(vlOptics *o) {
   double unit = o->def.unit_mm, z = 0.0;
   o->stop = 0, o->has_stop = false;
@@ -108,7 +108,8 @@ static vlResult focus(vlOptics *o, vlError *error) {
   /* principal planes, from the rear vertex: rear (of a parallel ray from the scene) and front (of one from the film) */
   double rear = (1.0 - m.d) * f, front = length + (m.a - 1.0) * f, image = f;
   if (isfinite(o->def.focus_distance)) {
-    double rest = o->def.focus_distance - (front - rear); /* object to front plane, plus rear plane to film */
+    double rest = o->def.focus_distance - (front - rear); /* distance from the object to the front principal plane, plus
+                                                             from the rear principal plane to the film */
     if (!(rest >= 4.0 * f))
       return vl_fail(error, VL_ERROR_ARGUMENT,
                      "lens: it cannot focus at a distance of %g; the nearest for its focal length of %g is %g",

@@ -1,5 +1,5 @@
-/* camera/optics.hot.c: film samples through a lens of many elements, a chunk at a time, a surface at a time. Compiled
- * once per instruction set. */
+/* camera/optics.hot.c: traces film samples through a lens of many elements, one chunk and one surface at a time.
+ * Compiled once per instruction set. */
 #include "camera/optics.h"
 #include "camera/lens.h"
 #include "camera/stages.h"

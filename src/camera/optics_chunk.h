@@ -5,7 +5,7 @@
 
 #include "camera/rays.h"
 
-/* Like the kernels of vlCameraKernels; count is padded. */
+/* The parameters are those of the kernels in vlCameraKernels; count is padded. */
 void vl_optics_unproject_chunk(const vlCameraCompiled *c, uint32_t count, const vlCameraPixels *in,
                                vlCameraPoints *out);
 void vl_optics_project_chunk(const vlCameraCompiled *c, uint32_t count, const vlCameraPoints *in, vlCameraPixels *out);

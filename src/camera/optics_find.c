@@ -5,7 +5,8 @@
 
 #include "camera/optics.h"
 
-/* Rays of a search over a window of the rear plane: the upper half only, since the lens is rotationally symmetric. */
+/* Size of the grid of rays over a window of the rear plane. It covers the upper half only, since the lens is
+ * rotationally symmetric. */
 enum { ACROSS = 40, DOWN = 20, ZOOMS = 24 };
 
 static bool passes(const vlOptics *o, double radius, double px, double py) {
@@ -47,7 +48,7 @@ static Box grown(Box b, Box window) {
   return (Box){b.x0 - dx, b.x1 + dx, b.y1 + dy};
 }
 
-/* Shrinks the window towards the pupil until it becomes little smaller. The chief ray is tried too: it finds pupils
+/* Shrinks the window towards the pupil until it hardly changes. The chief ray is also tried, because it finds pupils
  * that are smaller than the first grid's spacing. */
 static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
   double reach = 1.5 * sqrt(o->surfaces[0].aperture2);
@@ -104,8 +105,8 @@ void vl_optics_find_pupils(vlOptics *o) {
 
 /* ---- chief rays -------------------------------------------------------------------------------------------------- */
 
-/* x at the stop of the ray from the film radius to p. Apertures are ignored here; whether light passes is tested
- * once the ray is found. */
+/* Computes x at the stop for the ray from the film radius to x = p at the rear surface. It ignores apertures; they are
+ * tested once the chief ray is found. */
 static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
   vlOpticsRay r = vl_optics_start(radius, 0.0, p, 0.0, o->rear);
   for (uint32_t k = 0; k <= o->stop; k++) {
@@ -118,17 +119,17 @@ static bool at_stop(const vlOptics *o, double radius, double p, double *x) {
 
 bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *chief) {
   double size = sqrt(o->surfaces[o->stop].aperture2),
-         step = 1e-4 * size; /* long against rounding, short against the lens */
+         step = 1e-4 * size; /* large compared with rounding errors, small compared with the lens */
   double a = guess, b = guess + step, fa, fb;
   *chief = (vlChief){.pupil = guess};
   if (!at_stop(o, radius, a, &fa) || !at_stop(o, radius, b, &fb)) return false;
-  /* secant method: the height at the stop is nearly linear in that at the pupil */
+  /* secant method: the height at the stop is nearly linear in the height at the pupil */
   for (int i = 0; i < 40 && fabs(fb) > 1e-15 * size && fb != fa; i++) {
     double next = b - fb * (b - a) / (fb - fa);
     a = b, fa = fb, b = next;
     if (!at_stop(o, radius, b, &fb)) return false;
   }
-  if (!(fabs(fb) < 1e-9 * size)) return false; /* no root: the secants stopped elsewhere */
+  if (!(fabs(fb) < 1e-9 * size)) return false; /* no root: the secant method did not converge */
   chief->pupil = b;
   vlOpticsRay r = vl_optics_start(radius, 0.0, b, 0.0, o->rear);
   for (uint32_t k = 0; k < o->count; k++) {

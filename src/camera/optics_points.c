@@ -25,7 +25,8 @@ bool vl_optics_unproject(const vlOptics *o, double x, double y, vlCameraLocal *r
   return true;
 }
 
-/* By how much the chief ray of a film radius passes outside the point (rho, z). Increases with the radius. */
+/* Computes the distance by which the chief ray of a film radius passes outside the point (rho, z). It increases with
+ * the radius. */
 static bool miss(const vlOptics *o, double radius, double rho, double z, double *value) {
   vlChief c;
   bool valid = chief_at(o, radius, &c);
@@ -45,7 +46,7 @@ bool vl_optics_project(const vlOptics *o, double x, double y, double z, double f
   if (!miss(o, a, rho, z, &fa) || !miss(o, b, rho, z, &fb) || fa > 0.0) return false;
   /* regula falsi (Illinois): [a, b] brackets one root */
   int side = 0;
-  for (int step = 0; step < 100 && b - a > 1e-15 * o->half; step++) { /* 1e-15, 1e-16: to the last digits */
+  for (int step = 0; step < 100 && b - a > 1e-15 * o->half; step++) { /* 1e-15: converges to the last digits */
     double f;
     r = fb > fa ? (a * fb - b * fa) / (fb - fa) : 0.5 * (a + b);
     if (!(r > a && r < b)) r = 0.5 * (a + b);

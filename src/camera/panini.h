@@ -1,14 +1,14 @@
-/* camera/panini.h: the general Panini projection, projection and inverse: the scene projected onto a cylinder about the
- * vertical axis, viewed from a distance d behind its axis. d = 0 is the perspective projection, d = 1 the
- * cylindrical stereographic; large d approaches the cylindrical orthographic. Verticals and all lines through the
- * centre stay straight (Sharpless, Postle, German, "Pannini: A New Projection for Rendering Wide Angle Perspective
- * Images", 2010). */
+/* camera/panini.h: the general Panini projection and its inverse. The scene is projected onto a cylinder about the
+ * vertical axis, and the cylinder is viewed from a distance d behind its axis. d = 0 is the perspective projection and
+ * d = 1 is the cylindrical stereographic projection; large d approaches the cylindrical orthographic projection.
+ * Vertical lines and lines through the centre stay straight (Sharpless, Postle, German, "Pannini: A New Projection for
+ * Rendering Wide Angle Perspective Images", 2010). */
 #ifndef CAMERA_PANINI_H
 #define CAMERA_PANINI_H
 
 #include "camera/plane.h"
 
-/* Lower bound of cos(longitude): for d <= 1 the plane is infinite there, for d > 1 it folds. */
+/* Returns the lower bound of cos(longitude). At the bound the plane is infinite for d <= 1, and it folds for d > 1. */
 static inline double vl_panini_edge(double d) {
   return d <= 1.0 ? -d : -1.0 / d;
 }

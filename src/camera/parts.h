@@ -5,33 +5,35 @@
 
 #include "velo/camera.h"
 
-/* Whether a value of a def is not given (VL_UNSET). */
+/* Returns whether a value of a def is VL_UNSET (not given). */
 static inline bool vl_is_unset(double value) {
   return value != value;
 }
 
-/* Sets shape and the distortion's coefficients and tilt; checks their ranges and counts. */
+/* Sets shape, and the distortion's coefficients and tilt. Checks their ranges and counts. */
 vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Sets limit, distortion.radius and steps, and outside. Called last: it needs all other parts. */
 vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
 /* Sets distortion.steps and outside, which also depend on the image's size. */
 void vl_camera_measure(vlCamera *camera);
-/* Radius in the plane, before distortion, of a direction at an angle from the axis, horizontally or vertically.
- * False: outside of the projection's domain. */
+/* Computes the radius in the plane, before distortion, of a direction at `angle` (radians) from the axis, measured
+ * horizontally or vertically. Returns false if the direction is outside the projection's domain. */
 bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical, double *radius);
 /* Sets fx, fy, skew, cx, cy from all alternative parameters of a def. If two disagree, the error names both. */
 vlResult vl_camera_intrinsics(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Sets world_from_camera and camera_from_world. */
 vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
-/* Sets the time parameters: curve, readout, the second pose. After vl_camera_pose. */
+/* Sets the time parameters: shutter curve, readout, second pose. Must be called after vl_camera_pose. */
 vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error);
-/* Sets the pose from a matrix, which is checked. */
+/* Checks a matrix and sets the pose from it. */
 vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *camera, vlError *error);
-/* Sets lens, lens_radius, focus_distance and exposure_time if def.lens gives them; after intrinsics and pose. */
+/* Sets lens, lens_radius, focus_distance and exposure_time if def.lens gives them. Must be called after the intrinsics
+ * and the pose are set. */
 vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error);
-/* Whether near, far and focus surfaces are planes of constant z; otherwise they are spheres around the eye. */
+/* Returns whether near, far and focus surfaces are planes of constant z. Otherwise they are spheres around the eye. */
 bool vl_camera_sees_ahead(vlProjection kind);
-/* The focus distance that brings a point of the world into focus; false: it lies behind the camera. */
+/* Computes the focus distance at which a world-space point is in focus. Returns false if the point lies behind the
+ * camera. */
 bool vl_camera_focus_at(const vlCamera *camera, const double point[3], double *distance);
 
 #endif

@@ -7,8 +7,9 @@
 #include "camera/local.h"
 #include "camera/rays.h"
 
-/* x, y: pixels from the principal point. The direction has the lecture's form, with the view plane at distance fx
- * and pixels of size 1: (x_v, y_v, d), not divided by d, so that no rounding is added to the lecture's formula. */
+/* x, y: pixels from the principal point. The direction has the form of the lecture, (x_v, y_v, d), with the view plane
+ * at distance d = fx and pixels of size 1. It is not divided by d, so that it has no rounding error beyond that of the
+ * lecture's formula. */
 static inline vlCameraLocal vl_perspective_unproject(const vlCameraCompiled *c, double x, double y) {
   vlCameraLocal r;
   r.ox = 0.0;

@@ -10,7 +10,7 @@
 typedef struct vlWorldRay {
   double ox, oy, oz, dx, dy, dz;
   double inv_length; /* 1 / |d| */
-  double length;     /* |d|; divided by d's depth in camera space it is the distance along the ray per unit of depth */
+  double length;     /* |d|; divided by d's z in camera space, it gives the distance along the ray per unit of depth */
 } vlWorldRay;
 
 static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLocal r) {
@@ -27,7 +27,7 @@ static inline vlWorldRay vl_camera_place(const vlCameraCompiled *c, vlCameraLoca
   return w;
 }
 
-/* The ray with its origin moved to its own eye position (omnidirectional stereo). */
+/* Transforms a ray to world space, with its origin at the eye position of its direction (omnidirectional stereo). */
 static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePlace eye, vlWorldRay w) {
   const double *m = c->rotation;
   w.ox += m[0] * eye.x + m[2] * eye.z;

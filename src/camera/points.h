@@ -1,6 +1,6 @@
-/* camera/points.h: a pixel to a direction and a point to a pixel: all factors except lens and pose, one point at a
- * time. The public functions call these. The batches (points.hot.c) run the same operations in stages, so the bits
- * agree. */
+/* camera/points.h: maps a pixel to a direction, and a point to a pixel, without lens and pose. The public functions
+ * call these for one point at a time. The batches (points.hot.c) run the same operations in stages, so both give the
+ * same bits. */
 #ifndef CAMERA_POINTS_H
 #define CAMERA_POINTS_H
 
@@ -13,12 +13,12 @@ static inline vlPlanePoint vl_pixel_to_plane(const vlCameraCompiled *c, double x
 }
 static inline vlPlanePoint vl_plane_to_pixel(const vlCameraCompiled *c, vlPlanePoint p) {
   double x = c->fx * p.x + c->skew * p.y + c->cx, y = c->fy * p.y + c->cy;
-  int valid = p.valid > 0.0 && x - x == 0.0 && y - y == 0.0; /* infinity minus itself is NaN */
+  int valid = p.valid > 0.0 && x - x == 0.0 && y - y == 0.0; /* x - x is NaN if x is infinite */
   return (vlPlanePoint){valid ? x : 0.0, valid ? y : 0.0, valid ? 1.0 : 0.0};
 }
 
-/* Finishes a projection's direction: unit length except for perspective cameras (z = 1), and straight ahead if it is
- * not valid, so that no later stage sees a zero or a NaN. */
+/* Normalises a projection's direction, except for perspective cameras, which keep z = 1. An invalid direction becomes
+ * straight ahead, so that no later stage sees a zero or a NaN. */
 static inline vlDirection vl_direction_finish(const int inclined, vlDirection d, double valid) {
   int good = d.valid > 0.0 && valid > 0.0;
   double k = inclined ? 1.0 : 1.0 / vl_not_tiny(vl_length3(d.x, d.y, d.z));

@@ -9,7 +9,7 @@
 #include "camera/place.h"
 #include "camera/points.h"
 
-/* Real plane points to ideal ones, in place; a fixed number of Newton steps. */
+/* Removes the distortion of plane points in place, with a fixed number of Newton steps. */
 static void undistort(const vlDistortionMap *map, uint32_t count, double *x, double *y, double *valid) {
   const vlDistortionMap copy = *map, *m = &copy;
   double u[VL_CAMERA_CHUNK], v[VL_CAMERA_CHUNK];

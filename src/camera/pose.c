@@ -28,8 +28,8 @@ static double largest(Vec a) {
   return fmax(fabs(a.x), fmax(fabs(a.y), fabs(a.z)));
 }
 
-/* Scaled first, so that very long and very short vectors neither overflow nor underflow. Axis-aligned vectors keep
- * exact zeros and ones. */
+/* Normalises a vector. It is scaled first, so that very long and very short vectors neither overflow nor underflow.
+ * Axis-aligned vectors keep exact zeros and ones. */
 static Vec normalized(Vec a) {
   double scale = largest(a);
   a = (Vec){a.x / scale, a.y / scale, a.z / scale};
@@ -63,8 +63,8 @@ static vlResult basis_from_lookat(const vlCameraDef *def, Basis *basis, const ch
       *warning =
           "camera: up is parallel to the view direction; the image's right is taken along the world's x axis (z when "
           "looking along x)";
-    /* The component of x (of z if w is near x) perpendicular to w. When the camera looks straight down, the top of
-     * the image is -z, as on a map. */
+    /* The default up vector is the component of x perpendicular to w, or of z if w is near x. When the camera looks
+     * straight down, the top of the image is -z, as on a map. */
     Vec axis = fabs(w.x) > 0.9 ? (Vec){0.0, 0.0, 1.0} : (Vec){1.0, 0.0, 0.0};
     double along = dot(axis, w);
     right = (Vec){axis.x - along * w.x, axis.y - along * w.y, axis.z - along * w.z};
@@ -83,7 +83,7 @@ static vlResult check_matrix(const vlMat4 *m, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: the last row of world_from_camera is %g %g %g %g; a pose has 0 0 0 1", a[12], a[13], a[14],
                    a[15]);
-  /* Volume of the three axes, each normalised: 0 if they are coplanar. */
+  /* Returns the volume spanned by the three normalised axes; it is 0 if they are coplanar. */
   Vec x = {a[0], a[4], a[8]}, y = {a[1], a[5], a[9]}, z = {a[2], a[6], a[10]};
   double volume = 0.0, most = fmax(largest(x), fmax(largest(y), largest(z)));
   if (most > 1e30)

@@ -1,5 +1,6 @@
-/* camera/projection.h: all projections behind two functions. `kind` is a constant where these are inlined, so that a
- * batch chooses once. The plane points are ideal: distortion lies between them and the pixels. */
+/* camera/projection.h: two functions that call any projection. `kind` is a constant where they are inlined, so a batch
+ * selects its projection once. Plane points are undistorted; the lens distortion is applied between them and the
+ * pixels. */
 #ifndef CAMERA_PROJECTION_H
 #define CAMERA_PROJECTION_H
 
@@ -12,8 +13,9 @@
 #include "camera/panini.h"
 #include "camera/rays.h"
 
-/* The functions of a kind, vl_unproject_NAME and vl_project_NAME, in terms of the compiled camera c, its numbers a, a
- * point of the plane (x, y) and the cell `face` of VL_PROJECTION_CUBE; or a point (x, y, z) in camera space. */
+/* Defines the functions vl_unproject_NAME and vl_project_NAME of a kind. Both expressions can use the compiled camera c
+ * and its shape numbers a. `unproject` also uses a point of the plane (x, y) and, for VL_PROJECTION_CUBE, the cell
+ * `face`; `project` uses a point (x, y, z) in camera space. */
 #define VL_CAMERA_INLINE static inline __attribute__((always_inline))
 #define VL_PROJECTION_FUNCTIONS(name, unproject, project)                                                        \
   VL_CAMERA_INLINE vlDirection vl_unproject_##name(const vlCameraCompiled *c, double face, double x, double y) { \
@@ -45,7 +47,7 @@ VL_PROJECTION_FUNCTIONS(unified, vl_unified_unproject(a[0], x, y), vl_unified_pr
 VL_PROJECTION_FUNCTIONS(eucm, vl_eucm_unproject(a[0], a[1], x, y), vl_eucm_project(a[0], a[1], x, y, z))
 VL_PROJECTION_FUNCTIONS(double_sphere, vl_double_sphere_unproject(a[0], a[1], x, y),
                         vl_double_sphere_project(a[0], a[1], x, y, z))
-/* Rays of a lens of many elements go their own way. */
+/* These two only fill the table: rays of a lens of many elements are traced by optics.hot.c. */
 VL_PROJECTION_FUNCTIONS(optics, ((vlDirection){x, y, 1.0, 0.0}), ((vlPlanePoint){x, y, 0.0}))
 
 VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c, double face, double x,
@@ -61,7 +63,7 @@ VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCamer
   return d;
 }
 
-/* A point in camera space to the plane. */
+/* Projects a point in camera space to the plane. */
 VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCameraCompiled *c, double x, double y,
                                                double z) {
   vlPlanePoint p = {x, y, 0.0};
@@ -75,7 +77,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
   return p;
 }
 
-/* Those that go all round, and so have omnidirectional stereo (eyes.h). */
+/* The projections that cover all longitudes. They support omnidirectional stereo (eyes.h). */
 #define VL_ROUND_PROJECTIONS(X)       \
   X(EQUIRECTANGULAR, equirectangular) \
   X(EQUAL_AREA, equal_area)           \

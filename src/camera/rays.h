@@ -13,7 +13,7 @@
 #include "camera/time.h"
 #include "velo/camera.h"
 
-/* Points per chunk of the double arrays below. */
+/* Number of points in each chunk of the double arrays below. */
 enum { VL_CAMERA_CHUNK = 256 };
 
 /* A camera ready for batches. Camera space: x right, y down, z forward. Plain data, made by vl_camera_compile. */
@@ -26,9 +26,9 @@ typedef struct vlCameraCompiled {
   double focal;                  /* fx, pixels (orthographic: pixels per scene unit) */
   double inv_fx, inv_fy;         /* orthographic: scene units per pixel */
   double rotation[9];            /* row-major 3x3 part of world_from_camera (may scale or mirror) */
-  double position[3];            /* of the camera in the world */
-  double lens_radius, inv_focus; /* 1 / focus distance; 0: focused at infinity */
-  /* The plane in focus is p . focus = 1; used by shaped lenses and if `ahead` is set. */
+  double position[3];            /* the camera's position in the world */
+  double lens_radius, inv_focus; /* inv_focus: 1 / focus distance, or 0 if focused at infinity */
+  /* Points p of the plane in focus satisfy p . focus = 1. Used by shaped lenses and if `ahead` is set. */
   double focus[3];
   double shutter_open, shutter_time; /* seconds */
   double near_plane, far_plane;      /* z in camera space */
@@ -41,29 +41,30 @@ typedef struct vlCameraCompiled {
   bool plain;            /* perspective without distortion, or orthographic: every film point is valid */
   bool inclined;         /* perspective: lens and near/far planes use depth along z, not distance */
   double fx, fy, skew;   /* pixels */
-  double shape[2];       /* of the projection; FOV: w and 2 tan(w/2) */
-  double over_x, over_y; /* by how much a plane that closes on itself extends beyond its edges, for filters */
-  double limit2;         /* square of the valid disc's radius in the plane */
+  double shape[2];       /* shape numbers of the projection; for FOV: w and 2 tan(w/2) */
+  double over_x, over_y; /* how far a plane that wraps around extends beyond its edges, for filters */
+  double limit2;         /* squared radius of the plane's valid disc */
   vlDistortionMap distortion;
   double camera_from_world[12];
-  /* A lens whose aperture is not a plain disc: vl_lens_points samples it, before the loop over the rays. */
+  /* Set if the aperture is not a plain disc. Then vl_lens_points samples the aperture before the loop over the rays. */
   bool shaped;
   bool ahead;      /* lens and near/far planes use depth along z, not distance */
   bool vignetting; /* rays have weights */
-  vlBlades blades; /* none: count 0 */
+  vlBlades blades; /* polygonal aperture; count 0: none */
   const vlAperture *aperture;
   double lens_turn[2];    /* cosine and sine of the aperture image's rotation */
   double inv_ratio;       /* inverse of the aperture's width ratio */
-  const vlOptics *optics; /* lens of many elements; rays are made by optics.hot.c */
-  double pitch;           /* side of a pixel on the film of optics, scene units */
-  double eye_circle;      /* omnidirectional stereo: radius of the eye circle, signed; 0: none */
+  const vlOptics *optics; /* lens of many elements or null; optics.hot.c makes its rays */
+  double pitch;           /* with optics: side of a pixel on the film, scene units */
+  double eye_circle;      /* omnidirectional stereo: radius of the eye circle, < 0 for the left eye; 0: none */
   vlCameraTime when;
 } vlCameraCompiled;
 
 /* All arrays hold VL_PAD(n) elements. Elements past n may hold anything; the results for them are undefined. A film
- * position is pixel + film: the integer pixel (column, row from the top left) and the offset from that pixel's top
- * left corner, kept apart so that large images lose no precision. film may lie outside [0, 1) with wide filters.
- * lens_u, lens_v in [0, 1): not read without a lens. time in [0, 1): fraction of the shutter interval. */
+ * position is pixel + film. pixel is the integer column and row, counted from the top left; film is the offset from
+ * that pixel's top left corner. The two are stored separately so that large images lose no precision. With wide filters
+ * film may lie outside [0, 1). lens_u and lens_v are in [0, 1) and are not read without a lens. time in [0, 1) is the
+ * fraction of the shutter interval. */
 typedef struct vlCameraSamples {
   const float *film_x, *film_y;
   const int32_t *pixel_x, *pixel_y;
@@ -71,10 +72,11 @@ typedef struct vlCameraSamples {
   const float *time;
 } vlCameraSamples;
 
-/* World space; d normalised; [t_min, t_max] from the near and far planes (0 and infinity without); time in seconds.
- * valid (may be null): 1, or 0 if the film point lies outside the camera's domain; then t_max is -1, so that the ray
- * hits nothing, and d is an arbitrary unit vector. weight (may be null): factor on the radiance along the ray;
- * written only if the camera is `weighted`. 0 with valid 1: a part of the lens blocks the ray (t_max is -1 too). */
+/* Rays in world space. d is normalised. The near and far planes give [t_min, t_max]; without them it is [0, infinity).
+ * time is in seconds. valid (may be null) is 1, or 0 if the film point lies outside the camera's domain. An invalid ray
+ * has t_max = -1, so that it hits nothing, and an arbitrary unit vector d. weight (may be null) is a factor on the
+ * radiance along the ray; it is written only if vl_camera_weighted. If weight is 0 and valid is 1, a part of the lens
+ * blocks the ray; then t_max is -1 too. */
 typedef struct vlCameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
   float *t_min, *t_max;
@@ -95,22 +97,22 @@ typedef struct vlCameraPoints {
 
 typedef struct vlCameraKernels {
   void (*rays)(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r);
-  /* Film positions in x, y (pixels) to world-space rays. */
+  /* Maps film positions x, y (pixels) to world-space rays. */
   void (*unproject)(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *pixels, vlCameraPoints *points);
-  /* World-space points to film positions; z is the depth. */
+  /* Maps world-space points to film positions x, y (pixels); pixels->z is the depth. */
   void (*project)(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *points, vlCameraPixels *pixels);
 } vlCameraKernels;
 
-/* One table per instruction set; all give the same bits. */
+/* There is one table per instruction set. All tables give the same bits. */
 VL_KERNEL_TABLE(vlCameraKernels, vl_camera)
 
-/* Whether rays may have weights other than 1. */
+/* Returns whether rays may have weights other than 1. */
 static inline bool vl_camera_weighted(const vlCameraCompiled *c) {
   return c->vignetting || c->optics;
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);
-/* Changes the clock: rays then carry the time (seconds - origin) * scale. */
+/* Changes the clock: the time of rays becomes (seconds - origin) * scale. */
 void vl_camera_retime(vlCameraCompiled *c, double origin, double scale);
 
 #endif

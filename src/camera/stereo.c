@@ -39,7 +39,8 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
   return VL_OK;
 }
 
-/* Translation to the right by x, then rotation to the right by an angle whose tangent is `turn`; camera space. */
+/* Returns the pose of an eye in camera space: a translation to the right by x and a rotation to the right by the angle
+ * whose tangent is `turn`. */
 static vlMat4 eye_pose(double x, double turn) {
   vlMat4 m = vl_mat4_identity();
   double k = 1.0 / sqrt(1.0 + turn * turn);

@@ -62,7 +62,7 @@ static vlResult radius(const vlCameraDef *def, double focal_mm, vlCamera *camera
   const vlLensDef *d = &def->lens;
   if (vl_is_unset(d->f_number)) return VL_OK;
   if (vl_is_unset(focal_mm)) {
-    if (given(d->iso)) return VL_OK; /* affects exposure alone */
+    if (given(d->iso)) return VL_OK; /* the ISO value affects only the exposure */
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: f_number %g needs the focal length in millimetres (focal_mm or sensor_width_mm); or give "
                    "lens_radius",

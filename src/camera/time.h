@@ -1,5 +1,5 @@
-/* camera/time.h: time, first of the four factors of a camera: when a sample's light arrives (shutter, its curve,
- * rolling readout), and the camera's pose then. Part of the compiled camera.
+/* camera/time.h: time, the first of the four factors of a camera: when a sample's light arrives (shutter, shutter
+ * curve, rolling readout), and the camera's pose then. Part of the compiled camera.
  *
  *     random number -> curve -> fraction of the exposure -> seconds, later for rows that are read later -> pose */
 #ifndef CAMERA_TIME_H
@@ -13,16 +13,17 @@ typedef struct vlCameraTime {
   bool moves;                     /* rays are made in camera space; `motion` transforms them to the world */
   double per_column, per_row;     /* seconds by which a pixel's exposure begins after its neighbour's */
   double first_column, first_row; /* the pixel that is read first */
-  double pose_open, pose_rate;    /* fraction of the motion: (when - pose_open) * pose_rate, clamped to [0, 1] */
-  vlMotion motion;                /* of world_from_camera */
-  uint32_t points;                /* of the shutter's curve; 0: fully open throughout */
-  /* share: share of the light before `at`. */
+  double pose_open, pose_rate;    /* fraction of the motion at time t: (t - pose_open) * pose_rate, clamped to [0, 1] */
+  vlMotion motion;                /* motion of world_from_camera */
+  uint32_t points;                /* number of points of the shutter's curve; 0: fully open throughout */
+  /* The curve's points: at is the fraction of the exposure time, value the opening, share the fraction of the light
+   * that arrives before at. */
   double at[VL_SHUTTER_POINTS], value[VL_SHUTTER_POINTS], share[VL_SHUTTER_POINTS];
-  double area; /* under the curve */
+  double area; /* area under the curve */
 } vlCameraTime;
 
-/* The fraction of the exposure time after which the share u of its light has arrived: the inverse of the curve's
- * integral, a parabola between two points. */
+/* Returns the fraction of the exposure time after which the fraction u of the light has arrived. This is the inverse of
+ * the curve's integral, which is a parabola between two points. */
 static inline double vl_shutter_share(const vlCameraTime *t, double u) {
   if (t->points == 0) return u;
   uint32_t k = 0;

@@ -20,7 +20,8 @@ static inline Moved move_ray(vlAffine a, double ox, double oy, double oz, double
   return r;
 }
 
-/* Camera space to the world, each ray at its own time; t_min and t_max are rescaled to stay at the same points. */
+/* Transforms each ray from camera space to the world at the ray's own time. t_min and t_max are rescaled so that they
+ * denote the same points. */
 static void move_chunk(const vlCameraTime *time, uint32_t count, const double *when, const vlCameraRays *r,
                        uint32_t first) {
   const vlCameraTime copy = *time, *t = &copy;

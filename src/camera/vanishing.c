@@ -9,8 +9,8 @@
 #include "camera/points.h"
 #include "velo/vanishing.h"
 
-/* Vanishing points beyond this many focal lengths are at infinity: within 1e-9 radians of parallel to the view
- * plane. */
+/* Vanishing points farther than this many focal lengths count as infinite: their directions are within 1e-9 radians of
+ * parallel to the view plane. */
 static const double infinitely_far = 1e9;
 static const double agreement = 1e-6; /* in focal lengths; values written with 7 digits agree */
 

@@ -47,7 +47,7 @@ static vlResult read_bop(const vlCameraFile *file, const json_t *tree, vlCameraR
   json_t *image;
   if (vl_camera_has(tree, "fx")) return read_one(file, tree, record);
   record->frames = 0;
-  /* a frame is first meant by its name, the number of its image */
+  /* the frame option first means a frame's name, which is the number of its image */
   if (!file->ordinal && file->def->frame && json_is_object(json_object_get(tree, file->def->frame)))
     chosen = file->def->frame;
   json_object_foreach((json_t *)tree, name, image) {

@@ -18,7 +18,7 @@ typedef struct {
   uint32_t line;
 } Lines;
 
-/* The next line, zero-terminated; null at the end. Skips comments. */
+/* Returns the next line that is not a comment, zero-terminated, or null at the end. */
 static char *next_line(Lines *lines) {
   while (lines->at < lines->end) {
     char *line = lines->at, *stop = memchr(line, '\n', (size_t)(lines->end - line));
@@ -72,7 +72,7 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   return VL_OK;
 }
 
-/* Reads the camera with this id; id null: the first camera. */
+/* Reads the camera with this id, or the first camera if id is null. */
 static vlResult read_cameras(const vlCameraFile *file, const char *path, const double *id, vlCameraRecord *record) {
   char *text;
   size_t size;
@@ -216,7 +216,7 @@ bool vl_colmap_is_name(const char *path) {
   return false;
 }
 
-/* Whether the path is a folder; a missing path counts as one unless its name is that of a model's file. */
+/* Returns whether the path is a folder. A missing path counts as a folder unless it has the name of a model file. */
 static bool is_folder(const char *path) {
   struct stat status;
   if (stat(path, &status) == 0) return S_ISDIR(status.st_mode);
@@ -351,5 +351,6 @@ vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *
   return result;
 }
 
-/* A model is two files: vl_camera_read and vl_camera_write call its functions by themselves. */
+/* The row has no functions: a model consists of two files, so vl_camera_read and vl_camera_write call COLMAP's
+ * functions directly. */
 const vlCameraFormat vl_format_colmap = {.name = "colmap"};

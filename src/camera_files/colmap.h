@@ -1,10 +1,11 @@
-/* camera_files/colmap.h: what the text and the binary form of COLMAP's models share. */
+/* camera_files/colmap.h: functions shared by the readers and writers of COLMAP's text and binary models. */
 #ifndef CAMERA_FILES_COLMAP_H
 #define CAMERA_FILES_COLMAP_H
 
 #include "camera_files/files.h"
 
-/* Reads a file of a model as text; a .bin is turned into it. A zero byte follows; released with vl_free. */
+/* Reads a file of a model as text that ends with a zero byte. A .bin file is converted to the text form. The caller
+ * releases the text with vl_free. */
 vlResult vl_colmap_load(const vlCameraFile *file, const char *path, char **text, size_t *size);
 
 /* A camera and its image, to be written. */

@@ -1,5 +1,5 @@
 /* camera_files/colmap_bin.c: COLMAP's binary model, cameras.bin and images.bin: little-endian records with the same
- * numbers as the text form. Reading turns them into that text, in 17 digits, which gives the same bits. */
+ * numbers as the text form. The reader converts them to the text form with 17 digits, which keeps all bits. */
 #include "camera_files/colmap.h"
 
 #include <string.h>
@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/text.h"
 
-/* COLMAP's models by their number, and how many parameters they have. */
+/* COLMAP's camera models, indexed by number, with their counts of parameters. */
 static const struct {
   const char *name;
   uint32_t parameters;

@@ -43,7 +43,7 @@ static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found, v
                          vl_camera_formats[wish]->name);
 }
 
-/* Whether the text is meant as a tree: an error of its parser is then the file's. */
+/* Returns whether the text looks like a tree format. Then the error of that format's parser is reported. */
 static bool is_meant_as_tree(const char *path, const char *text) {
   const char *first = text + strspn(text, " \t\r\n");
   return strchr("{[<", *first) || strncmp(first, "%YAML", 5) == 0 || strncmp(first, "---", 3) == 0 ||
@@ -51,7 +51,7 @@ static bool is_meant_as_tree(const char *path, const char *text) {
          vl_ends_with(path, ".json");
 }
 
-/* The error for a file of no known kind: it blames no format. */
+/* Reports that the file is of no known kind, without naming a format. */
 static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size) {
   if (size >= 8 && memcmp(text, "PXR-USDC", 8) == 0)
     return vl_camera_wrong(file, "USD's binary form; velo reads its text form: usdcat in.usd -o out.usda");
@@ -61,14 +61,14 @@ static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size)
   return vl_camera_wrong(file, "no camera of a known dialect (docs/camera-files.md has the table)");
 }
 
-/* The text or the tree of a file that is being read: the other is null. */
+/* The text or the tree of a file that is being read; one of the two is null. */
 typedef struct {
   const json_t *tree;
   const char *text;
   size_t size;
 } Source;
 
-/* Reads one camera, or each if there is a sink. */
+/* Reads one camera, or all cameras if there is a sink. */
 static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const Source *source, const vlCameraSink *sink,
                             vlCameraRecord *record) {
   const vlCameraFormat *format = vl_camera_formats[dialect];

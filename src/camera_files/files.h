@@ -10,7 +10,8 @@
 #include "camera/parts.h"
 #include "velo/camera_file.h"
 
-/* Where the values of a tree are in the file: line << 32 | column of each, a value before those in it. */
+/* The position of each value of a tree in the file, as line << 32 | column. A value precedes the values that it
+ * contains. */
 typedef struct vlCameraPlaces {
   const json_t *root;
   VL_ARRAY(uint64_t) at;
@@ -22,46 +23,47 @@ typedef struct vlCameraFile {
   const char *path, *dialect; /* name of the dialect, for messages */
   const vlCameraFileDef *def;
   vlError *error;
-  vlCameraPlaces *places;  /* may be null: errors have no line */
-  const uint32_t *ordinal; /* the camera to read by its number, whatever the def says; may be null */
+  vlCameraPlaces *places;  /* may be null; then errors have no line */
+  const uint32_t *ordinal; /* number of the camera to read, which overrides the def; may be null */
 } vlCameraFile;
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Like vl_camera_wrong, with a location. line 0: not known. */
+/* Like vl_camera_wrong, with a location. line is 0 if it is unknown. */
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* The error is at object[key], or at the object itself if key is null or not there. */
+/* Reports an error at object[key], or at the object itself if key is null or missing. */
 vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Parses JSON, YAML or XML (FileStorage's becomes a tree of the same form; vl_camera_xml's elements for others),
- * distinguished by the first character. A list is wrapped: {"[]": list}.
- * Records the places of the values where the file wants them. */
+/* Parses JSON, YAML or XML, which the first character tells apart. FileStorage's XML becomes a tree of the same form as
+ * its YAML; other XML becomes the elements of vl_camera_xml. A list at the top level is wrapped: {"[]": list}. If
+ * file->places is set, the positions of the values are recorded there. */
 vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
 vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t size, json_t **tree);
-/* Records the next value's place; false: no memory. */
+/* Records the position of the next value. Returns false if out of memory. */
 bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column);
-/* Gives an error without a place that of the first field that its message names in quotes, or of the whole. */
+/* Adds a position to an error that has none: the position of the first field that the message quotes, or of the
+ * top-level value. */
 void vl_camera_place_error(const vlCameraFile *file);
 void vl_camera_places_free(vlCameraFile *file);
 
-/* Parses XML. Below the root (unless the root is wanted itself), only elements with the wanted tags are kept; null
- * ends the list; a null list: all are kept, and their text ("$"). */
+/* Parses XML. Below the root, only elements whose tags are in the list `wanted` are kept, unless the list contains the
+ * root itself. Null ends the list. If the list is null, all elements are kept with their text ("$"). */
 vlResult vl_camera_xml(const vlCameraFile *file, const char *text, size_t size, const char *const *wanted,
                        json_t **tree);
-/* The tag of the root element, after declaration and comments; false: not XML. */
+/* Gets the tag of the root element, after declaration and comments. Returns false if the text is not XML. */
 bool vl_camera_xml_root(const char *text, char tag[64]);
-/* The first child element with this tag; null: there is none. */
+/* Returns the first child element with this tag, or null. */
 const json_t *vl_camera_child(const json_t *element, const char *tag);
-/* An error at an element. */
+/* Reports an error at an element. */
 vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Reads exactly count finite numbers from an element's text. */
 vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *element, double *values, uint32_t count);
-/* Reads one number from the child with this tag; *value is unchanged if it is not there, and an error if it is needed.
- */
+/* Reads one number from the child with this tag. If the child is missing, *value is unchanged, and it is an error if
+ * the number is required. */
 vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element, const char *tag, bool needed,
                                 double *value);
 
@@ -75,24 +77,27 @@ vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const 
 vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value);
 /* Reads the width or height of an image. */
 vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value);
-/* Sets the image's size if the file has none: the def's, or 720 rows with this aspect ratio (width / height). */
+/* Sets the image's size if the file has none. It is the size of the def, or else 720 rows with this aspect ratio (width
+ * / height). */
 vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord *record);
-/* Sets the image's size for a file that has none: the def's, or that of the first image that is there. The names
- * (null ends them) are relative to the file's folder. An error if there is neither. */
+/* Sets the image's size for a file that has none. It is the size of the def, or else of the first of the named images
+ * that exists. The names are relative to the file's folder, and null ends the list. It is an error if there is neither.
+ */
 vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *images, vlCameraRecord *record);
-/* Reads the size at two keys if both are there, else as vl_camera_size_beside without images. */
+/* Reads the image's size from two keys if both exist. Otherwise sets the size like vl_camera_size_beside without
+ * images. */
 vlResult vl_camera_sides(const vlCameraFile *file, const json_t *object, const char *width, const char *height,
                          vlCameraRecord *record);
 /* Reads a list of two numbers, width and height. */
 vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, const char *key, vlCameraRecord *record);
-/* Reads least to most numbers from a list, a list of lists, or FileStorage's {rows, cols, data}. */
+/* Reads between `least` and `most` numbers from a list, a list of lists, or FileStorage's {rows, cols, data}. */
 vlResult vl_camera_numbers(const vlCameraFile *file, const json_t *object, const char *key, double *values,
                            uint32_t least, uint32_t most, uint32_t *count);
-/* Parses the next number of a text, after blanks and commas; *end is text if there is none. */
+/* Parses the next number of a text, after blanks and commas. If there is no number, *end is text. */
 double vl_camera_parse(const char *text, char **end);
-/* The string at key; null if it is missing or not a string. */
+/* Returns the string at key, or null if it is missing or not a string. */
 const char *vl_camera_text(const json_t *object, const char *key);
-/* Whether the camera or pose with this index and name (may be null) is the requested one. */
+/* Returns whether the camera or pose with this index and name is the requested one. The name may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
 void vl_camera_name(vlCameraRecord *record, const char *name);
 
@@ -104,7 +109,7 @@ typedef struct vlCameraText {
   bool failed; /* out of memory */
 } vlCameraText;
 
-/* What a dialect can express besides fx, fy, cx, cy. */
+/* Flags: the properties that a dialect can express besides fx, fy, cx, cy. */
 enum {
   VL_HOLDS_POSE = 1,
   VL_HOLDS_SCALE = 2, /* a pose that scales or mirrors */
@@ -123,34 +128,35 @@ void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count);
 /* Appends a quoted string, for JSON and YAML. */
 void vl_camera_put_string(vlCameraText *text, const char *string);
-/* VL_OK if the field is absent or may be dropped, else an error that names it. */
+/* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns an error that names the
+ * field. */
 vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool present);
-/* Whether the field is in the list of fields that may be dropped. */
+/* Returns whether the field is in the list of fields that may be dropped. */
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
-/* Refuses everything that the bits `holds` do not allow; also makes *camera from the record. */
+/* Makes *camera from the record. Returns an error for any property that the flags `holds` do not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera);
-/* The error that the dialect has no such projection, or no such distortion of it. */
+/* Reports that the dialect cannot express the def's projection, or the distortion of that projection. */
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
-/* The distortion as OpenCV's 14 coefficients, zeros after *count (0, 4, 5, 8, 12, 14). false: the model is not one
- * of OpenCV's. */
+/* Converts the distortion to OpenCV's 14 coefficients. *count is 0, 4, 5, 8, 12 or 14; the coefficients after it are 0.
+ * Returns false if the model is not one of OpenCV's. */
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
 /* ---- lenses --------------------------------------------------------------------------------------------------------
  */
 
-/* Sets fx, fy, cx, cy of a convention whose first pixel has its centre at (0, 0). */
+/* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
-/* Sets OpenCV's distortion; count is rounded up to one that OpenCV has, with zeros. */
+/* Sets OpenCV's distortion. Zeros are appended up to the next number of coefficients that OpenCV allows. */
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
 /* Sets OpenCV's fisheye: k1 to k4. */
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
-/* The families of lenses that calibration tools have names for. */
+/* The lens models that calibration tools name. */
 typedef enum vlLensFamily {
   VL_LENS_PINHOLE,
   VL_LENS_OPENCV,  /* k has count coefficients */
   VL_LENS_FISHEYE, /* k1 to k4 */
   VL_LENS_FOV,     /* shape[0] */
-  VL_LENS_UNIFIED, /* shape[0]; OpenCV's distortion: count may be 0 */
+  VL_LENS_UNIFIED, /* shape[0], and OpenCV's distortion, whose count may be 0 */
   VL_LENS_EUCM,
   VL_LENS_DOUBLE_SPHERE,
   VL_LENS_OTHER
@@ -162,32 +168,35 @@ vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_
 
 void vl_rotation_from_vector(const double v[3], double r[9]);
 void vl_rotation_to_vector(const double r[9], double v[3]);
-/* From w x y z; false: the length is 0 or not finite. */
+/* Converts a quaternion w x y z to a rotation. Returns false if its length is 0 or not finite. */
 bool vl_rotation_from_quaternion(const double q[4], double r[9]);
 void vl_rotation_to_quaternion(const double r[9], double q[4]);
-/* Camera-from-world rotation and translation: stored in the def's pose, and read from a camera. */
+/* Both functions use camera-from-world rotation and translation. The first sets the def's pose; the second reads the
+ * pose of a camera. */
 void vl_camera_set_pose(vlCameraDef *def, const double r[9], const double t[3]);
 void vl_camera_get_pose(const vlCamera *camera, double r[9], double t[3]);
-/* Sets the pose from a row-major 4 x 4 matrix: world from camera, or camera from world. false: singular. */
+/* Sets the pose from a row-major 4 x 4 matrix, world from camera or camera from world. Returns false if the matrix is
+ * singular. */
 bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world);
 void vl_camera_set_origin(vlCameraDef *def);
-/* Converts a world-from-camera matrix between axes x right, y up, z back and velo's: negates columns y and z. Its
- * own inverse. */
+/* Converts a world-from-camera matrix between the camera axes x right, y up, z back and velo's axes, in either
+ * direction. It negates columns y and z. */
 void vl_camera_flip_axes(const double m[16], double result[16]);
-/* The same for other axes: columns x, y, z are multiplied by 1 or -1. */
+/* The same for other camera axes: multiplies columns x, y, z by the given factors, 1 or -1. */
 void vl_camera_flip_columns(const double m[16], double x, double y, double z, double result[16]);
 
 /* ---- dialects ---------------------------------------------------------------------------------------------------- */
 
 typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record);
-/* Reads from the file's text. */
+/* A function that reads a camera from the file's text. */
 typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record);
 typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text);
 
-/* A dialect: one row, defined at the end of its own file. */
+/* A row of the table of dialects. Each row is defined at the end of the dialect's own file. */
 typedef struct vlCameraFormat {
   const char *name;
-  /* Whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect, by what no other dialect has. */
+  /* Return whether a tree (JSON, YAML, FileStorage's XML) or a text is in this dialect. They look for content that no
+   * other dialect has. */
   bool (*is_tree)(const json_t *tree);
   bool (*is_text)(const char *text, size_t size);
   vlCameraReadTree *read;
@@ -202,14 +211,14 @@ extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_
     vl_format_basalt, vl_format_orbslam, vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop,
     vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp;
 
-/* Whether an object has the key; whether its value at the key is an object (or list) that has the second key, for a
- * list in its first item. */
+/* The first returns whether an object has the key. The second returns whether the value at the key has the second key;
+ * if that value is a list, its first item is tested. */
 bool vl_camera_has(const json_t *object, const char *key);
 bool vl_camera_has_in(const json_t *object, const char *key, const char *inner);
 
 vlCameraReadTree vl_camera_read_velo, vl_camera_read_opencv, vl_camera_read_kalibr;
 vlCameraWriteText vl_camera_write_velo;
-/* The camera as vl_camera_write_velo writes it, without the image of its aperture and the surfaces of its lens. */
+/* Appends the camera in the form of vl_camera_write_velo, but without the aperture image and the lens surfaces. */
 void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text);
 vlResult vl_camera_read_colmap(const vlCameraFile *file, vlCameraRecord *record);
 
@@ -218,7 +227,7 @@ typedef struct vlCameraSink {
   vlResult (*add)(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t index);
   void *data;
 } vlCameraSink;
-/* Reads all cameras of a file that is not COLMAP's. */
+/* Reads all cameras of a file of any dialect except COLMAP's. */
 vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink);
 vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record);
 

@@ -23,7 +23,7 @@ static bool is_identity(const double m[16]) {
   return true;
 }
 
-/* Whether the matrix is rotation and translation only, up to rounding. */
+/* Returns whether the matrix consists of a rotation and a translation only, up to rounding. */
 static bool is_rigid(const double m[16]) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
@@ -112,7 +112,7 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
   } else if (def->distortion != VL_DISTORTION_NONE) {
     return false;
   }
-  /* the number given, or the smallest that includes all nonzero coefficients */
+  /* the given number of coefficients, or the smallest that includes all nonzero ones */
   uint32_t last = def->distortion == VL_DISTORTION_OPENCV ? def->distortion_count : 0;
   for (uint32_t i = 0; i < 14; i++)
     if (k[i] != 0.0 && i + 1 > last) last = i + 1;

@@ -12,7 +12,7 @@
 typedef struct {
   const char *name;
   vlProjection projection;
-  uint32_t shapes; /* numbers before fu fv pu pv */
+  uint32_t shapes; /* count of the numbers before fu fv pu pv */
 } Model;
 static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
                                {"omni", VL_PROJECTION_UNIFIED, 1},
@@ -90,7 +90,7 @@ static uint32_t cameras_of(const json_t *tree) {
   return count;
 }
 
-/* Whether the poses are those against the IMU: the chain from camera to camera is not there. */
+/* Returns whether the poses are relative to the IMU, because the chain from camera to camera is missing. */
 static bool is_by_imu(const json_t *tree, uint32_t cameras) {
   bool chain = cameras > 1, imu = true;
   for (uint32_t i = 0; i < cameras; i++) {

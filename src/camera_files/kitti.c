@@ -7,7 +7,7 @@
 
 #include "camera_files/lines.h"
 
-/* The numbers after a key, "P2:"; null ends them in `found`. */
+/* The numbers after a key such as "P2:". An entry with a null key ends the list `found`. */
 typedef struct {
   char key[16];
   double values[12];

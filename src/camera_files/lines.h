@@ -1,4 +1,4 @@
-/* camera_files/lines.h: files of plain lines. */
+/* camera_files/lines.h: reads text files line by line. */
 #ifndef CAMERA_FILES_LINES_H
 #define CAMERA_FILES_LINES_H
 
@@ -6,16 +6,16 @@
 
 typedef struct vlCameraLines {
   const char *at, *end; /* the unread text */
-  char text[4096];      /* the line, without blanks at its ends; a longer one is cut */
+  char text[4096];      /* the line without blanks at its ends, truncated to fit */
   uint32_t number, indent;
 } vlCameraLines;
 
-/* The next line that is neither empty nor a comment (#); false at the end. */
+/* Reads the next line that is neither empty nor a comment (#). Returns false at the end of the text. */
 bool vl_camera_next_line(vlCameraLines *lines);
-/* An error at a character of the line. */
+/* Reports an error at a character of the line. */
 vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines, const char *at, const char *format,
                               ...) __attribute__((format(printf, 4, 5)));
-/* Parses finite numbers up to the end of the line; anything else there is an error at its column. */
+/* Parses finite numbers up to the end of the line. Any other text is an error at its column. */
 vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *lines, const char *from, double *values,
                                 uint32_t least, uint32_t most, uint32_t *count);
 

@@ -98,8 +98,7 @@ static vlResult decompose(const vlCameraFile *file, const vlMat4 *projection, vl
   for (int i = 0; i < 16; i++) p[i] /= fabs(scale);
   double forward = flat ? 1.0 : scale > 0.0 ? 1.0 : -1.0;
   if (flat && scale < 0.0) return vl_camera_wrong(file, "%s: \"projection_matrix\" mirrors w", file->dialect);
-  /* orthographic: forward is where clip.z increases from the near plane; all three APIs define reversed z against
-   * that */
+  /* orthographic: forward is the direction in which clip.z increases; with reversed z it decreases */
   if (flat) forward = p[10] < 0.0 ? -1.0 : 1.0;
   if (p[4] != 0.0 || p[8] != 0.0 || p[9] != 0.0 || (!flat && (p[3] != 0.0 || p[7] != 0.0)))
     return vl_camera_wrong(file, "%s: \"projection_matrix\" is not of the form of a camera's", file->dialect);
@@ -162,7 +161,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCa
   if (result == VL_OK) result = read_matrix(&own, tree, "projection_matrix", transposed, &projection);
   if (result == VL_OK) result = read_matrix(&own, tree, "view_matrix", transposed, &view);
   if (result == VL_OK) result = decompose(&own, &projection, view, down, zero_to_one ? 0.0 : -1.0, d);
-  /* the camera's own planes, because the matrix may have planes only because it must */
+  /* these fields give the camera's planes: a matrix must have planes even if the camera has none */
   if (result == VL_OK) result = vl_camera_optional(&own, tree, "near_plane", &d->near_plane);
   if (result == VL_OK && json_is_null(json_object_get(tree, "far_plane")))
     d->far_plane = INFINITY;
@@ -241,7 +240,7 @@ static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *r
   return VL_OK;
 }
 
-/* An API that is not known is OpenGL's: the reader names those that are. */
+/* A file with an unknown API is passed to OpenGL's reader, whose error lists the known APIs. */
 static bool is_opengl(const json_t *tree) {
   const char *api = vl_camera_text(tree, "graphics_api");
   return api && strcmp(api, "vulkan") != 0 && strcmp(api, "d3d") != 0;

@@ -8,7 +8,7 @@
 
 #include "camera_files/files.h"
 
-/* A number, or the text of one. */
+/* Converts a JSON number, or a text that contains a number. */
 static bool number_of(const json_t *value, double *number) {
   const char *text = json_string_value(value);
   char *end;
@@ -118,7 +118,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree, con
   return result == VL_OK ? read_lens(file, intrinsic, d) : result;
 }
 
-/* The item of a list with this id; ids are text or numbers. */
+/* Returns the item of a list with this id. Ids are text or numbers. */
 static const json_t *with_id(const json_t *list, const char *key, const json_t *id) {
   const json_t *item;
   size_t i;
@@ -144,13 +144,13 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   if (result == VL_OK) result = numbers(file, transform, "rotation", r, 9);
   if (result == VL_OK) result = numbers(file, transform, "center", center, 3);
   if (result != VL_OK) return result;
-  /* by columns camera from world is by rows world from camera */
+  /* the column-major matrix camera from world equals the row-major matrix world from camera */
   for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : center[i / 4];
   vl_camera_set_matrix(&record->camera, m, false);
   return VL_OK;
 }
 
-/* The views that have a pose; without any, all of them. */
+/* Reads the views that have a pose, or all views if none has one. */
 static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *poses = json_object_get(tree, "poses"), *view, *chosen = NULL;
   size_t i;

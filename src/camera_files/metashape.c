@@ -73,7 +73,7 @@ static vlResult set_type(const vlCameraFile *file, const json_t *element, const 
   return VL_OK;
 }
 
-/* The adjusted calibration of a sensor, or the first; its size is the sensor's. */
+/* Reads the adjusted calibration of a sensor, or else its first one. The image's size is that of the sensor. */
 static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor, vlCameraRecord *record) {
   const json_t *child, *calibration = NULL, *size = vl_camera_child(sensor, "resolution");
   vlCameraDef *d = &record->camera;
@@ -117,7 +117,7 @@ typedef struct {
   uint32_t count;
 } Search;
 
-/* Cameras may be in groups. One without <transform> was not aligned: it is none. */
+/* Cameras may be in groups. A camera without <transform> was not aligned and is skipped. */
 static void search(Search *s, const json_t *list, int depth) {
   const json_t *camera;
   size_t i;

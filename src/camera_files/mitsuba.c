@@ -29,7 +29,7 @@ static uint32_t line_of(const json_t *element) {
   return (uint32_t)json_number_value(json_object_get(element, "#"));
 }
 
-/* Whether two names are equal up to case and underscores. */
+/* Returns whether two names are equal except for case and underscores. */
 static bool same(const char *a, const char *b) {
   for (;; a++, b++) {
     while (*a == '_') a++;
@@ -39,7 +39,7 @@ static bool same(const char *a, const char *b) {
   }
 }
 
-/* An attribute's text, with $name replaced by its default. Null: missing. */
+/* Gets an attribute's text, with $name replaced by its default. The text is null if the attribute is missing. */
 static vlResult attribute(const Scene *scene, const json_t *element, const char *key, const char **text) {
   const json_t *item;
   size_t i;
@@ -78,7 +78,7 @@ static vlResult numbers(const Scene *scene, const json_t *element, const char *k
                             key, vl_short_text(tag_of(element)).text, count, count > 1 ? "s" : "");
 }
 
-/* The element with this name among the parameters of a sensor or film; null: none. */
+/* Returns the parameter of a sensor or film with this name, or null. */
 static const json_t *parameter(const json_t *parent, const char *name) {
   size_t i;
   const json_t *item;

@@ -7,7 +7,7 @@
 
 #include "math/elementary.h"
 
-/* The object that holds a key: a frame's own value overrides the file's. */
+/* Returns the object that holds a key. The value in a frame overrides the value of the file. */
 static const json_t *holder(const json_t *frame, const json_t *tree, const char *key) {
   return json_object_get(frame, key) ? frame : tree;
 }
@@ -76,7 +76,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
   if (result == VL_OK) result = read_lens(file, frame, tree, d);
   if (result == VL_OK) result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
   if (result != VL_OK) return result;
-  /* the angles are those of the focal length, whatever the lens does; fl_x has the last word */
+  /* the angles give the focal length without distortion; fl_x overrides them */
   if (vl_is_unset(d->fx) && !vl_is_unset(angle_x)) d->fx = 0.5 * d->width / vl_precise_tan(0.5 * angle_x);
   if (vl_is_unset(d->fy) && !vl_is_unset(angle_y)) d->fy = 0.5 * d->height / vl_precise_tan(0.5 * angle_y);
   if (vl_is_unset(d->fx) && vl_is_unset(d->fy))

@@ -120,7 +120,7 @@ static const char *const stereo_names[][4] = {
 enum { STEREO_NAMES = sizeof stereo_names / sizeof *stereo_names };
 #define NAME_IN(tree, names) name_in(tree, names, sizeof(names) / sizeof *(names))
 
-/* The first of the names that the tree has; the first of all if it has none. */
+/* Returns the first name that is a key of the tree, or the first name if none is. */
 static const char *name_in(const json_t *tree, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (vl_camera_has(tree, names[i])) return names[i];
@@ -172,7 +172,7 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlC
   vlResult result = read_size(file, tree, record);
   if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
   if (result == VL_OK) result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
-  if (result == VL_OK && vl_camera_has(tree, "xi")) { /* the omnidirectional model */
+  if (result == VL_OK && vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
     double xi = 0.0;
     bool list = !json_is_number(json_object_get(tree, "xi"));
     result = list ? vl_camera_numbers(file, tree, "xi", &xi, 1, 1, NULL) : vl_camera_number(file, tree, "xi", &xi);

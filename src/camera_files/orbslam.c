@@ -11,7 +11,7 @@ static const char *key_of(char key[64], const char *prefix, const char *name) {
   return key;
 }
 
-/* k1 k2 p1 p2 k3 ... by their names; *count: up to the last that is there. */
+/* Reads k1 k2 p1 p2 k3 ... by name. *count includes the last one that exists. */
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, const char *prefix, bool fisheye,
                           vlCameraDef *d) {
   static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};

@@ -1,5 +1,5 @@
-/* camera_files/places.c: the line and column of each value of a tree. The parsers record them in the tree's own order,
- * a value before those in it; a lookup counts the values before the one that it wants. */
+/* camera_files/places.c: the line and column of each value of a tree. The parsers record the positions in the tree's
+ * order, with each value before the values that it contains. A lookup counts the values before the wanted one. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -19,7 +19,7 @@ void vl_camera_places_free(vlCameraFile *file) {
   file->places = NULL;
 }
 
-/* Counts the values before the wanted one; true: found. */
+/* Counts the values before the wanted one. Returns true when it is found. */
 static bool count_to(const json_t *node, const json_t *wanted, size_t *index) {
   if (node == wanted) return true;
   ++*index;

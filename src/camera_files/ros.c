@@ -37,7 +37,7 @@ typedef struct {
   vlCameraLines lines;
 } Ini;
 
-/* Reads numbers from the next lines, least to most of them; the line after the last is not taken. */
+/* Reads between `least` and `most` numbers from the next lines. The line after the last number stays unread. */
 static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t least, uint32_t most, uint32_t *count) {
   uint32_t line = ini->lines.number;
   *count = 0;
@@ -61,7 +61,7 @@ static vlResult ini_numbers(Ini *ini, const char *key, double *values, uint32_t 
   return vl_camera_wrong_at(ini->file, line, 1, "ros: \"%s\" holds %u numbers; it must hold %u", key, *count, least);
 }
 
-/* The sections but [image] and [externals] are cameras. */
+/* Every section except [image] and [externals] is a camera. */
 static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   Ini ini = {.file = file, .lines = {.at = text, .end = text + size}};
   vlCameraDef *d = &record->camera;

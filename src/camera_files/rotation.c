@@ -20,7 +20,7 @@ void vl_rotation_from_vector(const double v[3], double r[9]) {
   r[6] = c * x * z - s * y, r[7] = c * y * z + s * x, r[8] = 1.0 - c * (x * x + y * y);
 }
 
-/* Through the quaternion, which is well conditioned at every angle. */
+/* Converts through the quaternion, which is well conditioned at every angle. */
 void vl_rotation_to_vector(const double r[9], double v[3]) {
   double q[4];
   vl_rotation_to_quaternion(r, q);

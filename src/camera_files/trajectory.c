@@ -27,7 +27,7 @@ vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, con
                     place->frame, *name ? " (" : "", vl_short_text(name).text, *name ? ")" : "", message);
 }
 
-/* What is wrong with a pose; null for a rotation and a translation. */
+/* Describes what is wrong with a pose. Returns null if the pose is a rotation and a translation. */
 static const char *pose_fault(const double m[16]) {
   for (int i = 0; i < 12; i++)
     if (!isfinite(m[i])) return "the pose holds a value that is not finite";
@@ -142,7 +142,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   vlResult result = vl_file_read_given(file->context, file->path, false, &text, &size, file->error);
   if (result != VL_OK) return result;
   if (vl_camera_dialect_of_text(text, size)) {
-    single = true; /* KITTI's calib.txt is no list of poses */
+    single = true; /* KITTI's calib.txt is not a list of poses */
   } else if (is_tree(file->path, text)) {
     result = read_tree(t, file, text, size, &single);
   } else if (is_list(file->path, text)) {

@@ -8,7 +8,7 @@
 typedef struct vlStoredFrame {
   double pose[12]; /* world from camera, three rows */
   double time;
-  size_t name; /* offset among the names */
+  size_t name; /* offset of the frame's name in the list of names */
   int32_t camera;
   uint32_t line;
 } vlStoredFrame;
@@ -20,7 +20,7 @@ struct vlTrajectory {
   VL_ARRAY(char) names;
 };
 
-/* A frame's location for messages: the file if it is not the one that was opened, the line, the frame. */
+/* A frame's location for messages: the file (if it is not the opened one), the line and the frame. */
 typedef struct vlFramePlace {
   const char *path;
   uint32_t line, frame;
@@ -29,10 +29,10 @@ typedef struct vlFramePlace {
 
 vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Finds a camera equal to this one except for pose and name, or adds it. *index: its index. */
+/* Finds a camera that is equal to this one except for pose and name, or adds this one. *index is its index. */
 vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, const vlCameraRecord *record,
                                   int32_t *index);
-/* Adds a frame; checks its pose. */
+/* Checks a frame's pose and adds the frame. */
 vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place, int32_t camera,
                            const double world_from_camera[16], double time);
 
@@ -42,7 +42,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
 
 vlResult vl_trajectory_read_csv(vlTrajectory *t, const vlCameraFile *file, char *text, size_t size);
 vlResult vl_trajectory_read_colmap(vlTrajectory *t, const vlCameraFile *file);
-/* Whether a path ends in the name of one of the files of a COLMAP model (colmap.c). */
+/* Returns whether a path ends in the name of a file of a COLMAP model. Defined in colmap.c. */
 bool vl_colmap_is_name(const char *path);
 vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *file, const json_t *tree, const char *text);
 vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *file, const json_t *tree);

@@ -54,12 +54,12 @@ static const struct {
 typedef struct Csv {
   vlTrajectory *trajectory;
   const vlCameraFile *file;
-  char separator; /* 0: blanks */
+  char separator; /* 0: columns are separated by blanks */
   uint32_t line;
   int columns, of[MOST_COLUMNS]; /* the Column of each field */
   bool has[COLUMNS], header;
   bool opengl, from_world;
-  bool euroc;       /* the header is EuRoC's: columns that it has besides are ignored */
+  bool euroc;       /* the header is EuRoC's: its other columns are ignored */
   double time_unit; /* seconds */
 } Csv;
 

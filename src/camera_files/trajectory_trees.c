@@ -5,7 +5,7 @@
 
 #include "camera_files/trajectory.h"
 
-/* The line of the n-th (from 0) occurrence of a key; 0: there are fewer. */
+/* Returns the line of occurrence n of a key, counted from 0. Returns 0 if there are fewer occurrences. */
 static uint32_t line_of_key(const char *text, const char *key, uint32_t n) {
   const char *at = strstr(text, key);
   for (uint32_t i = 0; at && i < n; i++) at = strstr(at + 1, key);
@@ -58,7 +58,7 @@ vlResult vl_trajectory_read_nerf(vlTrajectory *t, const vlCameraFile *from, cons
   return VL_OK;
 }
 
-/* Each camera, with its pose relative to the first. */
+/* Adds each camera as a frame, with its pose relative to the first camera. */
 vlResult vl_trajectory_read_kalibr(vlTrajectory *t, const vlCameraFile *from, const json_t *tree) {
   enum { MOST = 1024 };
   vlCameraFileDef def = *from->def;

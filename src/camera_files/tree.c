@@ -26,7 +26,8 @@ vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t co
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
 }
 
-/* Records the places of the values of a valid JSON text: whatever is no key, from its first character. */
+/* Records the positions of the values of a valid JSON text. The position of a value is its first character; keys have
+ * none. */
 static bool place_json(const vlCameraFile *file, const char *text, size_t size) {
   const char *end = text + size, *line_start = text;
   uint32_t line = 1;
@@ -67,7 +68,7 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
   size_t first = strspn(text, " \t\r\n");
   vlResult result;
   *tree = NULL;
-  /* .glb: a header of 12 bytes, then a JSON chunk: its length, "JSON", the text */
+  /* .glb: a header of 12 bytes, then a JSON chunk, which consists of its length, "JSON" and the text */
   if (size >= 20 && memcmp(text, "glTF", 4) == 0 && memcmp(text + 16, "JSON", 4) == 0) {
     const unsigned char *b = (const unsigned char *)text + 12;
     size_t length = (size_t)b[0] | (size_t)b[1] << 8 | (size_t)b[2] << 16 | (size_t)b[3] << 24;

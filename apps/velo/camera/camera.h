@@ -8,7 +8,7 @@
 extern const Choice dialect_choices[];
 #define CAMERA_SIZE_HELP "the image's size, for a file that has none"
 
-/* Whether the file is a scene by its name (or would be read as one for its camera). */
+/* Returns whether the file's name is that of a scene, whose camera is then read. */
 bool camera_is_scene(const char *path);
 /* Reads a camera file of any dialect, or the camera of a pbrt scene. When a file has several frames and none was
  * chosen, a note names the one taken. size: of --size, for files that have none; a file with another is an error.
@@ -16,7 +16,7 @@ bool camera_is_scene(const char *path);
  * reporting the error. */
 int camera_load(vlContext *context, const char *path, int dialect, const char *frame, const OptionValue *size,
                 const OptionValue *fallback, vlCameraRecord *record);
-/* The same, and makes the camera; warnings are reported. */
+/* Like camera_load, and also makes the camera. Reports warnings. */
 int camera_load_made(vlContext *context, const char *path, const Arguments *arguments, int frame_option,
                      int size_option, vlCameraRecord *record, vlCamera *camera);
 

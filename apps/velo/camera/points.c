@@ -27,7 +27,8 @@ typedef struct Lines {
   unsigned long bad; /* lines that were reported */
 } Lines;
 
-/* Reads exactly count numbers separated by commas or blanks. *at: where the first that is none begins. */
+/* Reads exactly count numbers separated by commas or blanks. *at is set to the start of the first word that is not a
+ * number. */
 static bool read_numbers(const char *text, double *values, int count, const char **at) {
   for (int i = 0; i < count; i++) {
     char *end;
@@ -41,7 +42,8 @@ static bool read_numbers(const char *text, double *values, int count, const char
   return **at == 0;
 }
 
-/* Reports a bad line: the first ten each by itself. Returns -1, or the exit code if it ends the command. */
+/* Reports a bad line; only the first ten are reported separately. Returns -1, or the exit code if it ends the command.
+ */
 static int bad_line(Lines *lines, const char *at, int columns) {
   enum { REPORTED = 10 };
   long column = at - lines->line + 1;

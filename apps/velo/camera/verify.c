@@ -1,4 +1,4 @@
-/* camera/verify.c: `velo camera verify`: whether rendered images agree with the camera's equations, and whether two
+/* camera/verify.c: `velo camera verify`: checks that rendered images agree with the camera's equations, or that two
  * camera files describe the same camera. */
 #include <errno.h>
 #include <math.h>
@@ -44,7 +44,7 @@ static double mean_of(double sum, const Measure *m) {
   return n ? sum / n : NAN;
 }
 
-/* The reason why verification fails; null when it succeeds. */
+/* Returns the reason why verification fails, or null if it succeeds. */
 static const char *verdict(const Verification *v, double threshold, char *text, size_t size) {
   const Measure *m = &v->all;
   if (v->placed == 0)
@@ -157,7 +157,7 @@ static void print_json(const Verification *v, const char *path, const char *agai
   putchar('\n');
 }
 
-/* The camera that the images are compared with: the same one, or another file's. */
+/* Makes the camera with which the images are compared. It is the same camera, or that of another file. */
 static int load_model(vlContext *context, const Arguments *arguments, const vlCameraRecord *own, Verification *v) {
   const OptionValue *o = arguments->values;
   v->model = (VerifyModel){own->camera, v->camera};

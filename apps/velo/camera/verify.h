@@ -77,7 +77,7 @@ enum { VERIFY_POSES = 1000, COVERAGE = 8 };
 /* Measurements of one pose or of all. Differences are measured minus projected, in pixels. */
 typedef struct Measure {
   uint32_t expected, found; /* corners that should be visible, and those of them that were found */
-  uint32_t unseen;          /* corners found that the other camera cannot project */
+  uint32_t unseen;          /* found corners that the independent projection cannot project */
   uint32_t markers, misread;
   double sum, sum2, sum_x, sum_y, most;
   double at_x, at_y; /* where the largest difference was */
@@ -92,9 +92,9 @@ typedef struct Verification {
   vlCamera camera;  /* renders the images */
   VerifyModel model;
   double side;     /* of a square, pixels */
-  uint32_t placed; /* number of poses at which the board was placed */
+  uint32_t placed; /* number of poses in which the board could be placed */
   Measure all, each[VERIFY_POSES];
-  bool covered[COVERAGE][COVERAGE]; /* cells of the image in which corners were found */
+  bool covered[COVERAGE][COVERAGE]; /* whether corners were found in each cell of the image */
 } Verification;
 
 /* Renders and measures all poses. Returns -1, or the exit code after reporting the error. */

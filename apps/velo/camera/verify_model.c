@@ -6,8 +6,8 @@
 
 #include "camera/verify.h"
 
-/* *r: distance from the principal point, in focal lengths, of a direction at `angle` radians from the axis. False:
- * outside of the projection's domain. */
+/* Computes *r, the distance from the principal point in focal lengths, for a direction at `angle` radians from the
+ * axis. Returns false outside the projection's domain. */
 static bool fisheye(vlProjection projection, double angle, double *r) {
   switch (projection) {
     case VL_PROJECTION_EQUIDISTANT: *r = angle; return true;

@@ -1,4 +1,4 @@
-/* camera/verify_target.c: a chessboard, with or without markers in its white squares, and its placement before the
+/* camera/verify_target.c: a chessboard, with or without markers in its white squares, and its placement in front of the
  * camera. White squares are emissive geometry, so no texture filter affects the image; black squares are empty. */
 #include <math.h>
 #include <stdlib.h>
@@ -57,7 +57,7 @@ static bool is_white(int i, int j) {
   return (i + j) % 2 == 1;
 }
 
-/* Number of the white square (i, j), counted by rows. */
+/* Returns the number of the white square (i, j), counted by rows. */
 static int marker_of(const Target *target, int i, int j) {
   return (j * (target->corners + 1) + i) / 2;
 }

@@ -52,8 +52,8 @@ typedef struct Arguments {
   int text_count;
   const char *folders[MAX_TEXTS];
   int folder_count;
-  const char *operands[MAX_OPERANDS]; /* the first ones */
-  const char *const *all_operands;    /* all, in the words that were parsed */
+  const char *operands[MAX_OPERANDS]; /* the first MAX_OPERANDS operands */
+  const char *const *all_operands;    /* all operands; points into argv */
   int operand_count;
 } Arguments;
 

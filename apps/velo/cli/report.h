@@ -31,8 +31,8 @@ int report_terminal_columns(void);
 
 /* Reports "velo: message". All return the exit code, for `return report_usage(...)`. */
 int report_usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* From now on a wrong command line is that of this file: report_usage names it and returns STATUS_SCENE. Null: the
- * user's. */
+/* Sets the file that contains the command line: report_usage then names this file and returns STATUS_SCENE. Null: the
+ * user's command line. */
 void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no place; may be null. */

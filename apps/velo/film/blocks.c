@@ -16,7 +16,7 @@ static int out_of_memory(void) {
   return report_error(NULL, VL_ERROR_MEMORY, NULL);
 }
 
-/* What of [0, planned) is not in the ranges. `gaps` has room for count + 1. */
+/* Finds the parts of [0, planned) that are not in the ranges. `gaps` has room for count + 1 ranges. */
 static uint32_t find_gaps(const vlSampleRange *ranges, uint32_t count, uint32_t planned, vlSampleRange *gaps) {
   uint32_t n = 0, at = 0;
   for (uint32_t i = 0; i < count; i++) {
@@ -28,7 +28,7 @@ static uint32_t find_gaps(const vlSampleRange *ranges, uint32_t count, uint32_t 
   return n;
 }
 
-/* The number of the list with these ranges, from 1; 0: out of memory. */
+/* Returns the number of the list with these ranges, counted from 1. Returns 0 if out of memory. */
 static uint32_t find_list(FilmParts *parts, const vlSampleRange *ranges, uint32_t count) {
   for (uint32_t i = parts->list_count; i > 0; i--) {
     const RangeList *list = &parts->lists[i - 1];
@@ -79,7 +79,7 @@ static bool same_run(const Grid *grid, uint32_t x, uint32_t y, uint32_t width, u
   return true;
 }
 
-/* Takes the largest rectangle that begins at a block: first to the right, then down. */
+/* Takes a rectangle that begins at a block. It is extended as far as possible to the right, and then down. */
 static void take_part(Grid *grid, uint32_t x, uint32_t y, const uint32_t crop[4], FilmParts *parts) {
   uint32_t id = grid->ids[(size_t)y * grid->across + x], width = 1, height = 1;
   while (x + width < grid->across && grid->ids[(size_t)y * grid->across + x + width] == id) width++;

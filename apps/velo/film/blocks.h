@@ -4,7 +4,7 @@
 
 #include "velo/velo.h"
 
-/* Ranges of samples, without order among lists. */
+/* A list of ranges of samples. */
 typedef struct RangeList {
   vlSampleRange *ranges;
   uint32_t count;
@@ -19,12 +19,13 @@ typedef struct FilmPart {
 typedef struct FilmParts {
   FilmPart *parts;
   uint32_t count;
-  RangeList *lists; /* owned; the parts point into them */
+  RangeList *lists; /* owned; the parts point into these lists */
   uint32_t list_count;
 } FilmParts;
 
-/* Reads all blocks (check: with their sums) and groups them. planned: 0: the samples that are there; else those of
- * [0, planned) that are not. Parts without any are left out. Returns -1, or the exit code after reporting the error. */
+/* Reads all blocks and groups them; `check` also verifies their checksums. If planned is 0, the parts list the samples
+ * that the film has. Otherwise they list the samples of [0, planned) that it lacks. Parts without samples are omitted.
+ * Returns -1, or the exit code after reporting the error. */
 int film_parts_read(vlFilmFile *file, bool check, uint32_t planned, FilmParts *parts);
 void film_parts_free(FilmParts *parts);
 

@@ -1,4 +1,4 @@
-/* film/info.c: `velo film info`: what a film file holds, and the commands that render what it does not. */
+/* film/info.c: `velo film info`: lists the content of a film file, and the commands that render its missing samples. */
 #include <stdio.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ static uint32_t planned_of(const vlFilmFile *file) {
   return planned;
 }
 
-/* A word as a POSIX shell reads it. */
+/* Prints a word, quoted for a POSIX shell. */
 static void print_word(const char *word) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+%@";
   if (*word && strspn(word, plain) == strlen(word)) {
@@ -75,7 +75,7 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++) printf("  output    %s\n", output);
 }
 
-/* One command for each rectangle and range; then the one that merges them. */
+/* Prints one command for each rectangle and range, and then the command that merges their films. */
 static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
   const vlReceipt *receipt = vl_film_file_receipt(file);
   const uint32_t *crop = vl_film_file_def(file)->crop;

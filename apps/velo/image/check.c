@@ -1,5 +1,5 @@
-/* image/check.c: `velo image check`: whether the ground truth channels of a file agree with each other and with the
- * camera in its header. Everything is recomputed in double from the file. */
+/* image/check.c: `velo image check`: checks that the ground truth channels of a file agree with each other and with the
+ * camera in the header. Everything is recomputed in double from the file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -222,7 +222,7 @@ static int load_other(Check *c, vlContext *context, const Arguments *arguments, 
   return -1;
 }
 
-/* Checks everything that the pixel tests need. */
+/* Checks the preconditions of the pixel tests. */
 static int prepare(Check *c, vlContext *context, const Arguments *arguments, vlImage **image, vlImage **other) {
   int status = image_load(context, c->path, image);
   if (status >= 0) return status;

@@ -28,7 +28,7 @@ enum {
 };
 typedef struct Rule {
   const char *name, *text;
-  double limit; /* errors up to this are accepted whatever the threshold is */
+  double limit; /* errors up to this limit are accepted at any threshold */
   bool checked;
   double worst;
   uint32_t x, y; /* pixel of the worst error */
@@ -52,19 +52,19 @@ typedef struct Check {
   int z, distance, p, n, ng, ray, object, material, primitive, instance, uv, albedo, film, samples, error, alpha;
   int flow[2], hidden[2];
   double point[2];     /* film point of the pixel's ray */
-  double reach[2];     /* largest offset of the film point from the pixel's centre; 0: none */
-  double spp;          /* from the header; 0: not given */
+  double reach[2];     /* largest offset of the film point from the pixel's centre, in pixels; 0: none */
+  double spp;          /* samples per pixel from the header; 0: not given */
   bool matte_is_alpha; /* the sum of coverages equals the image's alpha */
   Matte mattes[3];
-  uint32_t *material_of; /* material id by object id, as first met */
+  uint32_t *material_of; /* material id of each object id, from the first pixel that shows the object */
   uint64_t hits, misses;
   double pixel_error; /* largest error in pixels */
 
-  const vlImage *other; /* the image that flow refers to; null: not given */
+  const vlImage *other; /* the image to which the flow leads; null: not given */
   vlCamera other_camera;
   vlOptics *optics, *other_optics; /* lenses of the cameras; null: none */
   uint32_t other_x0, other_y0;
-  int other_distance, which; /* channel index; 0: forward, 1: backward */
+  int other_distance, which; /* other_distance: channel index; which: 0 forward, 1 backward */
   uint64_t flow_seen, flow_wrong;
 
   Rule rules[RULES];
@@ -75,7 +75,7 @@ enum { CHECK_OBJECTS = 1 << 20 }; /* larger object ids are not recorded */
 void check_note(Check *c, int rule, double error);
 void check_load3(const Check *c, int channel, double v[3]);
 double check_length3(const double v[3]);
-/* Whether the pixel met a surface, by any channel that shows it; true without such a channel. */
+/* Returns whether the pixel shows a surface, according to any channel that tells. Returns true if no channel tells. */
 bool check_is_hit(const Check *c);
 /* check_pixel.c */
 void check_pixel(Check *c);

@@ -4,7 +4,7 @@
 
 #include "image/check.h"
 
-/* The world point of the pixel's ray. For a pixel without a hit, a distant point on the ray. */
+/* Computes the world point that the pixel shows. For a pixel without a hit, it is a distant point on the ray. */
 static bool find_point(const Check *c, bool hit, double p[3]) {
   double origin[3], direction[3];
   if (!vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction)) return false;
@@ -22,7 +22,8 @@ static bool find_point(const Check *c, bool hit, double p[3]) {
   return true;
 }
 
-/* Nearest and farthest distance in the other image around a position; false: outside the file's window. */
+/* Finds the nearest and farthest distance around a position in the other image. Returns false outside the file's
+ * window. */
 static bool around(const Check *c, const double at[2], double *nearest, double *farthest) {
   uint32_t width = vl_image_width(c->other), height = vl_image_height(c->other), step = vl_image_channels(c->other);
   const float *pixels = vl_image_const_pixels(c->other);
@@ -39,8 +40,8 @@ static bool around(const Check *c, const double at[2], double *nearest, double *
   return true;
 }
 
-/* A visible point has nothing in front of it in the other image; a hidden one has. The pixel's eight neighbours count,
- * too, because of edges. Grazing surfaces remain uncertain: a share of the pixels may disagree. */
+/* In the other image, a visible point has nothing in front of it, and a hidden point has something. The pixel's eight
+ * neighbours count, too, because of edges. Grazing surfaces remain uncertain: a share of the pixels may disagree. */
 static void compare_distances(Check *c, int hidden, const double at[2], bool hit, const double p[3]) {
   double nearest, farthest, origin[3], direction[3], away[3];
   if (c->other_distance < 0 || hidden > VL_HIDDEN_BEHIND || !around(c, at, &nearest, &farthest)) return;

@@ -1,4 +1,4 @@
-/* image/check_matte.c: whether a file's Cryptomattes agree with their header. */
+/* image/check_matte.c: checks that a file's Cryptomattes agree with their header. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static bool is_known(const Matte *m, uint32_t bits) {
   return bsearch(&bits, m->known, m->known_count, sizeof bits, compare) != NULL;
 }
 
-/* Reads {"name":"hash",...} and checks that each hash is its name's. */
+/* Reads {"name":"hash",...} and checks that each hash is the hash of its name. */
 static bool read_manifest(Matte *m, const char *text) {
   char name[1200], hash[16];
   size_t room = strlen(text) / 13 + 1; /* "":"12345678", and the comma */

@@ -6,9 +6,9 @@
 #include "velo/velo.h"
 
 extern const Choice denoiser_choices[];
-/* Reports what denoising met. */
+/* Reports the statistics of denoising. */
 void denoise_report(const vlDenoiseStats *stats);
-/* Names the denoiser in the image's header: velo.denoiser. */
+/* Writes the denoiser's name to the image's header attribute velo.denoiser. */
 vlResult denoise_name(vlImage *clean, vlDenoiser denoiser);
 
 #endif

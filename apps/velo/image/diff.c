@@ -11,7 +11,7 @@
 
 enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
 
-/* The metrics; each name is also that of its threshold. */
+/* The metrics. The name of a metric is also the name of its threshold. */
 typedef enum MetricKind { METRIC_MOST, METRIC_LEAST, METRIC_FROM_ONE } MetricKind;
 typedef struct Metric {
   const char *name;

@@ -4,8 +4,8 @@
 
 #include "velo/velo.h"
 
-/* As vl_image_view, but if the image's chromaticities attribute names a colour space other than Rec.709, converts from
- * that space first. The caller owns *result. */
+/* Like vl_image_view, but first converts the image to Rec.709 if its chromaticities attribute names another colour
+ * space. The caller owns *result. */
 vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result);
 
 #endif

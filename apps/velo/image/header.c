@@ -32,7 +32,7 @@ static bool text(const vlImage *image, const char *name, const char **value) {
 #define COUNT_ONE(NAME, name) +1
 enum { PROJECTIONS = 0 VL_PROJECTION_KINDS(COUNT_ONE) };
 
-/* Projection and lens; false for a name or a coefficient that is not understood. */
+/* Reads projection and lens. Returns false for an unknown name or coefficient. */
 static bool read_model(const vlImage *image, const char *projection, vlCameraDef *def) {
   static const char *const names[] = {"none", "opencv", "radial", "thinprism"};
   int kind = 0;

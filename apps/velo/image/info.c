@@ -106,7 +106,7 @@ static void print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }
 
-/* A word of a command, in quotes where a shell would split it. */
+/* Prints a word of a command, quoted if a shell would split it. */
 static void print_word(const char *word) {
   bool plain = *word && !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
   putchar(' ');
@@ -119,7 +119,7 @@ static void print_word(const char *word) {
   if (!plain) putchar('\'');
 }
 
-/* What made the image. receipt: may be null. */
+/* Prints what made the image. receipt may be null. */
 static void print_receipt(const vlReceipt *receipt) {
   if (!receipt) return;
   const char *commit, *version = vl_receipt_version(receipt, &commit), *word;

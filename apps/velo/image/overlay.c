@@ -36,7 +36,8 @@ void overlay_end(Overlay *o) {
   *o = (Overlay){0};
 }
 
-/* Coverage of a pixel by a pen with a soft edge of one pixel, from the distance between its centre and the segment. */
+/* Returns the coverage of a pixel by a pen whose soft edge is one pixel wide. It depends on the distance between the
+ * pixel's centre and the segment. */
 static void touch(Overlay *o, long x, long y, const double a[2], const double d[2], double length2, double width) {
   if (x < 0 || y < 0 || x >= (long)o->width || y >= (long)o->height) return;
   double px = (double)x + 0.5 - a[0], py = (double)y + 0.5 - a[1];
@@ -47,7 +48,7 @@ static void touch(Overlay *o, long x, long y, const double a[2], const double d[
   if (c > *cover) *cover = (float)(c < 1.0 ? c : 1.0);
 }
 
-/* Clips a segment to a box (Liang and Barsky); false: nothing remains. */
+/* Clips a segment to a box (Liang and Barsky). Returns false if nothing remains. */
 static bool clip(double p[4], double x0, double y0, double x1, double y1) {
   double t0 = 0.0, t1 = 1.0, dx = p[2] - p[0], dy = p[3] - p[1];
   const double run[4] = {-dx, dx, -dy, dy}, room[4] = {p[0] - x0, x1 - p[0], p[1] - y0, y1 - p[1]};

@@ -16,8 +16,8 @@ static int fail_command(const Again *again, const char *why) {
   return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", again->path, why);
 }
 
-/* Parses the words after "velo render". Options that do not make the image are not obeyed: where files
- * are written is not for the image to say. */
+/* Parses the words after "velo render". Options that do not determine the image are ignored, so that an image cannot
+ * decide where files are written. */
 static int parse_command(Again *again) {
   char *words[2 * MAX_OPTIONS + 4];
   const char *word;
@@ -41,7 +41,7 @@ static int parse_command(Again *again) {
   return again->arguments.operand_count == 1 ? -1 : fail_command(again, "it names no scene");
 }
 
-/* Beside --again only options that do not change the image may be given. */
+/* Only options that do not change the image may be given together with --again. */
 static int take_options(Again *again, const Arguments *given) {
   for (const Option *option = render_options; option->name; option++) {
     if (!given->values[option->id].given) continue;
@@ -56,7 +56,7 @@ static int take_options(Again *again, const Arguments *given) {
   return -1;
 }
 
-/* The scene that is given, or the one that the receipt names. */
+/* Takes the given scene, or else the scene that the receipt names. */
 static int take_scene(Again *again, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
   if (!path) return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file", again->path);

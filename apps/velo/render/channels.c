@@ -103,7 +103,7 @@ int channels_load(Channels *c, vlContext *context, const Job *job) {
   return -1;
 }
 
-/* Whether a signal came after the pass began. */
+/* Returns whether a signal arrived after the pass began. */
 static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
@@ -128,8 +128,8 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   return fail_pass(&error, result, job);
 }
 
-/* Without another camera, flow is within the shutter interval: from the channels' time to its end, and to its
- * beginning. */
+/* Without another camera, flow is within the shutter interval: forward from the channels' time to the end of the
+ * interval, and backward to its beginning. */
 static void shutter_ends(Channels *c, const Job *job) {
   const vlCamera *camera = &job->camera;
   for (int i = 0; i < 2; i++)

@@ -1,4 +1,4 @@
-/* render/channels.h: ground truth channels of an image: which are wanted, their render pass, and the file that
+/* render/channels.h: ground truth channels of an image: the choice of channels, their render pass, and the file that
  * describes the ids. */
 #ifndef APP_RENDER_CHANNELS_H
 #define APP_RENDER_CHANNELS_H
@@ -24,13 +24,14 @@ extern const Choice channel_mode_choices[];
 
 /* Reads the options of the command line. Returns -1, or the exit code after reporting the error. */
 int channels_choose(Channels *c, const Arguments *arguments);
-/* Adds what the film requires: a spectrum, a gbuffer. */
+/* Adds the channels that the scene's film requires: a spectrum or a gbuffer. */
 void channels_take(Channels *c, Job *job);
-/* Reads the other cameras of flow, once the image's camera is known. Returns -1 or the exit code. */
+/* Reads the cameras to which flow leads. Must be called after the image's camera is made. Returns -1 or the exit code.
+ */
 int channels_load(Channels *c, vlContext *context, const Job *job);
-/* Whether there is content that only .exr files hold. */
+/* Returns whether there are channels that only .exr files can hold. */
 bool channels_any(const Channels *c);
-/* The number of 4-byte values per pixel. buckets: of the film's spectrum. */
+/* Returns the number of 4-byte values per pixel. buckets: number of buckets of the film's spectrum. */
 uint64_t channels_values(const Channels *c, uint32_t buckets);
 /* Estimated seconds of rendering and writing the channels of an image with `spp` samples per pixel, from those that one
  * sample per pixel and the writing of the image alone took. */

@@ -14,8 +14,8 @@ static int fail_command(const Continue *c, const char *why) {
   return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", c->path, why);
 }
 
-/* Parses the words after "velo render". Options that do not determine the samples are not obeyed: where files are
- * written is not for a film to say, but for its outputs. */
+/* Parses the words after "velo render". Options that do not determine the samples are ignored, so that a film cannot
+ * decide where files are written; only its output names are kept. */
 static int parse_command(Continue *c, const vlReceipt *receipt) {
   char *words[2 * MAX_OPTIONS + 4];
   const char *word;
@@ -39,7 +39,7 @@ static int parse_command(Continue *c, const vlReceipt *receipt) {
   return c->arguments.operand_count == 1 ? -1 : fail_command(c, "it names no scene");
 }
 
-/* What is given replaces what the film says; what must not change is compared later. */
+/* Given options replace those of the film. Options that must not change are compared later. */
 static void take_options(Continue *c, const Arguments *given, const vlReceipt *receipt) {
   Arguments *a = &c->arguments;
   for (const Option *option = render_options; option->name; option++)
@@ -119,7 +119,7 @@ static int compare(const char *path, const vlReceipt *then, const vlReceipt *now
   return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", path, d.text, more);
 }
 
-/* The pixels that have samples, and the first block's samples. */
+/* Finds the pixels that have samples, and the samples of the first block. */
 static int find_extent(const char *path, vlFilmFile *file, uint32_t crop[4], vlSampleRange *range) {
   vlFilmBlock block;
   vlError error = {0};
@@ -137,7 +137,7 @@ static int find_extent(const char *path, vlFilmFile *file, uint32_t crop[4], vlS
   }
 }
 
-/* Whether the film goes on with the part that is wanted. */
+/* Returns whether the wanted part continues the film. */
 static int take_extent(const char *path, vlFilmFile *file, const Arguments *arguments, vlSceneDefs *defs) {
   const OptionValue *v = arguments->values;
   uint32_t crop[4] = {0, 0, 0, 0};

@@ -61,7 +61,7 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;
 }
 
-/* One image with the channels of both. */
+/* Makes one image with the channels of both images. */
 static vlResult join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
   const vlImage *parts[2] = {color, floats};
   const char *names[MAX_CHANNELS];
@@ -87,7 +87,7 @@ static bool stop_asked(void *user) {
   return signals_count() > *(const int *)user;
 }
 
-/* The image with its standard errors and features. */
+/* Makes the image with its standard errors and the denoiser's features. */
 static vlResult gather(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **joined,
                        vlError *error) {
   vlDevelopDef develop = vl_default_develop_def();

@@ -93,7 +93,7 @@ static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
   return result == VL_OK ? -1 : job_no_film(&camera->job, result);
 }
 
-/* Adds a camera; record null: the job's own camera. */
+/* Adds a camera. If record is null, adds the job's own camera. */
 static int add_camera(Frames *frames, vlContext *context, const Job *job, const Arguments *arguments,
                       const vlCameraRecord *record, const char *path) {
   FrameCamera *camera = &frames->cameras[frames->camera_count++];
@@ -264,7 +264,7 @@ static int compare_paths(const void *a, const void *b) {
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* All paths of one pattern. Names that the trajectory repeats may be equal. */
+/* Checks all paths of one pattern. Two paths may be equal only if the trajectory repeats the name. */
 static int check_twice(const Frames *frames, const char *pattern) {
   uint32_t count = frames_count(frames);
   char **paths = calloc(count, sizeof *paths), path[4096];

@@ -8,14 +8,14 @@
 #include "render/job.h"
 #include "render/outputs.h"
 
-/* A camera at the origin of a frame, before the frame's pose. */
+/* A camera relative to a frame, before the frame's pose is applied. */
 typedef struct FrameCamera {
   char name[256];
   vlSceneDefs defs; /* job.defs points here for cameras other than the scene's */
   Job job;
   vlCamera eyes[2]; /* poses relative to the frame */
   double mount[16]; /* frame_from_camera in a rig */
-  vlFilm *film;     /* shared by cameras of one size and crop; owned by the first */
+  vlFilm *film;     /* shared by cameras of the same size and crop; owned by the first of them */
   bool owns_film;
 } FrameCamera;
 
@@ -24,11 +24,11 @@ typedef struct Frames {
   FrameCamera *cameras;
   uint32_t camera_count;
   uint32_t first, last, step; /* range of pose numbers */
-  bool skip_existing;         /* leave out frames whose files are all there */
+  bool skip_existing;         /* skip frames whose files all exist */
   int views;                  /* 1 or 2 */
   vlEye eyes[2];
   const char *view_names[2];
-  const FilmPlan *films; /* of two eyes; null: films are not kept */
+  const FilmPlan *films; /* film settings for two eyes; null: no film files */
 } Frames;
 
 /* One image to be rendered. */
@@ -38,7 +38,8 @@ typedef struct Frame {
   FrameCamera *camera;
 } Frame;
 
-/* Whether several images are rendered: with --trajectory, or in stereo once the scene is known (null before). */
+/* Returns whether several images are rendered, because of --trajectory or stereo. job is null before the scene is
+ * loaded; then stereo is unknown. */
 bool frames_wanted(const Arguments *arguments, const Job *job);
 /* Checks that the options are compatible, and the name patterns. Returns -1 or the exit code. */
 int frames_check(const Arguments *arguments, Outputs *outputs);
@@ -47,12 +48,12 @@ int frames_load(Frames *frames, vlContext *context, const Job *job, const Argume
 /* Checks names and directories of all files before rendering; two frames must not have the same name. Returns -1 or the
  * exit code. */
 int frames_check_names(const Frames *frames, const Outputs *outputs);
-/* The number of images, and image i. Both eyes count as one. */
+/* Return the number of images, and image i. Both eyes count as one image. */
 uint32_t frames_count(const Frames *frames);
 Frame frames_at(const Frames *frames, uint32_t index);
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size);
-/* Whether all image files of the frame exist. Files are written whole, so they need no look inside. */
+/* Returns whether all image files of the frame exist. Files are written atomically, so their content is not checked. */
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);
 /* The camera of one view in the frame's pose. */
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error);

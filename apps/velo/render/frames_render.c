@@ -35,7 +35,7 @@ static bool on_progress(void *user, const vlProgress *now) {
   return !signals_pending();
 }
 
-/* Shows now and then how many frames are done. */
+/* Shows at intervals how many frames are done. */
 static void show(Run *run, const Frame *frame) {
   double now = monotonic_seconds();
   if (run->count == 1 || report_is_quiet() || now - run->last_shown < (report_is_terminal() ? 0.1 : 5.0)) return;
@@ -90,7 +90,7 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   return result == VL_OK ? STATUS_OK : report_reason(result, job->path, "the image cannot be made of the film");
 }
 
-/* The film of a view: that of the camera, cleared, or the one that is continued, which is then freed by the caller. */
+/* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the caller then frees. */
 static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **own) {
   const FilmPlan *plan = run->frames->films;
   const char *name = run->frames->view_names[view];

@@ -97,22 +97,22 @@ typedef struct ReceiptCamera {
 } ReceiptCamera;
 
 typedef struct Job {
-  const char *path; /* of the scene file */
+  const char *path; /* path of the scene file */
   /* the scene's defs with overrides; a copy for each camera of a rig. defs->camera keeps the size of its description */
   vlSceneDefs *defs;
   vlError camera_place;                /* place of the camera in its file; only file, line and column are used */
   vlCamera camera;                     /* at the film's size */
-  const ReceiptCamera *receipt_camera; /* in place of --camera FILE; null: none */
-  const struct ReceiptPlan *receipt;   /* of the images; null: they have none */
+  const ReceiptCamera *receipt_camera; /* replaces --camera FILE; null: none */
+  const struct ReceiptPlan *receipt;   /* receipts of the images; null: none */
   bool records_files;                  /* for receipts */
   double channels_share,
-      channels_seconds; /* time of the ground truth: share of the shutter interval, unless seconds are set */
+      channels_seconds; /* time of the ground truth as a fraction of the shutter interval, unless seconds are set */
 } Job;
 
 /* Overrides the scene's defs and makes the camera. Returns -1, or the exit code after reporting the error. */
 int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, const Arguments *arguments);
 
-/* Whether the length of the sequence follows from the planned number of samples. */
+/* Returns whether the planned number of samples determines the length of the sampler's sequence. */
 bool job_sequence_is_planned(const Job *job, const Arguments *arguments);
 
 /* The time of the ground truth and of the camera in the header, in seconds. */

@@ -183,7 +183,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   }
 }
 
-/* Samplers with a fixed number of samples get the sequence of the whole render, also if only some of its samples are
+/* Samplers with a fixed number of samples get the sequence of the whole render, even if only some of its samples are
  * rendered (--shard, --samples). */
 static void fix_sequence(vlRenderDef *render) {
   if (!render->sequence && !sampler_is_open(render->sampler)) render->sequence = render->spp;

@@ -1,4 +1,4 @@
-/* render/memory.h: an estimate of memory before the render begins, and whether it is available. */
+/* render/memory.h: estimates the memory of a render before it begins, and checks that it is available. */
 #ifndef APP_RENDER_MEMORY_H
 #define APP_RENDER_MEMORY_H
 
@@ -22,10 +22,10 @@ typedef struct MemoryPlan {
  * `frames`: null, or the images of a trajectory. */
 void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, const Job *job, const Outputs *outputs,
                  const Channels *channels, const Frames *frames);
-/* Adds a need that not every render has; 0 bytes: none. */
+/* Adds an optional item to the plan. Does nothing for 0 bytes. */
 void memory_add(MemoryPlan *plan, const char *what, uint64_t bytes);
-/* Returns -1 when the plan fits --max-memory (`limit`; 0: none), the process' limits and the machine. Otherwise the
- * exit code, after one line that lists the needs. */
+/* Returns -1 if the plan fits within --max-memory (`limit`; 0: none), the process's limits and the machine's memory.
+ * Otherwise returns the exit code after one line that lists the items. */
 int memory_check(const MemoryPlan *plan, uint64_t limit);
 /* Text such as "scene 12.0 MB, film 132 MB". */
 void memory_list(const MemoryPlan *plan, char *text, size_t size);

@@ -103,7 +103,7 @@ int outputs_check_folders(const Outputs *outputs) {
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
-/* Joins the first `keep` bytes of the path and `tail`. Fewer bytes are kept where the name would be too long. */
+/* Joins the first `keep` bytes of the path and `tail`. Keeps fewer bytes if the name would be too long. */
 static bool name_beside(const char *path, size_t keep, const char *tail, char *result, size_t size) {
   const char *slash = strrchr(path, '/');
   size_t folder = slash ? (size_t)(slash + 1 - path) : 0;
@@ -151,7 +151,7 @@ const char *output_written(const Outputs *outputs, int i, OutputStage stage, cha
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* Reports the first failure of an output, and its recovery. */
+/* Reports when an output fails for the first time, and when it works again. */
 static void report_progress_failure(Outputs *outputs, int i, vlResult result, const vlError *error) {
   bool failing = result != VL_OK;
   if (failing && !outputs->files[i].failing)

@@ -1,5 +1,5 @@
-/* render/outputs.h: the output files of one render: checked before the render, written as a whole, several at once.
- * While rendering and after an interruption, the image of NAME.EXT is in NAME.part.EXT. Only a finished render replaces
+/* render/outputs.h: the output files of one render. They are checked before the render and written atomically. While
+ * rendering and after an interruption, the image of NAME.EXT is in NAME.part.EXT. Only a finished render replaces
  * NAME.EXT. */
 #ifndef APP_RENDER_OUTPUTS_H
 #define APP_RENDER_OUTPUTS_H
@@ -22,11 +22,11 @@ typedef struct Outputs {
   bool patterns;            /* the names are patterns (pattern.h): directories with a % are made later */
   vlView view;              /* for 8-bit files */
   float exposure;           /* EV, for 8-bit files */
-  bool meter;               /* metered from the image instead of exposure */
+  bool meter;               /* meter the exposure from the image; `exposure` is not used */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */
   struct {
     uint32_t part_spp; /* samples per pixel in NAME.part.EXT; 0: it was not written */
-    bool failing;      /* the last progress write failed, which was reported */
+    bool failing;      /* the last progress write failed, and the failure was reported */
   } files[MAX_OUTPUTS];
 } Outputs;
 
@@ -36,7 +36,7 @@ bool output_holds_layers(const char *path);
 bool output_suffix(const char *path, bool *eight_bit);
 /* The largest width and height of the format. */
 uint32_t output_largest_side(const char *path);
-/* Both return -1, or the exit code after reporting the error. The first does not access the file system. */
+/* Both functions return -1, or the exit code after reporting the error. The first does not access the file system. */
 int outputs_check_names(const Outputs *outputs);
 int outputs_check_folders(const Outputs *outputs);
 /* NAME.part.EXT beside the target of `path`; names that are too long are shortened. False: still too long, or `path` is
@@ -44,7 +44,7 @@ int outputs_check_folders(const Outputs *outputs);
 bool output_part_path(const char *path, char *part, size_t size);
 /* Removes NAME.part.EXT once NAME.EXT is complete, also that of an earlier render. */
 void output_remove_part(const char *path);
-/* PATH.ids.json, shortened likewise. */
+/* Makes the path PATH.ids.json; a name that is too long is shortened. */
 bool output_ids_path(const char *path, char *ids, size_t size);
 /* Writes the image with `spp` samples per pixel to every file, also after one of them failed. Returns STATUS_OK or the
  * exit code of the first failure. */

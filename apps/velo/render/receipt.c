@@ -76,7 +76,7 @@ static vlSceneDefs defs_of(const Job *job, const ReceiptImage *which) {
   return defs;
 }
 
-/* Whether autofocus found the distance. Lenses of many elements hold their own. */
+/* Returns whether autofocus found the focus distance. A lens of many elements stores its own focus distance. */
 static bool is_autofocused(const Job *job, const Arguments *arguments) {
   const double *pixel = job->defs->camera.lens.focus_pixel;
   bool wanted = arguments->values[RENDER_FOCUS_PIXEL].given || !isnan(pixel[0]);
@@ -106,7 +106,7 @@ vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *whi
   vlReceipt *made = NULL;
   uint32_t planned = 0;
   const vlReceipt *receipt = plan->again;
-  /* a part of the image, or one by another version, is not what the receipt describes */
+  /* the receipt does not describe a part of the image or an image of another version */
   bool same = receipt && plan->again_is_ours && vl_receipt_samples(receipt, &planned) == which->samples;
   vlResult result = same ? VL_OK : receipt_make(plan, context, job, which, &made);
   if (result == VL_OK) {

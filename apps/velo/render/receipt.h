@@ -8,25 +8,25 @@
 /* The name of the attribute. */
 #define RECEIPT_ATTRIBUTE "velo.receipt"
 
-/* What the receipts of a command have in common. */
+/* Settings shared by all receipts of a command. */
 typedef struct ReceiptPlan {
   const Arguments *arguments;
   const SceneOpening *opening;
-  const vlReceipt *again; /* of --again: its images have this very receipt; null: none */
-  bool again_is_ours;     /* made by the version and commit of this program */
+  const vlReceipt *again; /* receipt of --again, copied to the new images; null: none */
+  bool again_is_ours;     /* that receipt is from this version and commit of velo */
 } ReceiptPlan;
 
 /* The image of which a receipt is made, besides its job. */
 typedef struct ReceiptImage {
   const char *eye;            /* "left", "right": the file holds this eye alone; null: what --eye says */
-  bool is_frame;              /* of a trajectory */
+  bool is_frame;              /* the image is a frame of a trajectory */
   uint32_t frame;             /* its number */
-  uint32_t samples;           /* per pixel */
-  const char *const *outputs; /* of a film: the images of its render; null: none */
+  uint32_t samples;           /* samples per pixel */
+  const char *const *outputs; /* for a film: the image files of its render; null: none */
   uint32_t output_count;
 } ReceiptImage;
 
-/* Whether the option changes what an image holds. Others say where it goes, how fast it is made or what is printed. */
+/* Returns whether the option changes the content of an image. Other options choose output paths, speed or messages. */
 bool receipt_option_counts(int option);
 vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job, const ReceiptImage *which,
                       vlReceipt **receipt);

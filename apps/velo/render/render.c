@@ -85,7 +85,7 @@ static bool has_layers(const Render *render) {
   return false;
 }
 
-/* Lists the files: "a.exr, b.png". */
+/* Formats the list of files: "a.exr, b.png". */
 static void list_files(const Render *render, OutputStage stage, char *text, size_t size) {
   char part[5000];
   text[0] = 0;
@@ -113,7 +113,8 @@ static uint64_t image_pixels(const Render *render) {
   return (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
 }
 
-/* The least samples per pixel that every output needs: a denoiser needs standard errors. */
+/* Returns the smallest number of samples per pixel that suffices for every output. A denoiser needs more samples, for
+ * its standard errors. */
 static uint32_t least_samples(const Render *render) {
   return render->denoised.outputs.count ? 2 : 1;
 }
@@ -218,7 +219,7 @@ static void set_up_reports(const Arguments *arguments) {
                                                                    : REPORT_NORMAL);
 }
 
-/* What the images' receipts have in common. Files are recorded from here on. */
+/* Sets what the images' receipts have in common. From this call on, files are recorded. */
 static void start_receipt(Render *render, const Arguments *arguments) {
   const Again *again = &render->again;
   render->receipt = (ReceiptPlan){
@@ -267,7 +268,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   return status;
 }
 
-/* Checks before the render what could not be written after it. */
+/* Checks before the render for outputs that could not be written after it. */
 static int check_sizes(const Render *render) {
   const vlFilmDef *film = &render->job.defs->film;
   uint32_t width = film->crop[2] - film->crop[0], height = film->crop[3] - film->crop[1];
@@ -284,7 +285,7 @@ static int check_sizes(const Render *render) {
   return job_no_film(&render->job, result);
 }
 
-/* A trajectory is metered by its first frame, which a part of it does not have. */
+/* A trajectory is metered by its first frame, so a part without that frame cannot be metered. */
 static int check_metering(const Outputs *outputs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   bool shard = v[RENDER_SHARD].given, eight_bit;
@@ -456,7 +457,7 @@ static int write_last(Render *render, OutputStage *stage) {
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
 }
 
-/* Makes the film, or reads the one that is continued. */
+/* Makes the film, or reads the film to continue. */
 static int open_film(Render *render) {
   const char *from = render->resumed.path;
   int status = film_keeper_start(&render->keeper, &render->film_plan, render->film_plan.path, render->context,
@@ -469,7 +470,7 @@ static int open_film(Render *render) {
   return result == VL_OK ? -1 : job_no_film(&render->job, result);
 }
 
-/* A render that ended after its time is one of the samples that it reached. */
+/* The receipt of a render that ended at its time limit states the samples that it reached. */
 static int plan_reached(Render *render, uint32_t end) {
   if (!(render->time_limit > 0) || end >= render->job.defs->render.spp) return -1;
   render->job.defs->render.spp = render->film_plan.whole.render.spp = end;

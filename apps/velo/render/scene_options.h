@@ -1,5 +1,5 @@
-/* render/scene_options.h: options of `velo render` about the scene: camera, time and variant of a glTF file, and what
- * is added where the file has no camera or light. */
+/* render/scene_options.h: options of `velo render` about the scene: the camera, time and variant of a glTF file, and
+ * the camera or light that is added if the file has none. */
 #ifndef APP_RENDER_SCENE_OPTIONS_H
 #define APP_RENDER_SCENE_OPTIONS_H
 
@@ -16,7 +16,8 @@ typedef struct SceneOpening {
 /* Loads the scene and completes it. Returns -1, or the exit code after reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
                SceneOpening *opening);
-/* Whether --camera names one of the scene's own cameras: the scene is glTF, and no file has that name. */
+/* Returns whether --camera names a camera of the scene. This requires that the scene is glTF and that no file has that
+ * name. */
 bool scene_camera_is_own(const char *path, const Arguments *arguments);
 
 #endif

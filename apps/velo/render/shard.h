@@ -4,13 +4,13 @@
 
 #include "render/job.h"
 
-enum { FILM_BLOCK = 32 }; /* pixels: films are cut at multiples of it (docs/film-files.md) */
+enum { FILM_BLOCK = 32 }; /* side of a film block in pixels (docs/film-files.md) */
 
 /* Checks --samples, --tiles, --shard, --shard-by. Returns -1 or the exit code. */
 int shard_check(const Arguments *arguments);
-/* Reads I/N, I from 1. False: it is not that. */
+/* Parses I/N, where I counts from 1. Returns false if the text has another form. */
 bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count);
-/* Reduces film and render to the part. Returns -1 or the exit code. */
+/* Restricts the defs of film and render to the part. Returns -1 or the exit code. */
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render);
 
 #endif

@@ -1,5 +1,5 @@
-/* scene/check.c: `velo scene check`: reads a scene past its errors, checks the description and prints all findings with
- * their places to stdout. */
+/* scene/check.c: `velo scene check`: reads a scene, continuing after errors, checks its description, and prints all
+ * findings with their positions to stdout. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* findings printed per kind without --all */
 
-/* A copy of a finding, so that those reported while loading are listed with the others. */
+/* Copies a finding, so that findings reported while loading are listed with the others. */
 typedef struct Entry {
   vlFindingKind kind;
   vlSeverity severity;

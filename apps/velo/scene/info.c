@@ -66,7 +66,7 @@ static void print_lights(const Facts *f) {
   if (n > LIGHTS) printf("  and %u more\n", n - LIGHTS);
 }
 
-/* The name in files, or the constant's where files have none. */
+/* Returns the name in scene files, or the constant's name if files have none. */
 static const char *name_of(const vlKindFamily *family, uint32_t kind) {
   return family->rows[kind]->name ? family->rows[kind]->name : family->constants[kind];
 }

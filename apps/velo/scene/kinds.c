@@ -84,7 +84,7 @@ static bool same_parameter(const vlParameter *a, const vlParameter *b) {
 
 enum { SHARED = 6 }; /* fewer parameters are repeated */
 
-/* The earlier kind with the most parameters with all of which this one begins; null: none. */
+/* Returns the earlier kind whose parameters are the longest beginning of this kind's parameters, or null. */
 static const vlKindRow *base_of(const vlKindFamily *family, uint32_t kind) {
   const vlKindRow *row = family->rows[kind], *base = NULL;
   for (uint32_t i = 0; i < kind; i++) {

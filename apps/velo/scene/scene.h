@@ -13,7 +13,7 @@
         0, NULL                                                                                                       \
   }
 
-/* Makes a context with the --sandbox and the log callback of the options. Returns -1, or the exit code after reporting
+/* Creates a context with the options' --sandbox folder and a log callback. Returns -1, or the exit code after reporting
  * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
 

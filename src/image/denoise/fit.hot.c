@@ -50,7 +50,7 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
   for (int j = 0; j < Y + 2 * P; j++) {
     const float *row = s->distance[j];
     float *sum = s->sums[j];
-    /* must vectorise */
+    /* must vectorise (gcc) */
     VL_SIMD for (int i = 0; i < X; i++) {
       float t = row[i];
       for (int k = 1; k < SIDE; k++) t += row[i + k];

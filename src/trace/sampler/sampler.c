@@ -2,6 +2,10 @@
  * bits. */
 #include "trace/sampler/sampler.h"
 
+#include <string.h>
+
+#include "velo/schema.h"
+
 static uint32_t bits_for(uint32_t count) { /* smallest b with 2^b >= count */
   return count > 1 ? 32u - (uint32_t)__builtin_clz(count - 1) : 0;
 }
@@ -40,17 +44,13 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
   };
 }
 
+/* By the sampler's row: a sampler that can go on without end has one sequence for any number of samples; the others lay
+ * out cells for exactly the planned number. */
 uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp) {
-  switch (kind) {
-    case VL_SAMPLER_INDEPENDENT:
-    case VL_SAMPLER_HALTON:
-    case VL_SAMPLER_SOBOL:
-    case VL_SAMPLER_ZSOBOL: return VL_SEQUENCE_LENGTH;
-    case VL_SAMPLER_REGULAR:
-    case VL_SAMPLER_STRATIFIED:
-    case VL_SAMPLER_NROOKS:
-    case VL_SAMPLER_MULTI_JITTERED:
-    case VL_SAMPLER_HAMMERSLEY: break;
-  }
+  const vlKindFamily *family;
+  for (uint32_t i = 0; (family = vl_kind_family(i)) != NULL; i++)
+    if (strcmp(family->name, "samplers") == 0 && (uint32_t)kind < family->kind_count &&
+        family->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN)
+      return VL_SEQUENCE_LENGTH;
   return spp ? spp : 1;
 }

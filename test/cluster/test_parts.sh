@@ -104,6 +104,7 @@ cat >bin/ssh <<'END'
 while case $1 in -o) shift ;; -*) ;; *) false ;; esac; do shift; done
 host=$1
 shift
+export SHELL=/bin/sh # sshd sets it; GNU parallel relies on it
 echo "$host" >>"$HOSTS"
 [ "$host" != dead ] || exit 255
 [ "$1" != -- ] || shift

@@ -240,9 +240,9 @@ static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
   vl_render_choose_blocks(r);
   if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
   atomic_store(&r->blocks_done, 0);
-  if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks) vl_two_way_drop_splats(r->two_way);
   if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
   if (result == VL_OK) vl_parallel_for(r->world->context, vl_render_block_count(r), vl_render_block, r);
+  if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks) vl_two_way_drop_splats(r->two_way);
   *late = atomic_load(&r->stop.late);
   if (result == VL_OK && !atomic_load(&r->stop.stopped)) {
     vl_film_commit_pass(r->film);

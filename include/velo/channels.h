@@ -78,7 +78,7 @@ typedef struct vlChannelsDef {
   uint32_t channels;  /**< bits of vlChannel; default VL_CHANNEL_ALL */
   uint32_t crop[4];   /**< pixels: x0, y0, x1, y1, exclusive; default all */
   vlColorSpace space; /**< colour space of the albedo */
-  uint32_t samples;   /**< value of the channel `samples` */
+  uint32_t samples;   /**< value of the channel `samples`; of an adaptive film each block has its own number */
   vlChannelMode mode; /**< film point; default CENTRE */
   uint32_t ranks;     /**< number of Cryptomatte's ids per pixel: even, 2 to 32; default 6 */
   /** The image's film and the def with which it was rendered. Required for ERROR, FEATURES, Cryptomatte and the modes

@@ -71,10 +71,10 @@ VL_API const vlReceipt *vl_film_file_receipt(const vlFilmFile *file);
 VL_API vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlError *error);
 
 /** Reads a film, owned by the caller. Its crop is the bounding rectangle of the pixels with samples. Without `partial`,
- * all pixels of the crop must have the same range of samples, so that vl_render can continue the film. With `partial`
- * they may differ; such a film is only for vl_film_develop, vl_film_errors and vl_film_spectrum. Errors: ARGUMENT,
- * MISSING, IO, MEMORY, UNSUPPORTED; SCENE: the file is not a film file, is damaged, has no samples, or (without
- * `partial`) has pixels with different samples. */
+ * each pixel of the crop must have one range of samples, all with the same first sample, so that vl_render can continue
+ * the film. With `partial` they may differ; such a film is only for vl_film_develop, vl_film_errors and
+ * vl_film_spectrum. Errors: ARGUMENT, MISSING, IO, MEMORY, UNSUPPORTED; SCENE: the file is not a film file, is damaged,
+ * has no samples, or (without `partial`) has pixels without samples or with other first samples. */
 VL_API vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error);
 
 /** Merges `count` film files of one render that have different samples or pixels. The result has the bytes that a

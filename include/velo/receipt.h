@@ -61,6 +61,8 @@ VL_API const char *vl_receipt_command(const vlReceipt *receipt, uint32_t index);
 VL_API const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index);
 /** Samples per pixel that the image has. *planned: the number planned for the render; may be null. */
 VL_API uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned);
+/** The threshold of adaptive sampling (vlRenderDef.noise); 0: none. */
+VL_API double vl_receipt_noise(const vlReceipt *receipt);
 /** The image's exposure (vlDevelopDef.exposure); 1 if it is not in the receipt. */
 VL_API float vl_receipt_exposure(const vlReceipt *receipt);
 /** Recorded file `index`, from 0: fills *record and returns it; null past the end. */
@@ -76,12 +78,13 @@ VL_API vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera,
 
 /** Parts of a receipt, for vl_receipt_compare. */
 enum {
-  VL_RECEIPT_VERSION = 1,   /**< velo's version and commit */
-  VL_RECEIPT_SEQUENCE = 2,  /**< velo's sample sequence: a difference means other samples */
-  VL_RECEIPT_FILES = 4,     /**< scene and assets: size and digest */
-  VL_RECEIPT_CAMERA = 8,    /**< the camera */
-  VL_RECEIPT_SETTINGS = 16, /**< load, complete, film, build, render but for spp; fast bits: Embree's instruction set */
-  VL_RECEIPT_SAMPLES = 32,  /**< the samples that the image has, and render.spp */
+  VL_RECEIPT_VERSION = 1,  /**< velo's version and commit */
+  VL_RECEIPT_SEQUENCE = 2, /**< velo's sample sequence: a difference means other samples */
+  VL_RECEIPT_FILES = 4,    /**< scene and assets: size and digest */
+  VL_RECEIPT_CAMERA = 8,   /**< the camera */
+  VL_RECEIPT_SETTINGS =
+      16, /**< load, complete, film, build, render but for spp and adaptive; fast bits: Embree's instruction set */
+  VL_RECEIPT_SAMPLES = 32,  /**< the samples that the image has, render.spp and render.adaptive */
   VL_RECEIPT_DEVELOP = 64,  /**< develop */
   VL_RECEIPT_COMMAND = 128, /**< command and path of the scene */
   VL_RECEIPT_OUTPUTS = 256, /**< outputs */

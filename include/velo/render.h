@@ -106,7 +106,7 @@ VL_API uint64_t vl_film_memory(const vlFilmDef *def);
 /** Removes all samples but keeps the memory, so that the film can take another image of the same size. Must not be
  * called while a render runs. */
 VL_API void vl_film_clear(vlFilm *film);
-/** The number of samples per pixel. Only finished passes count. */
+/** The number of samples per pixel. Only finished passes count. With adaptive sampling: of the blocks with the most. */
 VL_API uint32_t vl_film_spp(const vlFilm *film);
 /** How to develop a film. */
 typedef struct vlDevelopDef {
@@ -186,6 +186,16 @@ typedef struct vlRenderDef {
    * not finished in time is discarded. The first pass of each call is always finished. The callback may change the
    * limit while the render runs. */
   double time_limit;
+  /** Adaptive sampling: above 0, the threshold of noise in display values (1: white). The film needs
+   * vlFilmDef.errors. It is divided into blocks of 32 x 32 pixels. When a block has 16, 24, 32, 48, 64, 96, ...
+   * samples per pixel, its noise is estimated: the root mean square, over its pixels and channels, of the standard
+   * errors of the display values. A block whose noise is below the threshold with 95 % confidence gets no more
+   * samples; the other blocks get up to spp. first_sample must be 0. A crop has the pixels of the whole image if it
+   * ends at multiples of 32. Default 0: none. */
+  double noise;
+  vlView noise_view;      /**< the view that makes the display values; default standard */
+  float noise_exposure;   /**< as vl_image_view's: a factor of 2^noise_exposure before the view; default 0 */
+  float noise_scale;      /**< a further factor, as vlDevelopDef.exposure; default 1 */
   vlProgressFn *progress; /**< default null */
   void *progress_user;    /**< passed to progress */
 } vlRenderDef;
@@ -194,7 +204,9 @@ VL_API vlRenderDef vl_default_render_def(void);
 
 /** What a render did. */
 typedef struct vlRenderStats {
-  uint32_t spp;                                          /**< samples per pixel of the film */
+  uint32_t spp;                  /**< samples per pixel of the film; adaptive: the most of a block */
+  double mean_spp;               /**< mean over its blocks of 32 x 32 pixels */
+  uint32_t blocks, noisy_blocks; /**< number of blocks; of those not below vlRenderDef.noise */
   uint64_t paths, camera_rays, bounce_rays, shadow_rays; /**< counts */
   uint64_t not_finite;       /**< number of samples discarded because they were not finite or above 2^40 */
   double seconds;            /**< duration of the call */

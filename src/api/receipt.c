@@ -259,6 +259,11 @@ uint32_t vl_receipt_samples(const vlReceipt *receipt, uint32_t *planned) {
   return count_of(json_object_get(receipt->tree, "samples"));
 }
 
+double vl_receipt_noise(const vlReceipt *receipt) {
+  const json_t *adaptive = json_object_get(json_object_get(receipt->tree, "render"), "adaptive");
+  return json_number_value(json_object_get(adaptive, "noise"));
+}
+
 float vl_receipt_exposure(const vlReceipt *receipt) {
   const json_t *value = json_object_get(json_object_get(receipt->tree, "develop"), "exposure");
   return json_is_number(value) ? (float)json_number_value(value) : 1.0f;

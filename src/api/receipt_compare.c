@@ -65,24 +65,32 @@ static void differ_value(Comparison *c, const char *thing, const char *name, con
     differ(c, "%s%s%.60s is %s, was %s", start, between, name, is, was);
 }
 
-/* Compares the members of two objects but for one (null: none). thing: null for "NAME is A, was B". */
-static void compare_objects(Comparison *c, const char *thing, const json_t *then, const json_t *now, const char *but) {
+/* The members of "render" that say when a block has enough samples, not which samples it gets. */
+static bool is_extent(const char *key) {
+  return strcmp(key, "spp") == 0 || strcmp(key, "adaptive") == 0;
+}
+
+/* Compares the members of two objects, for which `extent` is null or equals is_extent(member). thing: null for "NAME is
+ * A, was B". */
+static void compare_objects(Comparison *c, const char *thing, const json_t *then, const json_t *now,
+                            const bool *extent) {
   const char *key;
   json_t *value;
   json_object_foreach((json_t *)(uintptr_t)now, key, value) {
     const json_t *old = json_object_get(then, key);
-    if (!(but && strcmp(key, but) == 0) && (!old || !json_equal(old, value))) differ_value(c, thing, key, old, value);
+    if ((!extent || is_extent(key) == *extent) && (!old || !json_equal(old, value)))
+      differ_value(c, thing, key, old, value);
   }
   json_object_foreach((json_t *)(uintptr_t)then, key, value) {
-    if (!(but && strcmp(key, but) == 0) && !json_object_get(now, key)) differ_value(c, thing, key, value, NULL);
+    if ((!extent || is_extent(key) == *extent) && !json_object_get(now, key)) differ_value(c, thing, key, value, NULL);
   }
 }
 
 static void compare_member(Comparison *c, const char *thing, const vlReceipt *then, const vlReceipt *now,
-                           const char *name, const char *but) {
+                           const char *name, const bool *extent) {
   const json_t *old = json_object_get(then->tree, name), *new = json_object_get(now->tree, name);
   if (json_is_object(old) && json_is_object(new))
-    compare_objects(c, thing, old, new, but);
+    compare_objects(c, thing, old, new, extent);
   else if (!old != !new || (old && !json_equal(old, new)))
     differ_value(c, NULL, name, old, new);
 }
@@ -132,12 +140,11 @@ uint32_t vl_receipt_compare(const vlReceipt *then, const vlReceipt *now, uint32_
     compare_member(&c, "complete", then, now, "complete", NULL);
     compare_member(&c, "film", then, now, "film", NULL);
     compare_member(&c, "build", then, now, "build", NULL);
-    compare_member(&c, "render", then, now, "render", "spp");
+    compare_member(&c, "render", then, now, "render", &(const bool){false});
   }
   if (parts & VL_RECEIPT_SAMPLES) {
-    const json_t *old = json_object_get(json_object_get(then->tree, "render"), "spp");
-    const json_t *new = json_object_get(json_object_get(now->tree, "render"), "spp");
-    if ((old || new) && !json_equal(old, new)) differ_value(&c, NULL, "spp", old, new);
+    const json_t *old = json_object_get(then->tree, "render"), *new = json_object_get(now->tree, "render");
+    if (old && new) compare_objects(&c, NULL, old, new, &(const bool){true});
     compare_member(&c, NULL, then, now, "samples", NULL);
   }
   if (parts & VL_RECEIPT_DEVELOP) compare_member(&c, "develop", then, now, "develop", NULL);

@@ -43,6 +43,7 @@ static const char *const colors[] = {"spectral", "rgb", NULL};
 static const char *const light_samplers[] = {"bvh", "power", "uniform", NULL};
 static const char *const bits[] = {"portable", "fast", NULL};
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
+static const char *const views[] = {"standard", "khronos-neutral", "agx", "raw", NULL};
 static const char *const environments[] = {"auto", "none", "studio", "sky", "white", "file", NULL};
 
 static const Field load_fields[] = {FIELD_BOOL(vlLoadDef, permissive),   FIELD_DOUBLE(vlLoadDef, time),
@@ -95,6 +96,10 @@ static const Field render_fields[] = {FIELD_FAMILY(vlRenderDef, tracer, "tracers
                                       FIELD_DOUBLE(vlRenderDef, merge_radius),
                                       FIELD_COUNT(vlRenderDef, light_paths),
                                       FIELD_END};
+/* The object "adaptive" of "render". */
+static const Field noise_fields[] = {FIELD_DOUBLE(vlRenderDef, noise), FIELD_CHOICE(vlRenderDef, noise_view, views),
+                                     FIELD_FLOAT(vlRenderDef, noise_exposure), FIELD_FLOAT(vlRenderDef, noise_scale),
+                                     FIELD_END};
 static const Field develop_fields[] = {FIELD_FLOAT(vlDevelopDef, exposure), FIELD_END};
 
 bool vl_receipt_put(json_t *parent, const char *key, json_t *value) {
@@ -176,7 +181,8 @@ static bool put_build(json_t *tree, const vlBuildDef *build) {
 /* The length of the sequence in figures, also where it is the default. */
 static bool put_render(json_t *tree, vlRenderDef render) {
   if (!render.sequence) render.sequence = vl_sampler_sequence(render.sampler, render.spp);
-  return put_def(tree, "render", render_fields, &render);
+  return put_def(tree, "render", render_fields, &render) &&
+         (!(render.noise > 0) || put_def(json_object_get(tree, "render"), "adaptive", noise_fields, &render));
 }
 
 bool vl_receipt_put_settings(json_t *tree, const vlReceiptDef *def) {

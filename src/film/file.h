@@ -11,7 +11,6 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
 
 enum {
   VL_FILM_FORMAT = 1,
-  VL_FILM_BLOCK = 32, /* blocks are at multiples of so many pixels */
   VL_FILM_MOST_RANGES = 1 << 16,
   VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
 };
@@ -46,10 +45,6 @@ static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
          def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
-
-/* The blocks of a window: cells of the image's grid, clipped. */
-uint32_t vl_film_block_count(const uint32_t window[4]);
-void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t place[4]);
 
 /* ---- header ------------------------------------------------------------------------------------------------------ */
 

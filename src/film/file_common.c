@@ -10,23 +10,6 @@ uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size) {
   return size ? (uint32_t)crc32_z(crc, data, size) : crc; /* zlib begins anew where data is null */
 }
 
-static uint32_t cells(uint32_t low, uint32_t high) {
-  return (high + VL_FILM_BLOCK - 1) / VL_FILM_BLOCK - low / VL_FILM_BLOCK;
-}
-
-uint32_t vl_film_block_count(const uint32_t w[4]) {
-  return cells(w[0], w[2]) * cells(w[1], w[3]);
-}
-
-void vl_film_block_place(const uint32_t w[4], uint32_t index, uint32_t place[4]) {
-  uint32_t across = cells(w[0], w[2]), x = w[0] / VL_FILM_BLOCK + index % across;
-  uint32_t y = w[1] / VL_FILM_BLOCK + index / across;
-  place[0] = x * VL_FILM_BLOCK > w[0] ? x * VL_FILM_BLOCK : w[0];
-  place[1] = y * VL_FILM_BLOCK > w[1] ? y * VL_FILM_BLOCK : w[1];
-  place[2] = (x + 1) * VL_FILM_BLOCK < w[2] ? (x + 1) * VL_FILM_BLOCK : w[2];
-  place[3] = (y + 1) * VL_FILM_BLOCK < w[3] ? (y + 1) * VL_FILM_BLOCK : w[3];
-}
-
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count) {
   uint64_t sum = 0;
   for (uint32_t i = 0; i < count; i++) sum += ranges[i].end - ranges[i].first;

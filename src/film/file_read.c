@@ -9,7 +9,8 @@
 typedef struct Extent {
   uint32_t crop[4];
   vlSampleSpan range;
-  bool any, even; /* even: all pixels of the crop have the samples of `range` */
+  /* even: all pixels of the crop have the samples of `range`; joined: all have a single range with the same first */
+  bool any, even, joined;
   uint64_t pixels, least;
 } Extent;
 
@@ -18,10 +19,14 @@ static void add_block(Extent *e, const vlFilmReader *r) {
   if (!h->range_count) return;
   uint64_t samples = vl_film_samples(r->ranges, h->range_count);
   if (!e->any)
-    *e = (Extent){{h->x0, h->y0, h->x1, h->y1}, r->ranges[0], true, h->range_count == 1, 0, samples};
-  else
-    e->even =
-        e->even && h->range_count == 1 && r->ranges[0].first == e->range.first && r->ranges[0].end == e->range.end;
+    *e = (Extent){.crop = {h->x0, h->y0, h->x1, h->y1},
+                  .range = r->ranges[0],
+                  .any = true,
+                  .even = h->range_count == 1,
+                  .joined = true,
+                  .least = samples};
+  e->joined = e->joined && h->range_count == 1 && r->ranges[0].first == e->range.first;
+  e->even = e->even && e->joined && r->ranges[0].end == e->range.end;
   e->crop[0] = h->x0 < e->crop[0] ? h->x0 : e->crop[0], e->crop[1] = h->y0 < e->crop[1] ? h->y0 : e->crop[1];
   e->crop[2] = h->x1 > e->crop[2] ? h->x1 : e->crop[2], e->crop[3] = h->y1 > e->crop[3] ? h->y1 : e->crop[3];
   e->least = samples < e->least ? samples : e->least;
@@ -40,10 +45,11 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
   r->next = 0, r->at = at;
   if (!e->any) return vl_fail(error, VL_ERROR_SCENE, "%s: the film has no samples", r->path);
   uint64_t area = (uint64_t)(e->crop[2] - e->crop[0]) * (e->crop[3] - e->crop[1]);
-  if (e->pixels != area) e->even = false, e->least = 0;
-  if (partial || e->even) return VL_OK;
+  if (e->pixels != area) e->even = e->joined = false, e->least = 0;
+  if (partial || e->joined) return VL_OK;
   return vl_fail(error, VL_ERROR_SCENE,
-                 "%s: its pixels do not all have the same samples; \"velo film info --missing\" lists what is missing",
+                 "%s: its pixels do not all begin with the same samples; \"velo film info --missing\" lists what is "
+                 "missing",
                  r->path);
 }
 
@@ -66,7 +72,7 @@ static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data
   }
 }
 
-static vlResult fill(vlFilmReader *r, vlFilm *film, vlError *error) {
+static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError *error) {
   size_t count = vl_film_pixels(film), n = film->def.buckets;
   size_t most = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&film->def);
   film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
@@ -85,7 +91,11 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, vlError *error) {
   while (result == VL_OK && r->next < r->blocks) {
     result = vl_film_reader_next(r, error);
     if (result == VL_OK) result = vl_film_reader_data(r, data, error);
-    if (result == VL_OK && r->head.range_count) place_block(film, &r->head, data);
+    if (result != VL_OK || !r->head.range_count) continue;
+    place_block(film, &r->head, data);
+    uint32_t block = vl_film_block_at(film->def.crop, r->head.x0, r->head.y0);
+    if (blocks_differ && vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
+      result = vl_fail_memory(error);
   }
   vl_free(film->context, data);
   return result;
@@ -107,10 +117,11 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     result = vl_film_create(context, &def, &made);
     if (result != VL_OK) result = vl_fail_memory(error); /* the header's film was checked */
   }
-  if (result == VL_OK) result = fill(&reader, made, error);
+  bool blocks_differ = extent.joined && !extent.even;
+  if (result == VL_OK) result = fill(&reader, made, blocks_differ, error);
   if (result == VL_OK) {
-    vl_film_set_spp(made, (uint32_t)extent.least);
-    vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.even});
+    if (!blocks_differ) vl_film_set_spp(made, (uint32_t)extent.least);
+    vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.joined});
   } else {
     vl_film_destroy(made);
     made = NULL;

@@ -18,7 +18,6 @@ struct vlFilmWriter {
 typedef struct Run {
   const vlFilm *film;
   const uint32_t *window;
-  vlSampleSpan range;
   uint64_t *offsets; /* of the blocks in the file, bytes */
   char *buffers;     /* of buffer_size bytes, one for each worker */
   size_t buffer_size;
@@ -30,9 +29,15 @@ vlFilmWriteDef vl_default_film_write_def(void) {
   return (vlFilmWriteDef){.cookie = VL_COOKIE_FILM_WRITE};
 }
 
-static bool has_samples(const vlFilm *film, const uint32_t place[4]) {
-  const uint32_t *c = film->def.crop;
-  return place[0] >= c[0] && place[1] >= c[1] && place[2] <= c[2] && place[3] <= c[3];
+/* The samples of the film's pixels in a block of the window. Empty: none. */
+static vlSampleSpan samples_of(const vlFilm *film, const uint32_t place[4]) {
+  const uint32_t *c = film->def.crop, first = film->sequence.first;
+  if (place[0] < c[0] || place[1] < c[1] || place[2] > c[2] || place[3] > c[3]) return (vlSampleSpan){first, first};
+  return (vlSampleSpan){first, first + vl_film_block_spp(film, vl_film_block_at(c, place[0], place[1]))};
+}
+
+static bool is_empty(vlSampleSpan span) {
+  return span.first == span.end;
 }
 
 /* Whether the crop lies in the window and no block of the window is partly inside the crop. */
@@ -64,14 +69,15 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   char *buffer = run->buffers + worker * run->buffer_size, *to = buffer;
   uint32_t place[4];
   vl_film_block_place(run->window, block, place);
-  bool filled = has_samples(run->film, place);
+  vlSampleSpan range = samples_of(run->film, place);
+  bool filled = !is_empty(range);
   vlFilmBlockHead head;
   vl_film_block_head(&run->film->def, place, filled, &head);
   memcpy(to, &head, sizeof head);
   to += sizeof head;
   if (filled) {
-    memcpy(to, &run->range, sizeof run->range);
-    to = gather(run->film, place, to + sizeof run->range);
+    memcpy(to, &range, sizeof range);
+    to = gather(run->film, place, to + sizeof range);
   }
   uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
   memcpy(to, &crc, sizeof crc);
@@ -101,7 +107,7 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
     vlFilmBlockHead head;
     vl_film_block_place(run->window, i, place);
     run->offsets[i] = at;
-    at += vl_film_block_head(&run->film->def, place, has_samples(run->film, place), &head);
+    at += vl_film_block_head(&run->film->def, place, !is_empty(samples_of(run->film, place)), &head);
   }
   if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
   vl_free(writer->context, run->offsets);
@@ -146,10 +152,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   made->context = film->context;
   result = vl_file_open_write(&made->file, path, error);
   if (result == VL_OK) {
-    Run run = {.film = film,
-               .window = window,
-               .range = {film->sequence.first, film->sequence.first + film->spp},
-               .descriptor = made->file.descriptor};
+    Run run = {.film = film, .window = window, .descriptor = made->file.descriptor};
     result = vl_film_put_header(&made->file, header);
     if (result == VL_OK) result = write_blocks(made, &run, sizeof(vlFilmPreamble) + strlen(header), error);
     if (result == VL_OK && made->file.failed_errno)

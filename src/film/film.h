@@ -45,7 +45,26 @@ typedef struct vlFilmSensor {
 } vlFilmSensor;
 /* The film's sensor; null: the standard observer. */
 const vlFilmSensor *vl_film_sensor(const vlFilm *film);
-void vl_film_set_spp(vlFilm *film, uint32_t spp); /* render calls it after each whole pass */
+void vl_film_set_spp(vlFilm *film, uint32_t spp); /* of all blocks; render calls it after each whole pass */
+
+/* Blocks: the cells of a grid over the whole image, 32 x 32 pixels each, clipped to a window x0, y0, x1, y1 and
+ * numbered row by row. A film's blocks are those of its crop. All pixels of a block have the same number of samples. */
+enum { VL_FILM_BLOCK = 32 };
+uint32_t vl_film_block_count(const uint32_t window[4]);
+void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t place[4]);
+/* The block with a pixel of the window. */
+uint32_t vl_film_block_at(const uint32_t window[4], uint32_t x, uint32_t y);
+/* The number of samples of a block. It is at most vl_film_spp, which some block has. */
+uint32_t vl_film_block_spp(const vlFilm *film, uint32_t block);
+/* Sets it, to at least the present number, between passes. Error: MEMORY. */
+vlResult vl_film_set_block_spp(vlFilm *film, uint32_t block, uint32_t spp);
+/* Whether blocks have different numbers of samples. */
+bool vl_film_is_adaptive(const vlFilm *film);
+
+/* The noise of a block: an upper bound, at 95 % confidence, of the root mean square of the standard errors of its
+ * display values (0 black, 1 white; all pixels, three channels). view, exposure: as vl_image_view's; scale: a further
+ * factor on the linear values. For films with errors; infinite below 2 samples. */
+double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale);
 
 /* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
  * first sample; a film without samples has length 0. */
@@ -68,7 +87,8 @@ void vl_film_abandon_pass(vlFilm *film);
 void *vl_film_scratch(vlFilm *film, size_t size);
 
 /* Adds the sums and the sample count of another film of the same size and crop. The sums are the same bits as if all
- * samples had been added to one film. Not during a pass. Errors: ARGUMENT if the films differ in shape, MEMORY. */
+ * samples had been added to one film. Not during a pass. Errors: ARGUMENT if the films differ in shape or have blocks
+ * with numbers of samples of their own, MEMORY. */
 vlResult vl_film_add_film(vlFilm *film, const vlFilm *other);
 
 /* Pixel filter sampling: u, v in [0,1)^2 to an offset (dx, dy) from the pixel centre, monotone in u and v, and the

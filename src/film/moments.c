@@ -55,7 +55,11 @@ void vl_film_merge_moments(vlFilm *film, const vlFilm *other) {
 /* The pixel is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled). To first order
  * the variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2, times n / (n - 1) because the mean is estimated from
  * the same samples. Squares are taken about the unweighted mean first, where cancellation is least. */
-static float standard_error(const vlFilmPixel *p, const vlFilmMoments *m, int c, double weight) {
+double vl_film_standard_error(const vlFilm *film, size_t at, int c) {
+  if (!film->front) return INFINITY;
+  const vlFilmPixel *p = film->front + at;
+  const vlFilmMoments *m = film->moments[0] + at;
+  double weight = vl_filter_weight(&film->filter);
   if (m->samples < 2 || p->weight <= 0) return INFINITY;
   double n = (double)m->samples, plain = (double)m->plain[c] * 0x1p-50 / n;
   double squares = ldexp((double)m->squares[c][2], 128 - VL_SQUARE_BITS) +
@@ -65,7 +69,7 @@ static float standard_error(const vlFilmPixel *p, const vlFilmMoments *m, int c,
   double spread = squares - n * plain * plain;
   if (spread < squares * 0x1p-48) spread = 0; /* all samples are equal; the rest is rounding */
   double off = plain - mean, variance = (spread + n * off * off) * (n / (n - 1)) * weight * weight / (sum_w * sum_w);
-  return (float)sqrt(variance);
+  return sqrt(variance);
 }
 
 vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {
@@ -80,11 +84,7 @@ vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **i
   vlResult result = vl_image_create(film->context, &image_def, image);
   if (result != VL_OK) return result;
   float *to = vl_image_pixels(*image);
-  double weight = vl_filter_weight(&film->filter);
   for (size_t i = 0; i < vl_film_pixels(film); i++)
-    for (int c = 0; c < 3; c++) {
-      float e = film->front ? standard_error(&film->front[i], &film->moments[0][i], c, weight) : INFINITY;
-      to[3 * i + (size_t)c] = e * def->exposure;
-    }
+    for (int c = 0; c < 3; c++) to[3 * i + (size_t)c] = (float)vl_film_standard_error(film, i, c) * def->exposure;
   return VL_OK;
 }

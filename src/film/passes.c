@@ -90,6 +90,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->front);
   vl_free(context, film->back);
   vl_free(context, film->stamp);
+  vl_free(context, film->block_spp);
   vl_free(context, film->scratch);
   vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
@@ -102,6 +103,8 @@ uint32_t vl_film_spp(const vlFilm *film) {
 }
 void vl_film_set_spp(vlFilm *film, uint32_t spp) {
   film->spp = spp;
+  vl_free(film->context, film->block_spp);
+  film->block_spp = NULL;
 }
 vlFilmSequence vl_film_sequence(const vlFilm *film) {
   return film->spp || film->sequence.uneven ? film->sequence : (vlFilmSequence){0, 0, false};
@@ -172,7 +175,7 @@ void vl_film_abandon_pass(vlFilm *film) {
 /* Clears the film. Where there are two sets of sums, one is freed: the next pass begins as the first one does. */
 void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
-  film->spp = 0;
+  vl_film_set_spp(film, 0);
   film->sequence = (vlFilmSequence){0, 0, false};
   if (film->front && film->back) {
     vl_free(film->context, film->front);
@@ -195,6 +198,7 @@ void *vl_film_scratch(vlFilm *film, size_t size) {
 
 vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
   if (!film || !other || film == other || film->in_pass || other->in_pass) return VL_ERROR_ARGUMENT;
+  if (film->block_spp || other->block_spp) return VL_ERROR_ARGUMENT;
   if (film->def.width != other->def.width || film->def.height != other->def.height ||
       memcmp(film->def.crop, other->def.crop, sizeof film->def.crop) != 0 || film->def.space != other->def.space ||
       film->spp > UINT32_MAX - other->spp || (film->def.errors && !other->def.errors) ||

@@ -43,6 +43,7 @@ struct vlFilm {
   vlFilmDef def;
   uint32_t width, height; /* of the crop window */
   uint32_t spp;
+  uint32_t *block_spp; /* samples of each block; null: all have spp */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
   vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */
@@ -62,6 +63,8 @@ struct vlFilm {
 /* In moments.c: adds one sample; copies the front first where the pixel is new in the pass. */
 void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]);
 void vl_film_merge_moments(vlFilm *film, const vlFilm *other);
+/* The standard error of channel c of pixel `at`: of its linear value, without exposure. Infinite below 2 samples. */
+double vl_film_standard_error(const vlFilm *film, size_t at, int c);
 
 /* In spectrum.c. begin: false when out of memory. */
 bool vl_film_spectrum_begin(vlFilm *film);

@@ -1,6 +1,7 @@
 /* image/view.c: view transforms: conversion of linear light to display values. The input is linear Rec.709 R G B, or Y;
  * the result is 8-bit sRGB. Only arithmetic with fixed bits (math/approx.h, tables) is used, so results are the same on
  * every machine. */
+#include "image/view.h"
 #include "base/error.h"
 #include "image/image.h"
 #include "image/pixel.h"
@@ -57,14 +58,36 @@ static Color agx(Color c) {
                  -0.0529716355144438f * r - 0.0980434501171241f * g + 1.15107367264116f * b};
 }
 
+static bool is_encoded(vlView view) {
+  return view == VL_VIEW_AGX || view == VL_VIEW_RAW;
+}
+
+static Color tone_map(vlView view, Color c) {
+  if (view != VL_VIEW_KHRONOS_NEUTRAL && view != VL_VIEW_AGX) return c;
+  c.r = c.r > 0.0f ? c.r : 0.0f; /* both are defined for non-negative light */
+  c.g = c.g > 0.0f ? c.g : 0.0f;
+  c.b = c.b > 0.0f ? c.b : 0.0f;
+  return view == VL_VIEW_AGX ? agx(c) : khronos_neutral(c);
+}
+
+static float clamp_display(float x) {
+  return x > 0.0f ? x < 1.0f ? x : 1.0f : 0.0f;
+}
+
+/* The sRGB curve (IEC 61966-2-1) of a value in [0, 1]. */
+static float srgb_curve(float x) {
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * vl_exp(vl_ln(x) * (1.0f / 2.4f)) - 0.055f;
+}
+
+void vl_view_display(vlView view, const float linear[3], float display[3]) {
+  Color c = tone_map(view, (Color){linear[0], linear[1], linear[2]});
+  const float values[3] = {clamp_display(c.r), clamp_display(c.g), clamp_display(c.b)};
+  for (int i = 0; i < 3; i++) display[i] = is_encoded(view) ? values[i] : clamp_display(srgb_curve(values[i]));
+}
+
 static void to_bytes(vlView view, Color c, uint8_t out[3]) {
-  bool encoded = view == VL_VIEW_AGX || view == VL_VIEW_RAW;
-  if (view == VL_VIEW_KHRONOS_NEUTRAL || view == VL_VIEW_AGX) { /* both are defined for non-negative light */
-    c.r = c.r > 0.0f ? c.r : 0.0f;
-    c.g = c.g > 0.0f ? c.g : 0.0f;
-    c.b = c.b > 0.0f ? c.b : 0.0f;
-    c = view == VL_VIEW_AGX ? agx(c) : khronos_neutral(c);
-  }
+  bool encoded = is_encoded(view);
+  c = tone_map(view, c);
   out[0] = encoded ? vl_linear_to_unorm8(c.r) : vl_linear_to_srgb8(c.r);
   out[1] = encoded ? vl_linear_to_unorm8(c.g) : vl_linear_to_srgb8(c.g);
   out[2] = encoded ? vl_linear_to_unorm8(c.b) : vl_linear_to_srgb8(c.b);

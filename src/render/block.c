@@ -36,6 +36,7 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   int32_t *px = rows.px, *py = rows.py;
   uint32_t *index = rows.index, n = 0;
+  bool some = r->adaptive.in_pass < r->adaptive.blocks;
   uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x, pixels = r->span_x * r->span_y * TILE_PIXELS;
   uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
   uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
@@ -43,6 +44,7 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
     for (uint32_t m = 0; m < pixels; m++) { /* Morton order: two tiles lie side by side, four in a square */
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
       if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
+      if (some && !vl_adaptive_has(&r->adaptive, x, y)) continue;
       px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
       n++;
     }

@@ -11,6 +11,7 @@
 #include <stdatomic.h>
 
 #include "film/film.h"
+#include "render/adaptive.h"
 #include "render/film_rays.h"
 #include "render/stop.h"
 #include "render/two_way.h"
@@ -41,12 +42,15 @@ typedef struct vlRenderRun {
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
   uint32_t span_x, span_y; /* tiles of a block, the unit of work of a worker */
   uint32_t first_sample, pass_samples;
+  vlAdaptive adaptive;
   vlRenderWorker *workers;
   atomic_uint blocks_done;
   vlStop stop;
   double start;
   vlFilmSequence sequence;
-  uint32_t sample_before; /* the first sample of this call */
+  /* Work in samples per pixel, the mean over all pixels: before this call, before the running pass, of the running
+   * pass, and at the end of this call (expected). */
+  double work_before, work_done, work_pass, work_total;
 } vlRenderRun;
 
 /* Chooses the size of a block. In a pass with few samples a block has several tiles, so that batches are full, but not
@@ -57,7 +61,7 @@ uint32_t vl_render_block_count(const vlRenderRun *r);
 void vl_render_block(void *user, uint32_t block, uint32_t worker);
 
 /* Reports the progress to the caller's callback. False: the callback asks to stop. Only on the thread that called
- * vl_render. In render.c. */
-bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples);
+ * vl_render. work: as in vlRenderRun. In render.c. */
+bool vl_render_report(vlRenderRun *r, bool pass_done, double work);
 
 #endif

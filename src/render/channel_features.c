@@ -61,7 +61,7 @@ static void add(const vlChannelPass *p, vlChannelWorker *w, float *total) {
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   float total[VL_TILE_PIXELS] = {0};
   vlFilmRays rays = p->image;
-  uint32_t samples = p->spp < VL_FEATURE_SAMPLES ? p->spp : VL_FEATURE_SAMPLES, n = 0;
+  uint32_t spp = vl_channel_spp(p, tile), samples = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES, n = 0;
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
     n = make_rays(p, w, &rays, tile, s);

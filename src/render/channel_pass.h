@@ -83,7 +83,8 @@ typedef struct vlChannelPass {
   vlChannelWorker *workers;
   vlStop *stop;
   vlFilmRays choice, image; /* rays of the image's samples: through the middle of the lens, and unchanged */
-  uint32_t spp;             /* samples per pixel of the image */
+  uint32_t spp;             /* samples per pixel of the film; 0: they are not needed */
+  bool adaptive;            /* the film's blocks have different numbers of samples */
   uint32_t first_sample;    /* index of the first */
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
@@ -100,6 +101,8 @@ static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint3
   const uint32_t *crop = p->def->crop;
   return *x >= crop[0] && *y >= crop[1] && *x < crop[2] && *y < crop[3];
 }
+/* Samples per pixel of the image in a tile, which lies in one block of the film. */
+uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile);
 static inline size_t vl_channel_at(const vlChannelPass *p, uint32_t x, uint32_t y) {
   return (size_t)(y - p->def->crop[1]) * (p->def->crop[2] - p->def->crop[0]) + (x - p->def->crop[0]);
 }

@@ -55,6 +55,7 @@ static vlTallyEntry *tally_best(vlTally *t) {
 typedef struct Count {
   const vlFilmRays *rays;
   bool matte;
+  uint32_t spp;             /* samples per pixel in this tile */
   int64_t total;            /* weight of the pixel's samples */
   float off, x, y, nearest; /* of the choice: the sample closest to the centre, or the nearest surface */
 } Count;
@@ -162,17 +163,17 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
       add_matte(p, w, i, weight);
     else
       add_choice(p, w, c, i, weight);
-    if (r.index[i] == p->first_sample + p->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
+    if (r.index[i] == p->first_sample + c->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
   }
 }
 
 static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, bool matte, uint32_t tile) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   uint32_t n = 0, x, y;
-  Count c = {.rays = rays, .matte = matte};
+  Count c = {.rays = rays, .matte = matte, .spp = vl_channel_spp(p, tile)};
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
-    for (uint32_t s = 0; s < p->spp; s++) {
+    for (uint32_t s = 0; s < c.spp; s++) {
       rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = p->first_sample + s;
       if (++n < VL_BATCH) continue;
       flush(p, w, &c, n);

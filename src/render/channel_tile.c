@@ -89,16 +89,24 @@ static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_
     if (vl_channel_wanted(p, VL_CHANNEL_ID_OBJECT << k)) *vl_channel_ids(p, at, VL_INDEX_IDS + k) = values[k];
 }
 
+uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile) {
+  if (!p->adaptive) return p->spp ? p->spp : p->def->samples;
+  const uint32_t *crop = vl_film_def(p->def->film)->crop;
+  uint32_t x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  return vl_film_block_spp(p->def->film, vl_film_block_at(crop, x > crop[0] ? x : crop[0], y > crop[1] ? y : crop[1]));
+}
+
 /* Clears the whole tile: pixels without a ray get the values of no hit, too. */
 static void clear_tile(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  uint32_t x, y;
+  uint32_t x, y, samples = vl_channel_spp(p, tile);
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     w->film_x[k] = w->film_y[k] = 0.5f;
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     size_t at = vl_channel_at(p, x, y);
     if (vl_channel_wanted(p, VL_CHANNEL_Z)) *vl_channel_floats(p, at, VL_INDEX_Z) = INFINITY;
     if (vl_channel_wanted(p, VL_CHANNEL_DISTANCE)) *vl_channel_floats(p, at, VL_INDEX_DISTANCE) = INFINITY;
-    if (vl_channel_wanted(p, VL_CHANNEL_SAMPLES)) *vl_channel_ids(p, at, VL_INDEX_SAMPLES) = p->def->samples;
+    if (vl_channel_wanted(p, VL_CHANNEL_SAMPLES)) *vl_channel_ids(p, at, VL_INDEX_SAMPLES) = samples;
     for (uint32_t i = 0; i < 2; i++)
       if (vl_channel_wanted(p, VL_CHANNEL_FORWARD << i))
         *vl_channel_ids(p, at, VL_INDEX_FORWARD + i) = VL_HIDDEN_NOWHERE;

@@ -247,6 +247,9 @@ static vlCamera pinhole(const vlCamera *camera, double time) {
 
 void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(p->world->context);
+  const uint32_t *film_crop = p->def->film ? vl_film_def(p->def->film)->crop : NULL;
+  p->adaptive =
+      film_crop && vl_film_is_adaptive(p->def->film) && memcmp(film_crop, p->def->crop, sizeof p->def->crop) == 0;
   p->time = p->def->time == p->def->time ? p->def->time : middle_time(camera);
   p->camera = pinhole(camera, p->time);
   p->open = vl_camera_time(camera, 0.5 * camera->width, 0.5 * camera->height, 0.0);

@@ -22,15 +22,15 @@ static void count_rays(const vlRenderRun *r, uint64_t *paths, uint64_t *rays) {
   }
 }
 
-bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
+bool vl_render_report(vlRenderRun *r, bool pass_done, double work) {
   if (!r->def->progress) return true;
   vlProgress p;
   memset(&p, 0, sizeof p);
-  double total = (double)r->def->spp - r->sample_before;
+  double total = r->work_total - r->work_before;
   p.spp_done = vl_film_spp(r->film);
   p.spp_total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0;
   p.elapsed = vl_seconds() - r->start;
-  p.fraction = total > 0 ? (done_samples - r->sample_before) / total : 1;
+  p.fraction = total > 0 ? fmin(1, (work - r->work_before) / total) : 1;
   p.remaining = p.fraction > 0 ? p.elapsed * (1 - p.fraction) / p.fraction : INFINITY;
   if (r->def->time_limit > 0 && p.elapsed + p.remaining > r->def->time_limit) {
     p.remaining = fmax(0, r->def->time_limit - p.elapsed);
@@ -45,7 +45,7 @@ bool vl_render_report(vlRenderRun *r, bool pass_done, double done_samples) {
 static bool ask_to_stop(void *user) {
   vlRenderRun *r = user;
   double share = (double)atomic_load(&r->blocks_done) / vl_render_block_count(r);
-  return !vl_render_report(r, false, r->first_sample + share * r->pass_samples);
+  return !vl_render_report(r, false, r->work_done + share * r->work_pass);
 }
 
 static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
@@ -64,6 +64,10 @@ static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vl
                    def->sequence);
   if (vl_film_sequence(film).uneven)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's pixels do not all have the same samples");
+  if (!(def->noise >= 0) || (def->noise > 0 && (!f->errors || !(def->noise_scale > 0) || def->first_sample)))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "render: noise %g needs a film with errors, a noise_scale above 0, and samples from the first on",
+                   def->noise);
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
   if (def->merge_radius <= 0 || def->merge_radius > 3e38)
@@ -169,16 +173,21 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
  * time of a sample is not known yet. A pass takes at most PASS_SECONDS, the work
  * lost when it is abandoned, and at most half of the time that is left. The split into passes does not change the
  * image. */
-static uint32_t pass_size(uint32_t done, uint32_t total, double seconds_per_sample, double left) {
+static uint32_t pass_size(uint32_t done, uint32_t most, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : 1;
   if (fit < size) size = fit > 1 ? (uint32_t)fit : 1;
-  return size < total - done ? size : total - done;
+  return size < most ? size : most;
 }
 
 static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
   memset(stats, 0, sizeof *stats);
   stats->spp = vl_film_spp(r->film);
+  if (r->adaptive.context) {
+    stats->mean_spp = vl_adaptive_mean_spp(&r->adaptive);
+    stats->noisy_blocks = vl_adaptive_noisy(&r->adaptive);
+    stats->blocks = r->adaptive.blocks;
+  }
   stats->seconds = vl_seconds() - r->start;
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) {
     const vlRenderWorker *w = &r->workers[i];
@@ -206,12 +215,61 @@ vlRenderDef vl_default_render_def(void) {
                        .ao_distance = INFINITY,
                        .merge_radius = VL_UNSET,
                        .light_paths = VL_AS_MANY_AS_PIXELS,
+                       .noise_scale = 1.0f,
                        .ao_cosine = true};
 }
 
-/* The index of the sample that the film gets next. */
-static uint32_t next_sample(const vlRenderRun *r) {
-  return r->sequence.first + vl_film_spp(r->film);
+/* Chooses the blocks and the samples of the next pass. False: there is none. */
+static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
+  uint32_t total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0, first, most;
+  bool any = vl_adaptive_next(&r->adaptive, total, &first, &most);
+  r->work_done = vl_adaptive_mean_spp(&r->adaptive);
+  r->work_total = vl_adaptive_expected_spp(&r->adaptive, total);
+  if (!any) return false;
+  double share = (double)r->adaptive.in_pass / r->adaptive.blocks;
+  r->first_sample = r->sequence.first + first;
+  r->pass_samples = r->two_way ? 1 : pass_size(first, most, share * seconds_per_work, left);
+  r->work_pass = share * r->pass_samples;
+  return true;
+}
+
+/* One pass. *late: it was not finished before the time limit. */
+static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
+  if (vl_film_begin_pass(r->film) != VL_OK) return vl_fail_memory(error);
+  vlResult result = VL_OK;
+  vl_render_choose_blocks(r);
+  if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
+  atomic_store(&r->blocks_done, 0);
+  if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
+  if (result == VL_OK) vl_parallel_for(r->world->context, vl_render_block_count(r), vl_render_block, r);
+  if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks) vl_two_way_drop_splats(r->two_way);
+  *late = atomic_load(&r->stop.late);
+  if (result == VL_OK && !atomic_load(&r->stop.stopped)) {
+    vl_film_commit_pass(r->film);
+    return vl_adaptive_end_pass(&r->adaptive, r->pass_samples) == VL_OK ? VL_OK : vl_fail_memory(error);
+  }
+  vl_film_abandon_pass(r->film);
+  if (*late) return VL_OK;
+  return result == VL_OK || result == VL_CANCELLED ? vl_fail(error, VL_CANCELLED, "stopped") : result;
+}
+
+static vlResult render_passes(vlRenderRun *r, vlError *error) {
+  const vlRenderDef *def = r->def;
+  double seconds_per_work = 0; /* of a sample per pixel of the whole film */
+  bool late = false;
+  r->work_before = vl_adaptive_mean_spp(&r->adaptive);
+  for (bool first = true;; first = false) {
+    double end = def->time_limit > 0 ? r->start + def->time_limit : 0, pass_start = vl_seconds();
+    if (!choose_pass(r, seconds_per_work, end > 0 ? end - pass_start : INFINITY)) return VL_OK;
+    r->stop.deadline = first ? 0 : end;
+    vlResult result = render_pass(r, &late, error);
+    if (result != VL_OK || late) return result;
+    seconds_per_work = (vl_seconds() - pass_start) / r->work_pass;
+    r->work_done = vl_adaptive_mean_spp(&r->adaptive);
+    bool more = vl_adaptive_expected_spp(&r->adaptive, def->spp - r->sequence.first) > r->work_done;
+    if (!vl_render_report(r, true, r->work_done) && more) return vl_fail(error, VL_CANCELLED, "stopped");
+    if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit) return VL_OK;
+  }
 }
 
 vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
@@ -234,46 +292,16 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
     r->sequence.first = def->first_sample;
   }
   vl_film_set_sequence(film, r->sequence);
-  r->sample_before = next_sample(r);
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
   prepare(r, &focused);
   result = make_workers(r, world->context, error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
-  double seconds_per_sample = 0;
-  while (result == VL_OK && next_sample(r) < def->spp) {
-    if ((result = vl_film_begin_pass(film)) != VL_OK) {
-      vl_fail_memory(error);
-      break;
-    }
-    r->first_sample = next_sample(r);
-    double end = def->time_limit > 0 ? r->start + def->time_limit : 0;
-    double left = end > 0 ? end - vl_seconds() : INFINITY;
-    r->stop.deadline = r->first_sample > r->sample_before ? end : 0;
-    r->pass_samples =
-        r->two_way ? 1 : pass_size(vl_film_spp(film), def->spp - r->sequence.first, seconds_per_sample, left);
-    vl_render_choose_blocks(r);
-    if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
-    atomic_store(&r->blocks_done, 0);
-    if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
-    double pass_start = vl_seconds();
-    if (result == VL_OK) vl_parallel_for(world->context, vl_render_block_count(r), vl_render_block, r);
-    if (result != VL_OK || atomic_load(&r->stop.stopped)) {
-      vl_film_abandon_pass(film);
-      if (atomic_load(&r->stop.late))
-        result = VL_OK; /* the time limit is reached */
-      else if (result == VL_OK || result == VL_CANCELLED)
-        result = vl_fail(error, VL_CANCELLED, "stopped");
-      break;
-    }
-    vl_film_commit_pass(film);
-    seconds_per_sample = (vl_seconds() - pass_start) / r->pass_samples;
-    vl_film_set_spp(film, vl_film_spp(film) + r->pass_samples);
-    if (!vl_render_report(r, true, next_sample(r)) && next_sample(r) < def->spp)
-      result = vl_fail(error, VL_CANCELLED, "stopped");
-    if (def->time_limit > 0 && vl_seconds() - r->start >= NEARLY * def->time_limit) break;
-  }
+  if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def) != VL_OK)
+    result = vl_fail_memory(error);
+  if (result == VL_OK) result = render_passes(r, error);
   if (stats && r->workers) fill_stats(r, stats);
+  vl_adaptive_destroy(&r->adaptive);
   vl_two_way_destroy(r->two_way);
   return result;
 }

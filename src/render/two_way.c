@@ -95,6 +95,10 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, float 
   }
 }
 
+void vl_two_way_drop_splats(vlTwoWayRun *run) {
+  vl_splats_clear(&run->splats);
+}
+
 void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
                      float *g, float *b) {
   vl_splats_take(&run->splats, n, px, py, weight, r, g, b);

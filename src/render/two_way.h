@@ -41,6 +41,8 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
                                        float *time);
 /* Traces the light paths of sample `index`. Errors: MEMORY, CANCELLED. */
 vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlError *error);
+/* Drops the splats that no sample has taken, after a pass that was not over all pixels. */
+void vl_two_way_drop_splats(vlTwoWayRun *run);
 /* Moves the splats of n pixels to their samples, whose filter weights are `weight`. To be called once per pixel and
  * pass, on any thread. */
 void vl_two_way_take(vlTwoWayRun *run, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,

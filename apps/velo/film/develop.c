@@ -17,6 +17,7 @@ typedef struct Develop {
   vlFilmFile *file;
   vlFilm *film;
   vlImage *image, *errors, *spectrum;
+  bool uneven; /* blocks have different samples */
   Outputs outputs;
 } Develop;
 
@@ -25,6 +26,7 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt) {
   const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
   vlResult result = vl_image_set_attribute(d->image, &samples);
   if (!receipt || !spp || result != VL_OK) return result;
+  if (d->uneven && !(vl_receipt_noise(receipt) > 0)) return result; /* no command makes this image */
   vlReceipt *own = NULL;
   result = vl_receipt_of_image(receipt, spp, &own, NULL);
   if (result == VL_OK) {
@@ -35,10 +37,24 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt) {
   return result;
 }
 
+/* Finds out whether blocks with samples have different ones. */
+static vlResult compare_blocks(Develop *d, vlError *error) {
+  vlFilmBlock block;
+  vlSampleRange first = {0, 0};
+  for (;;) {
+    vlResult result = vl_film_file_next(d->file, false, &block, error);
+    if (result != VL_OK || block.x1 == 0) return result;
+    if (!block.range_count) continue;
+    if (!first.end) first = block.ranges[0];
+    d->uneven |= block.range_count > 1 || block.ranges[0].first != first.first || block.ranges[0].end != first.end;
+  }
+}
+
 static int develop(Develop *d, const char *path) {
   vlError error = {0};
   vlDevelopDef def = vl_default_develop_def();
   vlResult result = vl_film_file_open(d->context, path, &d->file, &error);
+  if (result == VL_OK) result = compare_blocks(d, &error);
   if (result == VL_OK) result = vl_film_read(d->context, path, true, &d->film, &error);
   if (result != VL_OK) return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(d->file);

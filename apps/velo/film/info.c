@@ -82,6 +82,12 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
   uint32_t count = 0, planned = planned_of(file);
   size_t length = strlen(path);
   char stem[4096], name[4200];
+  double noise = receipt ? vl_receipt_noise(receipt) : 0;
+  if (noise > 0)
+    return report_failure(STATUS_SCENE,
+                          "%s: with --noise the samples that a block needs are not known before; velo render "
+                          "--continue renders them",
+                          path);
   if (!receipt || !planned)
     return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
   if (length > 5 && strcmp(path + length - 5, ".film") == 0) length -= 5;

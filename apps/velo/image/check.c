@@ -105,6 +105,7 @@ static void read_header(Check *c) {
   if (!centre && vl_image_find_attribute(c->image, "velo.filterRadius", &a) == VL_OK)
     for (int k = 0; k < 2; k++) c->reach[k] = a.numbers[k] * (1 + 1e-6);
   if (vl_image_find_attribute(c->image, "samplesPerPixel", &a) == VL_OK) c->spp = a.numbers[0];
+  c->adaptive = vl_image_find_attribute(c->image, "velo.noise", &a) == VL_OK;
   static const char *const positive[] = {"box", "triangle", "gaussian", "blackmanharris"};
   bool pinhole = vl_image_find_attribute(c->image, "velo.lensRadius", &a) == VL_OK && a.numbers[0] == 0;
   if (vl_image_find_attribute(c->image, "velo.filter", &a) != VL_OK || !pinhole || c->alpha < 0 ||
@@ -257,7 +258,7 @@ static int run_check(const Command *command, const Arguments *arguments) {
       {"types", "numbers are 32-bit floats, ids 32-bit integers", 0, false, 0, 0, 0},
       {"finite", "uv, albedo and errors are numbers", 0, false, 0, 0, 0},
       {"film", "the point of the film is the centre, or inside the pixel filter", 0, false, 0, 0, 0},
-      {"samples", "samples are the header's", 0, false, 0, 0, 0},
+      {"samples", "samples are the header's, of adaptive renders at most", 0, false, 0, 0, 0},
       {"matte", "Cryptomatte's ids are the manifest's, the larger coverage first", 0, false, 0, 0, 0},
       {"coverage", "coverages add up to alpha", 0, false, 0, 0, 0},
       {"flow", "flow leads to project(P) in the other camera", 0, false, 0, 0, 0},

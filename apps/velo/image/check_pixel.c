@@ -64,7 +64,10 @@ static void check_plain(Check *c) {
       check_note(c, RULE_FINITE, isfinite(c->pixel[places[i] + k]) ? 0 : (double)INFINITY);
   for (int k = 0; k < 3 && c->error >= 0; k++) /* infinity: too few samples */
     check_note(c, RULE_FINITE, c->pixel[c->error + k] >= 0 ? 0 : (double)INFINITY);
-  if (c->samples >= 0 && c->spp > 0) check_note(c, RULE_SAMPLES, fabs((double)c->pixel[c->samples] - c->spp) / c->spp);
+  if (c->samples >= 0 && c->spp > 0) {
+    double more = (double)c->pixel[c->samples] - c->spp;
+    check_note(c, RULE_SAMPLES, (c->adaptive ? fmax(more, 0) : fabs(more)) / c->spp);
+  }
   if (c->film < 0) return;
   for (int k = 0; k < 2; k++) {
     double over = fabs((double)c->pixel[c->film + k] - 0.5) - c->reach[k];

@@ -35,7 +35,7 @@ static int parse_command(Again *again) {
   report_usage_of(NULL);
   if (status >= 0) return status;
   for (const Option *option = render_options; option->name; option++)
-    if (again->arguments.values[option->id].given && !receipt_option_counts(option->id))
+    if (again->arguments.values[option->id].given && !receipt_option_counts(&again->arguments, option->id))
       return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
                             again->path, option->name);
   return again->arguments.operand_count == 1 ? -1 : fail_command(again, "it names no scene");
@@ -45,7 +45,7 @@ static int parse_command(Again *again) {
 static int take_options(Again *again, const Arguments *given) {
   for (const Option *option = render_options; option->name; option++) {
     if (!given->values[option->id].given) continue;
-    if (receipt_option_counts(option->id) || option->id == RENDER_TIME)
+    if (receipt_option_counts(given, option->id) || option->id == RENDER_TIME)
       return report_usage("--again %s makes the same image: --%s would make another", again->path, option->name);
     again->arguments.values[option->id] = given->values[option->id];
   }

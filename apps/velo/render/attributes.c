@@ -213,6 +213,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   const char *slash = strrchr(scene, '/');
   set_text(&header, "velo.scene", slash ? slash + 1 : scene);
   set_int(&header, "samplesPerPixel", spp);
+  if (render->noise > 0) set_double(&header, "velo.noise", render->noise);
   set_text(&header, "velo.sampler", kind_name("samplers", (int)render->sampler));
   set_double(&header, "velo.seed", render->seed); /* unsigned: does not fit EXR's int */
   set_text(&header, "velo.filter", kind_name("filters", (int)film->filter.kind));

@@ -33,7 +33,7 @@ static int parse_command(Continue *c, const vlReceipt *receipt) {
   report_usage_of(NULL);
   if (status >= 0) return status;
   for (const Option *option = render_options; option->name; option++)
-    if (c->arguments.values[option->id].given && !receipt_option_counts(option->id))
+    if (c->arguments.values[option->id].given && !receipt_option_counts(&c->arguments, option->id))
       return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
                             c->path, option->name);
   return c->arguments.operand_count == 1 ? -1 : fail_command(c, "it names no scene");
@@ -119,7 +119,7 @@ static int compare(const char *path, const vlReceipt *then, const vlReceipt *now
   return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", path, d.text, more);
 }
 
-/* Finds the pixels that have samples, and the samples of the first block. */
+/* Finds the pixels that have samples, the first sample of the first block, and the last sample of any. */
 static int find_extent(const char *path, vlFilmFile *file, uint32_t crop[4], vlSampleRange *range) {
   vlFilmBlock block;
   vlError error = {0};
@@ -133,6 +133,7 @@ static int find_extent(const char *path, vlFilmFile *file, uint32_t crop[4], vlS
     for (int i = 0; i < 4; i++)
       if (!any || (i < 2 ? place[i] < crop[i] : place[i] > crop[i])) crop[i] = place[i];
     if (!any) *range = block.ranges[0];
+    if (block.ranges[block.range_count - 1].end > range->end) range->end = block.ranges[block.range_count - 1].end;
     any = true;
   }
 }

@@ -16,6 +16,10 @@ const Option render_options[] = {
      "Default: the name the scene asks for, else its own with .exr,\nin the current folder",
      0, 0, NULL},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel", 1, 1 << 24, NULL},
+    {RENDER_NOISE, 0, "noise", OPTION_TEXT, "PERCENT",
+     "adaptive sampling: each block of 32 x 32 pixels gets samples until\nthe standard error of its display values is "
+     "below this part of\nwhite, such as 1%, or until it has --spp (docs/adaptive.md)",
+     0, 0, NULL},
     {RENDER_DENOISE, 0, "denoise", OPTION_TEXT, "FILE", "a denoised copy of the image, beside it (docs/denoising.md)",
      0, 0, NULL},
     {RENDER_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",

@@ -27,7 +27,7 @@ typedef struct ReceiptImage {
 } ReceiptImage;
 
 /* Returns whether the option changes the content of an image. Other options choose output paths, speed or messages. */
-bool receipt_option_counts(int option);
+bool receipt_option_counts(const Arguments *arguments, int option);
 vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *job, const ReceiptImage *which,
                       vlReceipt **receipt);
 /* Sets the attribute. Does nothing with --no-receipt. */

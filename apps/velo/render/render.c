@@ -19,6 +19,7 @@
 #include "render/job.h"
 #include "render/lens_options.h"
 #include "render/memory.h"
+#include "render/noise.h"
 #include "render/outputs.h"
 #include "render/progress.h"
 #include "render/scene_options.h"
@@ -248,6 +249,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = channels_choose(&render->channels, arguments);
   if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = shard_check(arguments);
+  if (status < 0) status = noise_check(arguments);
   if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
@@ -324,6 +326,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
                                    (has_layers(render) || render->film_plan.path)) ||
                                   render->denoised.outputs.count;
+  status = noise_apply(arguments, &render->outputs, render->job.defs);
+  if (status >= 0) return status;
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
     render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
   render->film_plan.whole = *render->job.defs;
@@ -391,6 +395,8 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     json_integer(&json, "status", status);
     json_bool(&json, "finished", stage == OUTPUT_FINISHED);
     json_integer(&json, "spp", spp);
+    json_number(&json, "mean_spp", stats->mean_spp);
+    json_integer(&json, "noisy_blocks", stats->noisy_blocks);
     json_number(&json, "seconds", stats->seconds);
     json_integer(&json, "paths", (int64_t)stats->paths);
     json_integer(&json, "camera_rays", (int64_t)stats->camera_rays);
@@ -494,6 +500,7 @@ static int render_and_write(Render *render) {
   vlResult result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
   report_status_line(NULL);
   report_not_finite(&stats);
+  noise_report(&job->defs->render, &stats);
   if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
 
   uint32_t spp = vl_film_spp(render->film);
@@ -506,6 +513,8 @@ static int render_and_write(Render *render) {
   if (stage == OUTPUT_FINISHED && (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
     return opened;
   int kept = film_keeper_finish(&render->keeper, render->film);
+  /* The image's receipt states the samples that its blocks needed at most; the film's states the limit. */
+  if (job->defs->render.noise > 0) job->defs->render.spp = spp;
   int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
   if (kept != STATUS_OK && (status == STATUS_OK || status > 128)) status = kept;
   if (status == STATUS_OK) report_late(render, spp);

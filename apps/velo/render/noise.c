@@ -1,0 +1,58 @@
+/* render/noise.c: see noise.h. */
+#include "render/noise.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/report.h"
+
+enum { MOST_SAMPLES = 65536 };
+
+/* Parses 1%, 0.5% or 0.01. The result is a fraction of white; 0: the text is wrong. */
+static double threshold_of(const char *text) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text) return 0;
+  if (strcmp(end, "%") == 0)
+    value /= 100;
+  else if (*end)
+    return 0;
+  return value >= 1e-5 && value <= 0.5 ? value : 0;
+}
+
+int noise_check(const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  if (!v[RENDER_NOISE].given) return -1;
+  if (!(threshold_of(v[RENDER_NOISE].text) > 0))
+    return report_usage("--noise \"%s\": must be a part of white from 0.001%% to 50%%, such as 1%%",
+                        v[RENDER_NOISE].text);
+  bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
+  if (v[RENDER_SAMPLES].given || (v[RENDER_SHARD].given && !by_tiles && !v[RENDER_TRAJECTORY].given))
+    return report_usage(
+        "--noise: the samples that a block needs follow from all those before; split the image with "
+        "--shard-by tiles");
+  return -1;
+}
+
+int noise_apply(const Arguments *arguments, const Outputs *outputs, vlSceneDefs *defs) {
+  const OptionValue *v = arguments->values;
+  if (!v[RENDER_NOISE].given) return -1;
+  if (outputs->meter)
+    return report_usage("--noise is measured in display values, which need a fixed exposure: give --exposure EV");
+  defs->film.errors = true;
+  defs->render.noise = threshold_of(v[RENDER_NOISE].text);
+  defs->render.noise_view = outputs->view;
+  defs->render.noise_exposure = outputs->exposure;
+  defs->render.noise_scale = defs->develop.exposure;
+  if (!v[RENDER_SPP].given) defs->render.spp = defs->render.sequence ? defs->render.sequence : MOST_SAMPLES;
+  return -1;
+}
+
+void noise_report(const vlRenderDef *def, const vlRenderStats *stats) {
+  if (!(def->noise > 0)) return;
+  if (stats->noisy_blocks)
+    report_note("%.1f spp in the mean; %u of %u blocks are still above the noise of %g %%", stats->mean_spp,
+                stats->noisy_blocks, stats->blocks, 100 * def->noise);
+  else
+    report_note("%.1f spp in the mean; all blocks are below the noise of %g %%", stats->mean_spp, 100 * def->noise);
+}

@@ -1,0 +1,48 @@
+/* render/adaptive.h: which blocks of the film get samples in the next pass.
+ *
+ * All blocks of a pass begin with the same sample. Without a noise threshold, the blocks with the fewest samples go
+ * first until all have the wanted number; in a new film these are all blocks in every pass.
+ *
+ * With a threshold, the noise of a block (vl_film_block_noise) is compared with it when the block has 16, 24, 32, 48,
+ * 64, 96, ... samples, and a block below it gets no more. The decision depends on the block's own sums at one of these
+ * numbers and on nothing else. So neither the division into passes and calls, nor the threads, nor the other blocks
+ * change the image, and a film in a file needs no more than its sums to be continued. */
+#ifndef RENDER_ADAPTIVE_H
+#define RENDER_ADAPTIVE_H
+
+#include "film/film.h"
+#include "velo/render.h"
+
+typedef struct vlAdaptive {
+  vlContext *context;
+  vlFilm *film;
+  double noise; /* threshold; 0: none */
+  vlView view;
+  float exposure, scale;
+  uint32_t blocks;
+  uint8_t *done; /* of each block: below the threshold */
+  double *seen;  /* of each block: its noise when it was last compared; 0: not yet */
+  uint8_t *pass; /* of each block: it gets samples in this pass */
+  uint32_t in_pass;
+} vlAdaptive;
+
+/* Compares the blocks that have a number of samples listed above. Error: MEMORY. */
+vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def);
+void vl_adaptive_destroy(vlAdaptive *a);
+
+/* Chooses the blocks of the next pass: those with *first samples, and at most *count more, so that none gets more than
+ * `total`. False: no block needs samples. */
+bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *count);
+/* Whether a pixel gets samples in this pass. */
+bool vl_adaptive_has(const vlAdaptive *a, uint32_t x, uint32_t y);
+/* After a committed pass of `count` samples: counts them, and compares the blocks. Error: MEMORY. */
+vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count);
+
+/* Samples per pixel, the mean over the blocks: those of the film, and an estimate of those at the end. The error falls
+ * as the square root of the number of samples. */
+double vl_adaptive_mean_spp(const vlAdaptive *a);
+double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total);
+/* The number of blocks that are not known to be below the threshold. */
+uint32_t vl_adaptive_noisy(const vlAdaptive *a);
+
+#endif

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Adaptive sampling, --noise: the same bytes for any threads, parts, stops and crops along blocks; what cannot go
+# together is refused.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "$VELO_SOURCE_DIR/test/cli/common.sh"
+cd "$work" || exit 1
+write_scene scene.pbrt
+render="$VELO render --quiet"
+small="--resolution 130x70"
+noise="$small --noise 4%"
+
+check whole $render scene.pbrt $noise -o a.exr --film a.film --channels samples,error,Z
+# The noisiest blocks have at least three times the samples of the cleanest, and all counts are of the schedule.
+counts=$("$VELO" film info a.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -nu | tr '\n' ' ')
+echo "samples: $counts"
+least=${counts%% *} most=$(printf '%s' "$counts" | tr ' ' '\n' | tail -n 1)
+check adapts test "$least" -ge 16 -a "$((3 * least))" -le "$most"
+for count in $counts; do
+  case $count in 16 | 24 | 32 | 48 | 64 | 96 | 128 | 192 | 256 | 384 | 512 | 768 | 1024) pass "comparison at $count" ;; *) fail "comparison at $count" ;; esac
+done
+# The channel `samples` has the numbers of the film's blocks.
+"$VELO" image convert a.exr samples.pfm --channel samples.Y
+cat >blocks.py <<'END'
+import re, struct, subprocess, sys
+velo, film, pfm = sys.argv[1:]
+with open(pfm, "rb") as file:
+    kind, width, height = file.readline(), *map(int, file.readline().split())
+    file.readline()
+    values = struct.unpack("<%df" % (width * height), file.read())
+text = subprocess.run([velo, "film", "info", film], stdout=subprocess.PIPE, text=True, check=True).stdout
+seen = 0
+for line in text.splitlines():
+    found = re.match(r" *samples *0:(\d+) of \d+, pixels (\d+),(\d+),(\d+),(\d+)", line)
+    if found:
+        count, x0, y0, x1, y1 = map(int, found.groups())
+        for y in range(y0, y1):
+            assert set(values[(height - 1 - y) * width + x0:(height - 1 - y) * width + x1]) == {count}, line
+        seen += (x1 - x0) * (y1 - y0)
+assert seen == width * height, seen
+END
+check "samples channel" python3 blocks.py "$VELO" a.film samples.pfm
+check "image check" "$VELO" image check a.exr
+
+for threads in 1 5; do
+  $render scene.pbrt $noise -t $threads -o b.exr --channels samples,error,Z
+  same "threads $threads" a.exr b.exr
+done
+for i in 1 2 3; do $render scene.pbrt $noise --shard $i/3 --shard-by tiles --film t$i.film --channels samples,error,Z; done
+check merge "$VELO" film merge t3.film t1.film t2.film -o m.film
+$render scene.pbrt $noise --film whole.film --channels samples,error,Z
+same "shards by tiles" m.film whole.film
+# stopped at 20 samples, which is between two comparisons, and continued
+$render scene.pbrt $noise --spp 20 --film s.film --channels samples,error,Z
+$render --continue s.film --spp 65536 -o b.exr
+same continued a.exr b.exr
+# a lower threshold goes on with the film of a higher one
+$render scene.pbrt $small --noise 3% -o finer.exr
+$render scene.pbrt $noise --film s.film
+check finer $render --continue s.film --noise 3% --spp 65536 -o b.exr
+same "a lower threshold" finer.exr b.exr
+# a crop along blocks has the pixels of the whole
+"$VELO" image convert a.exr part.pfm --crop 32,32,96,64
+$render scene.pbrt $noise --crop 32,32,96,64 -o crop.pfm
+same "crop along blocks" part.pfm crop.pfm
+$render scene.pbrt $noise -o plain.exr
+check again $render --again plain.exr -o again.exr
+same "again" plain.exr again.exr
+check developed "$VELO" film develop a.film -o d.pfm
+$render scene.pbrt $noise -o e.pfm
+same "developed as rendered" d.pfm e.pfm
+for tracer in bidirectional merging; do
+  $render scene.pbrt $noise --spp 48 --tracer $tracer -o b.exr -t 1
+  $render scene.pbrt $noise --spp 48 --tracer $tracer -o c.exr -t 3
+  same "$tracer" b.exr c.exr
+done
+# --time ends before the threshold; the image is that of the samples it reached
+$render scene.pbrt $small --noise 0.01% --time 0.5 -o b.exr --film time.film
+reached=$("$VELO" film info time.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)
+$render scene.pbrt $small --noise 0.01% --spp "$reached" -o c.exr
+same "--time" b.exr c.exr
+
+expect_code 2 bad $VELO render scene.pbrt --noise much
+expect_line bad 'must be a part of white'
+expect_code 2 negative $VELO render scene.pbrt --noise -1%
+expect_code 2 samples $VELO render scene.pbrt --noise 1% --samples 0:4 --film f.film
+expect_line samples 'shard-by tiles'
+expect_code 2 shard $VELO render scene.pbrt --noise 1% --shard 1/2 --film f.film
+expect_line shard 'shard-by tiles'
+expect_code 2 meter $VELO render scene.pbrt --noise 1% --exposure auto -o a.png
+expect_line meter 'give --exposure EV'
+run $VELO render scene.pbrt $small --noise 0.01% --spp 16 -o b.exr
+expect_text still 'blocks are still above the noise of 0.01 %'
+finish

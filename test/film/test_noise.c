@@ -1,0 +1,125 @@
+/* The noise of a film's blocks: against the known standard error of normal samples, for each view; how often it is
+ * below the true error; blocks at the edges of a crop. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "film/film.h"
+#include "statistics.h"
+
+enum { WIDTH = 100, HEIGHT = 70, SPP = 16 };
+static const uint32_t crop_[4] = {16, 8, 96, 70};
+
+/* A film of normal samples of a mean and a standard deviation, in grey. */
+static vlFilm *noisy_film(vlContext *context, float mean, float deviation, uint64_t seed) {
+  vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
+  vlFilm *film;
+  def.errors = true;
+  def.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  memcpy(def.crop, crop_, sizeof crop_);
+  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  statRng rng = stat_rng(seed);
+  assert_int_equal(vl_film_begin_pass(film), VL_OK);
+  for (int32_t y = (int32_t)crop_[1]; y < (int32_t)crop_[3]; y++)
+    for (int32_t x = (int32_t)crop_[0]; x < (int32_t)crop_[2]; x++)
+      for (int s = 0; s < SPP; s++) {
+        float u = 1.0f - stat_float(&rng), v = stat_float(&rng), alpha = 1, weight = 1;
+        float value = mean + deviation * sqrtf(-2 * logf(u)) * cosf(6.2831853f * v);
+        vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &alpha, &weight};
+        assert_int_equal(vl_film_add(film, &samples, NULL, NULL), 0);
+      }
+  vl_film_commit_pass(film);
+  vl_film_set_spp(film, SPP);
+  return film;
+}
+
+static void blocks_of_a_crop(void **state) {
+  (void)state;
+  /* columns 0-31, 32-63, 64-95; rows 0-31, 32-63, 64-69 */
+  assert_int_equal(vl_film_block_count(crop_), 9);
+  uint32_t pixels = 0;
+  for (uint32_t i = 0; i < 9; i++) {
+    uint32_t place[4];
+    vl_film_block_place(crop_, i, place);
+    pixels += (place[2] - place[0]) * (place[3] - place[1]);
+    assert_int_equal(vl_film_block_at(crop_, place[0], place[1]), i);
+    assert_int_equal(vl_film_block_at(crop_, place[2] - 1, place[3] - 1), i);
+  }
+  assert_int_equal(pixels, 80 * 62);
+}
+
+/* Of grey x the noise is the standard error times the slope of the view, and a little more: the bound. */
+static void expected_noise(void **state) {
+  vlContext *context = *state;
+  const float mean = 0.25f, deviation = 0.02f;
+  const double error = (double)deviation / sqrt(SPP);
+  const double srgb = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
+  vlFilm *film = noisy_film(context, mean, deviation, 1);
+  for (uint32_t i = 0; i < 6; i++) { /* those of the lowest row have 6 lines: their bound is wider */
+    double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1), standard;
+    double bright = vl_film_block_noise(film, i, VL_VIEW_RAW, 1, 0.75f);
+    standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1);
+    if (!(raw > 0.97 * error && raw < 1.06 * error)) fail_msg("block %u: noise %g, error %g", i, raw, error);
+    assert_true(fabs(bright / raw - 1.5) < 1e-5);
+    assert_true(fabs(standard / (raw * srgb) - 1) < 2e-3);
+  }
+  /* black and white are clipped: half of the interval remains at 0, nothing far above 1 */
+  vlFilm *white = noisy_film(context, 3, deviation, 2), *black = noisy_film(context, 0, deviation, 3);
+  assert_true(vl_film_block_noise(white, 4, VL_VIEW_STANDARD, 0, 1) == 0);
+  double half = vl_film_block_noise(black, 4, VL_VIEW_RAW, 0, 1);
+  assert_true(half > 0.4 * error && half < 0.7 * error);
+  assert_true(vl_film_block_noise(white, 4, VL_VIEW_KHRONOS_NEUTRAL, 0, 1) > 0);
+  vl_film_destroy(film);
+  vl_film_destroy(white);
+  vl_film_destroy(black);
+}
+
+/* The bound holds in 95 % of the cases: of 40 films with 6 whole blocks each. Its own distribution: binomial, 240
+ * draws at 0.95; below 219 has a probability of 0.3 %. */
+static void bound_holds(void **state) {
+  vlContext *context = *state;
+  const double error = 0.05 / sqrt(SPP);
+  int above = 0;
+  for (uint64_t seed = 10; seed < 50; seed++) {
+    vlFilm *film = noisy_film(context, 0.5f, 0.05f, seed);
+    for (uint32_t i = 0; i < 6; i++) above += vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1) >= error;
+    vl_film_destroy(film);
+  }
+  if (above < 219 || above == 240) fail_msg("%d of 240 bounds hold", above);
+}
+
+static void without_samples(void **state) {
+  vlContext *context = *state;
+  vlFilmDef def = vl_default_film_def(40, 40);
+  vlFilm *film;
+  def.errors = true;
+  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  assert_true(isinf(vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1)));
+  assert_false(vl_film_is_adaptive(film));
+  assert_int_equal(vl_film_set_block_spp(film, 3, 5), VL_OK);
+  assert_true(vl_film_is_adaptive(film));
+  assert_int_equal(vl_film_spp(film), 5);
+  assert_int_equal(vl_film_block_spp(film, 0), 0);
+  vl_film_clear(film);
+  assert_int_equal(vl_film_block_spp(film, 3), 0);
+  assert_false(vl_film_is_adaptive(film));
+  vl_film_destroy(film);
+}
+
+static int begin(void **state) {
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  return vl_context_create(&def, (vlContext **)state) != VL_OK;
+}
+static int end(void **state) {
+  vl_context_destroy(*state);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_of_a_crop), cmocka_unit_test(expected_noise),
+                                     cmocka_unit_test(bound_holds), cmocka_unit_test(without_samples)};
+  return cmocka_run_group_tests(tests, begin, end);
+}

@@ -143,6 +143,8 @@ enum {
 
 /** The families, index from 0; null past the end. */
 VL_API const vlKindFamily *vl_kind_family(uint32_t index);
+/** The family with that name ("materials"); null: there is none. Any thread. */
+VL_API const vlKindFamily *vl_kind_family_find(const char *name);
 
 #ifdef __cplusplus
 }

@@ -109,11 +109,9 @@ bool vl_receipt_put(json_t *parent, const char *key, json_t *value) {
 
 /* The names of kinds are those of files; kinds that files cannot name have that of their constant. */
 static const char *kind_name(const char *family, uint32_t kind) {
-  const vlKindFamily *f;
-  for (uint32_t i = 0; (f = vl_kind_family(i)); i++)
-    if (strcmp(f->name, family) == 0 && kind < f->kind_count)
-      return f->rows[kind]->name ? f->rows[kind]->name : f->constants[kind];
-  return "unknown";
+  const vlKindFamily *f = vl_kind_family_find(family);
+  if (!f || kind >= f->kind_count) return "unknown";
+  return f->rows[kind]->name ? f->rows[kind]->name : f->constants[kind];
 }
 
 static const char *choice(const char *const *names, uint32_t value) {

@@ -34,9 +34,9 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
     if (name && strcmp(name, models[i].name) == 0) model = &models[i];
   if (!model)
     return vl_camera_wrong_in(file, camera, "camera_type",
-                              "basalt: unknown camera_type \"%.12s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
+                              "basalt: unknown camera_type \"%s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
                               "eucm, ucm, fov",
-                              name ? name : "");
+                              vl_short_text(name).text);
   for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, values, names[i], &f[i]);
   for (int i = 0; i < 2 && model->shapes[i] && result == VL_OK; i++)
     result = vl_camera_number(file, values, model->shapes[i], &d->shape[i]);

@@ -66,9 +66,9 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCame
     return result;
   }
   return vl_camera_wrong_in(file, tree, "model_type",
-                            "camodocal: unknown model_type \"%.12s\"; there are PINHOLE, PINHOLE_FULL, MEI, "
+                            "camodocal: unknown model_type \"%s\"; there are PINHOLE, PINHOLE_FULL, MEI, "
                             "KANNALA_BRANDT",
-                            name ? name : "");
+                            vl_short_text(name).text);
 }
 
 /* Reads the camera file that a configuration names. */

@@ -17,9 +17,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCamera
     vl_camera_set_fisheye(d, k);
   } else {
     return vl_camera_wrong_in(file, tree, "distortion_model",
-                              "euroc: unknown distortion_model \"%.12s\" of %u coefficients; there are "
+                              "euroc: unknown distortion_model \"%s\" of %u coefficients; there are "
                               "radial-tangential, equidistant, none",
-                              model ? model : "", n);
+                              vl_short_text(model).text, n);
   }
   return VL_OK;
 }
@@ -29,10 +29,11 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree, vlCamer
   double k[4], m[16];
   const char *model = vl_camera_text(tree, "camera_model"), *sensor = vl_camera_text(tree, "sensor_type");
   if (sensor && strcmp(sensor, "camera") != 0)
-    return vl_camera_wrong_in(file, tree, "sensor_type", "euroc: the sensor is \"%.12s\", no camera", sensor);
+    return vl_camera_wrong_in(file, tree, "sensor_type", "euroc: the sensor is \"%s\", no camera",
+                              vl_short_text(sensor).text);
   if (model && strcmp(model, "pinhole") != 0)
-    return vl_camera_wrong_in(file, tree, "camera_model", "euroc: unknown camera_model \"%.12s\"; there is pinhole",
-                              model);
+    return vl_camera_wrong_in(file, tree, "camera_model", "euroc: unknown camera_model \"%s\"; there is pinhole",
+                              vl_short_text(model).text);
   vlResult result = vl_camera_numbers(file, tree, "intrinsics", k, 4, 4, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, tree, "T_BS", m, 16, 16, NULL);
   if (result == VL_OK)

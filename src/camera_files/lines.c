@@ -43,7 +43,8 @@ vlResult vl_camera_line_numbers(const vlCameraFile *file, const vlCameraLines *l
   while (*at) {
     char *end;
     double value = vl_camera_parse(at, &end);
-    if (end == at || !isfinite(value)) return vl_camera_wrong_line(file, lines, at, "no finite number: \"%.12s\"", at);
+    if (end == at || !isfinite(value))
+      return vl_camera_wrong_line(file, lines, at, "no finite number: \"%s\"", vl_short_text(at).text);
     if (found == most) return vl_camera_wrong_line(file, lines, at, "more than %u numbers", most);
     values[found++] = value;
     at = end + strspn(end, " \t");

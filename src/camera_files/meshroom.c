@@ -69,15 +69,16 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
   double k[5] = {0.0};
   int model = -1;
   if (base && (strstr(base, "equidistant") || strstr(base, "equirectangular")))
-    return vl_camera_wrong_in(file, intrinsic, "type", "meshroom: type \"%.12s\" is no model of velo", base);
+    return vl_camera_wrong_in(file, intrinsic, "type", "meshroom: type \"%s\" is no model of velo",
+                              vl_short_text(base).text);
   for (int i = 0; i < 7; i++)
     for (int j = 0; j < 3 && models[i].names[j]; j++)
       if (name && strcmp(name, models[i].names[j]) == 0) model = i;
   if (model < 0)
     return vl_camera_wrong_in(file, intrinsic, key,
-                              "meshroom: unknown %s \"%.12s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
+                              "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
                               "fisheye1, fisheye4",
-                              key, name ? name : "");
+                              key, vl_short_text(name).text);
   uint32_t count = json_array_size(list) ? models[model].count : 0;
   if (count) {
     vlResult result = numbers(file, intrinsic, "distortionParams", k, count);

@@ -66,9 +66,9 @@ static vlResult set_type(const vlCameraFile *file, const json_t *element, const 
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
     return vl_camera_wrong_element(file, element,
-                                   "type \"%.12s\" is no model of velo; there are frame, fisheye, equisolid_fisheye, "
+                                   "type \"%s\" is no model of velo; there are frame, fisheye, equisolid_fisheye, "
                                    "spherical",
-                                   type);
+                                   vl_short_text(type).text);
   }
   return VL_OK;
 }
@@ -108,7 +108,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
     const char *own = vl_camera_text(sensor, "id");
     if (id && own && strcmp(id, own) == 0) return read_sensor(file, sensor, record);
   }
-  return vl_camera_wrong_element(file, camera, "there is no sensor \"%.12s\"", id ? id : "");
+  return vl_camera_wrong_element(file, camera, "there is no sensor \"%s\"", vl_short_text(id).text);
 }
 
 typedef struct {

@@ -22,9 +22,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
     vl_camera_set_opencv(d, k, n);
   } else {
     return vl_camera_wrong_in(file, camera, "distortion_type",
-                              "okvis: unknown distortion_type \"%.12s\" of %u coefficients; there are radialtangential "
+                              "okvis: unknown distortion_type \"%s\" of %u coefficients; there are radialtangential "
                               "and equidistant of 4, radialtangential8 of 8, none",
-                              name ? name : "", n);
+                              vl_short_text(name).text, n);
   }
   return VL_OK;
 }

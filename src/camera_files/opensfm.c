@@ -35,9 +35,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
     return vl_camera_wrong_in(file, camera, "projection_type",
-                              "opensfm: projection_type \"%.12s\" is no model of velo; there are perspective, brown, "
+                              "opensfm: projection_type \"%s\" is no model of velo; there are perspective, brown, "
                               "radial, simple_radial, fisheye, fisheye_opencv, spherical",
-                              type);
+                              vl_short_text(type).text);
   }
   return result;
 }

@@ -43,8 +43,8 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   bool fisheye = type && strcmp(type, "KannalaBrandt8") == 0;
   if (type && !fisheye && strcmp(type, "PinHole") != 0 && strcmp(type, "Rectified") != 0)
     return vl_camera_wrong_in(file, tree, "Camera.type",
-                              "orbslam: unknown Camera.type \"%.12s\"; there are PinHole, Rectified, KannalaBrandt8",
-                              type);
+                              "orbslam: unknown Camera.type \"%s\"; there are PinHole, Rectified, KannalaBrandt8",
+                              vl_short_text(type).text);
   for (int i = 0; i < 4 && result == VL_OK; i++)
     result = vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]);
   if (result == VL_OK) result = read_lens(file, tree, prefix, fisheye, &record->camera);

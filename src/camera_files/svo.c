@@ -14,8 +14,8 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
   double f[4], k[4] = {0};
   bool atan = model && strcmp(model, "ATAN") == 0;
   if (!atan && !(model && strcmp(model, "Pinhole") == 0))
-    return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%.12s\"; there are Pinhole, ATAN",
-                              model ? model : "");
+    return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%s\"; there are Pinhole, ATAN",
+                              vl_short_text(model).text);
   vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
   for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, tree, names[i], &f[i]);
   for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++) result = vl_camera_optional(file, tree, lens[i], &k[i]);
@@ -48,9 +48,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
     d->shape[0] = k[0];
   } else {
     return vl_camera_wrong_in(file, lens, "type",
-                              "svo: unknown distortion \"%.12s\" of %u coefficients; there are radial-tangential and "
+                              "svo: unknown distortion \"%s\" of %u coefficients; there are radial-tangential and "
                               "equidistant of 4, fisheye of 1, none",
-                              type ? type : "", n);
+                              vl_short_text(type).text, n);
   }
   return VL_OK;
 }
@@ -65,7 +65,8 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
   const char *type = vl_camera_text(camera, "type");
   bool unified = type && strcmp(type, "omni") == 0;
   if (!unified && type && strcmp(type, "pinhole") != 0)
-    return vl_camera_wrong_in(file, camera, "type", "svo: unknown type \"%.12s\"; there are pinhole, omni", type);
+    return vl_camera_wrong_in(file, camera, "type", "svo: unknown type \"%s\"; there are pinhole, omni",
+                              vl_short_text(type).text);
   result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
   if (result == VL_OK) result = vl_camera_sides(file, camera, "image_width", "image_height", record);
   if (result != VL_OK) return result;

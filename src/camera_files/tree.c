@@ -144,8 +144,8 @@ static vlResult number_of(const vlCameraFile *file, const json_t *object, const 
     return VL_OK;
   }
   if (json_is_string(value))
-    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%.12s\", which is no finite number", file->dialect,
-                              key, json_string_value(value));
+    return vl_camera_wrong_in(file, value, NULL, "%s: \"%s\" holds \"%s\", which is no finite number", file->dialect,
+                              key, vl_short_text(json_string_value(value)).text);
   return vl_camera_wrong_in(file, own ? value : object, own ? NULL : key, "%s: \"%s\" must be a number", file->dialect,
                             key);
 }

@@ -1,5 +1,5 @@
-/* camera_files/velo.c: velo's own JSON: every field of a camera def by its name, exactly. Fields that are not given
- * are not written. Unknown fields are errors. */
+/* camera_files/velo.c: velo's own JSON: every parameter of the cameras' rows (velo/schema.h) by the name of its member,
+ * exactly, in the unit of the def. Fields that have their defaults are not written. Unknown fields are errors. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "camera/kinds.h"
 #include "camera_files/files.h"
+#include "velo/schema.h"
 
 /* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */
 #define COUNT_ONE(NAME, name) +1
@@ -16,70 +17,144 @@ static const char *projection_key(vlProjection kind) {
   return key ? key : "";
 }
 static const char *const distortions[] = {"none", "opencv", "radial", "thin-prism"};
-static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
-static const char *const readouts[] = {"down", "up", "right", "left"};
-static const char *const stereos[] = {"none", "parallel", "off-axis", "toe-in", "omnidirectional"};
-static const char *const eyes[] = {"both", "left", "right"};
 
-/* A field of a def, with its name in the file. count: how many numbers; more than one is a list, in which null is
- * unset. */
-typedef struct {
-  const char *name;
-  size_t offset;
-  uint32_t count;
-} Field;
-#define FIELD(name) \
-  { #name, offsetof(vlCameraDef, name), sizeof((vlCameraDef *)0)->name / sizeof(double) }
-#define FIELD_AS(name, member) \
-  { name, offsetof(vlCameraDef, member), sizeof((vlCameraDef *)0)->member / sizeof(double) }
-static const Field numbers[] = {
-    FIELD(fov), FIELD(view_distance), FIELD(zoom), FIELD(pixel_size), FIELD(focal_mm), FIELD(sensor_width_mm),
-    FIELD(fx), FIELD(fy), FIELD(skew), FIELD(cx), FIELD(cy), FIELD(screen_min_x), FIELD(screen_max_x),
-    FIELD(screen_min_y), FIELD(screen_max_y), FIELD(roll), FIELD(lens_radius), FIELD(focus_distance),
-    FIELD(shutter_open), FIELD(shutter_close), FIELD(exposure_time), FIELD(near_plane), FIELD(far_plane),
-    FIELD(max_angle),
+/* ---- fields ------------------------------------------------------------------------------------------------------ */
+
+typedef struct Field Field;
+typedef void Put(vlCameraText *text, const Field *field, const vlCameraDef *def);
+typedef vlResult Read(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *def);
+static Put put_fov_axis, put_curve, put_shape, put_distortion, put_vector, put_pose, put_pose_close;
+static Read read_curve, read_shape, read_distortion, read_pose, read_pose_close;
+
+/* How the file holds a parameter. */
+typedef enum Form { NOT_HELD, NUMBERS, COUNT, CHOICE, BOOL } Form;
+
+/* A field of the file: a parameter of a row, or numbers that no row holds, or what a function writes and reads. */
+struct Field {
+  const char *member;     /* of the row's parameter; null: no row holds it */
+  const char *name;       /* in the file; null: the last word of member */
+  size_t offset;          /* of numbers that no row holds */
+  uint32_t count;         /* how many; more than one is a list, in which null is unset */
+  Put *put;               /* null: by type */
+  Read *read;             /* null: by type */
+  const vlParameter *row; /* found by member */
+  Form form;              /* by the row's type; without a row: NUMBERS */
+};
+#define FIELD(path) \
+  { .member = path }
+#define FIELD_AS(path, file_name) \
+  { .member = path, .name = file_name }
+#define DOUBLES(file_name, path) \
+  { .name = file_name, .offset = offsetof(vlCameraDef, path), .count = sizeof((vlCameraDef *)0)->path / sizeof(double) }
+#define FIELD_BY(path, putter) \
+  { .member = path, .put = putter }
+#define RULE(file_name, putter, reader) \
+  { .name = file_name, .put = putter, .read = reader }
+
+/* The fields in the order in which they are written. Parameters of the rows that are not here follow by themselves. */
+static const Field known_fields[] = {
+    FIELD("fov"), FIELD("view_distance"), FIELD("zoom"), FIELD("pixel_size"), FIELD("focal_mm"),
+    FIELD("sensor_width_mm"), FIELD("fx"), FIELD("fy"), FIELD("skew"), FIELD("cx"), FIELD("cy"),
+    DOUBLES("screen_min_x", screen_min_x), DOUBLES("screen_max_x", screen_max_x), DOUBLES("screen_min_y", screen_min_y),
+    DOUBLES("screen_max_y", screen_max_y), FIELD("roll"), FIELD("lens_radius"), FIELD("focus_distance"),
+    FIELD("shutter_open"), FIELD("shutter_close"), FIELD("exposure_time"), FIELD("near_plane"), FIELD("far_plane"),
+    FIELD("max_angle"),
     /* the lens */
-    FIELD_AS("f_number", lens.f_number), FIELD_AS("unit_mm", lens.unit_mm), FIELD_AS("focus_point", lens.focus_point),
-    FIELD_AS("focus_pixel", lens.focus_pixel), FIELD_AS("aperture_rotation", lens.rotation),
-    FIELD_AS("aperture_ratio", lens.ratio), FIELD_AS("tilt_x", lens.tilt_x), FIELD_AS("tilt_y", lens.tilt_y),
-    FIELD_AS("lens_tilt_x", lens.lens_tilt_x), FIELD_AS("lens_tilt_y", lens.lens_tilt_y), FIELD_AS("iso", lens.iso),
-    FIELD_AS("exposure_seconds", lens.seconds),
+    FIELD("lens.f_number"), FIELD("lens.unit_mm"), FIELD("lens.focus_point"), DOUBLES("focus_pixel", lens.focus_pixel),
+    FIELD_AS("lens.rotation", "aperture_rotation"), FIELD_AS("lens.ratio", "aperture_ratio"), FIELD("lens.tilt_x"),
+    FIELD("lens.tilt_y"), FIELD("lens.lens_tilt_x"), FIELD("lens.lens_tilt_y"), FIELD("lens.iso"),
+    FIELD_AS("lens.seconds", "exposure_seconds"),
     /* time */
-    FIELD(readout), FIELD(eye_close), FIELD(lookat_close), FIELD(up_close), FIELD(roll_close), FIELD(pose_times),
+    FIELD("readout"), FIELD("eye_close"), FIELD("lookat_close"), FIELD("up_close"), FIELD("roll_close"),
+    DOUBLES("pose_times", pose_times),
     /* stereo */
-    FIELD_AS("interocular", stereo.interocular), FIELD_AS("convergence", stereo.convergence)};
-static const Field vectors[] = {FIELD(eye), FIELD(lookat), FIELD(up)};
-enum { NUMBERS = sizeof numbers / sizeof *numbers, VECTORS = sizeof vectors / sizeof *vectors };
+    FIELD("stereo.interocular"), FIELD("stereo.convergence"),
+    /* not numbers, or not one by one */
+    FIELD_BY("fov_axis", put_fov_axis), FIELD("lens.blades"), FIELD("lens.vignetting"), FIELD("readout_direction"),
+    RULE("shutter_curve", put_curve, read_curve), FIELD_AS("stereo.mode", "stereo"), FIELD("stereo_eye"),
+    RULE("shape", put_shape, read_shape), RULE("distortion", put_distortion, read_distortion),
+    FIELD_BY("eye", put_vector), FIELD_BY("lookat", put_vector), FIELD_BY("up", put_vector),
+    RULE("world_from_camera", put_pose, read_pose), RULE("world_from_camera_close", put_pose_close, read_pose_close)};
 
-static double *at(vlCameraDef *def, const Field *field) {
-  return (double *)((char *)def + field->offset);
+enum { MOST_FIELDS = 128 };
+typedef struct {
+  Field items[MOST_FIELDS];
+  size_t count;
+} Fields;
+
+/* Functions write and read blocks and the list `shape`. */
+static Form form_of(const vlParameter *p) {
+  if (p->flags & VL_PARAMETER_SHORTHAND || strncmp(p->member, "shape[", 6) == 0) return NOT_HELD;
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: return BOOL;
+    case VL_PARAMETER_COUNT: return COUNT;
+    case VL_PARAMETER_CHOICE: return CHOICE;
+    case VL_PARAMETER_DOUBLE:
+    case VL_PARAMETER_DOUBLE3: return NUMBERS;
+    case VL_PARAMETER_FLOAT:
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE:
+    case VL_PARAMETER_SPECTRUM:
+    case VL_PARAMETER_FLOAT_INPUT:
+    case VL_PARAMETER_SPECTRUM_INPUT:
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_TEXTURE:
+    case VL_PARAMETER_BLOCK: return NOT_HELD;
+  }
+  return NOT_HELD;
 }
 
-static vlResult check_names(const vlCameraFile *file, const json_t *tree) {
-  static const char *const others[] = {"velo_camera",
-                                       "name",
-                                       "pixel_origin",
-                                       "axes",
-                                       "projection",
-                                       "width",
-                                       "height",
-                                       "shape",
-                                       "fov_axis",
-                                       "distortion",
-                                       "world_from_camera",
-                                       "world_from_camera_close",
-                                       "blades",
-                                       "vignetting",
-                                       "shutter_curve",
-                                       "readout_direction",
-                                       "stereo",
-                                       "stereo_eye"};
+static void add_parameter(Fields *fields, const vlParameter *p) {
+  if (form_of(p) == NOT_HELD) return;
+  for (size_t i = 0; i < fields->count; i++) {
+    Field *field = &fields->items[i];
+    if (!field->member || strcmp(field->member, p->member) != 0) continue;
+    if (!field->row) field->row = p;
+    return;
+  }
+  if (fields->count < MOST_FIELDS) fields->items[fields->count++] = (Field){.member = p->member, .row = p};
+}
+
+static const char *last_word(const char *member) {
+  const char *dot = strrchr(member, '.');
+  return dot ? dot + 1 : member;
+}
+
+/* From the last row on: the first rows are pbrt's cameras, in which some parameters have other defaults. */
+static void list_fields(Fields *fields) {
+  const vlKindFamily *cameras = vl_kind_family_find("cameras");
+  fields->count = sizeof known_fields / sizeof *known_fields;
+  memcpy(fields->items, known_fields, sizeof known_fields);
+  for (uint32_t i = cameras->kind_count; i-- > 0;)
+    for (uint32_t k = 0; k < cameras->rows[i]->parameter_count; k++)
+      add_parameter(fields, &cameras->rows[i]->parameters[k]);
+  for (size_t i = 0; i < fields->count; i++) {
+    Field *field = &fields->items[i];
+    if (!field->name) field->name = last_word(field->member);
+    field->form = NUMBERS;
+    if (!field->row) continue;
+    field->form = form_of(field->row);
+    field->offset = field->row->offset;
+    field->count = field->row->type == VL_PARAMETER_DOUBLE3 ? 3 : 1;
+  }
+}
+
+static uint32_t count_choices(const vlParameter *p) {
+  uint32_t count = 0;
+  while (p->choices[count]) count++;
+  return count;
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+static vlResult check_names(const vlCameraFile *file, const json_t *tree, const Fields *fields) {
+  static const char *const others[] = {"velo_camera", "name", "pixel_origin", "axes", "projection", "width", "height"};
   enum { OTHERS = sizeof others / sizeof *others };
-  const char *known[NUMBERS + VECTORS + OTHERS], *key;
+  const char *known[MOST_FIELDS + OTHERS], *key;
   size_t count = 0;
   json_t *unused;
-  for (size_t i = 0; i < NUMBERS; i++) known[count++] = numbers[i].name;
-  for (size_t i = 0; i < VECTORS; i++) known[count++] = vectors[i].name;
+  for (size_t i = 0; i < fields->count; i++) known[count++] = fields->items[i].name;
   for (size_t i = 0; i < OTHERS; i++) known[count++] = others[i];
   json_object_foreach((json_t *)tree, key, unused) {
     bool found = false;
@@ -108,8 +183,8 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
   return vl_camera_wrong(file, "velo: unknown %s \"%s\"%s", key, vl_short_text(text).text, known);
 }
 
-static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
-  const json_t *lens = json_object_get(tree, "distortion");
+static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+  const json_t *lens = json_object_get(tree, field->name);
   uint32_t kind = 0;
   if (!lens) return VL_OK;
   if (!json_is_object(lens)) return vl_camera_wrong(file, "velo: \"distortion\" must have a model and coefficients");
@@ -120,10 +195,41 @@ static vlResult read_distortion(const vlCameraFile *file, const json_t *tree, vl
   return result;
 }
 
-/* Reads one number, or a list with null for unset; *values is unchanged if the field is missing. */
-static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field, double *values) {
+static vlResult read_shape(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+  uint32_t count = 0;
+  return json_object_get(tree, field->name) ? vl_camera_numbers(file, tree, field->name, d->shape, 1, 2, &count)
+                                            : VL_OK;
+}
+
+static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+  uint32_t count = 0;
+  double curve[2 * VL_SHUTTER_POINTS];
+  if (!json_object_get(tree, field->name)) return VL_OK;
+  vlResult result = vl_camera_numbers(file, tree, field->name, curve, 2, 2 * VL_SHUTTER_POINTS, &count);
+  if (result != VL_OK) return result;
+  if (count % 2) return vl_camera_wrong(file, "velo: \"%s\" must be a list of pairs, time and value", field->name);
+  d->shutter_points = count / 2;
+  for (uint32_t i = 0; i < d->shutter_points; i++)
+    d->shutter_at[i] = curve[2 * i], d->shutter_value[i] = curve[2 * i + 1];
+  return VL_OK;
+}
+
+static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool *given, double *m) {
+  *given = json_object_get(tree, key) != NULL;
+  return *given ? vl_camera_numbers(file, tree, key, m, 16, 16, NULL) : VL_OK;
+}
+
+static vlResult read_pose(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+  return read_matrix(file, tree, field->name, &d->has_matrix, d->world_from_camera);
+}
+
+static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *d) {
+  return read_matrix(file, tree, field->name, &d->has_matrix_close, d->world_from_camera_close);
+}
+
+/* Reads one number, or a list with null for unset. */
+static vlResult read_numbers(const vlCameraFile *file, const json_t *tree, const Field *field, double *values) {
   const json_t *list = json_object_get(tree, field->name);
-  if (!list) return VL_OK;
   if (field->count == 1) return vl_camera_number(file, tree, field->name, values);
   if (json_array_size(list) != field->count)
     return vl_camera_wrong(file, "velo: \"%s\" must be a list of %u numbers", field->name, field->count);
@@ -136,65 +242,57 @@ static vlResult read_field(const vlCameraFile *file, const json_t *tree, const F
   return VL_OK;
 }
 
-static vlResult read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, bool *given, double *m) {
-  *given = json_object_get(tree, key) != NULL;
-  return *given ? vl_camera_numbers(file, tree, key, m, 16, 16, NULL) : VL_OK;
+static vlResult read_count(const vlCameraFile *file, const json_t *tree, const Field *field, uint32_t *count) {
+  double number = 0.0;
+  vlResult result = vl_camera_number(file, tree, field->name, &number);
+  if (result != VL_OK) return result;
+  if (!(number >= 0.0 && number < 1e6) || number != floor(number))
+    return vl_camera_wrong(file, "velo: \"%s\" is %g; it must be a whole number", field->name, number);
+  *count = (uint32_t)number;
+  return VL_OK;
 }
 
-/* Reads blades, vignetting, the shutter's curve, stereo. */
-static vlResult read_lens_and_time(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
-  uint32_t direction = 0, mode = 0, eye = 0, count = 0;
-  double blades = 0.0, curve[2 * VL_SHUTTER_POINTS];
-  const json_t *vignetting = json_object_get(tree, "vignetting");
-  vlResult result = vl_camera_optional(file, tree, "blades", &blades);
-  if (result == VL_OK && (!(blades >= 0.0 && blades < 1e6) || blades != floor(blades)))
-    result = vl_camera_wrong(file, "velo: \"blades\" is %g; it must be a whole number", blades);
-  if (result == VL_OK && vignetting && !json_is_boolean(vignetting))
-    result = vl_camera_wrong(file, "velo: \"vignetting\" must be true or false");
-  if (result == VL_OK) result = word(file, tree, "readout_direction", readouts, 4, &direction);
-  if (result == VL_OK) result = word(file, tree, "stereo", stereos, 5, &mode);
-  if (result == VL_OK) result = word(file, tree, "stereo_eye", eyes, 3, &eye);
-  if (result == VL_OK && json_object_get(tree, "shutter_curve"))
-    result = vl_camera_numbers(file, tree, "shutter_curve", curve, 2, 2 * VL_SHUTTER_POINTS, &count);
-  if (result == VL_OK && count % 2)
-    result = vl_camera_wrong(file, "velo: \"shutter_curve\" must be a list of pairs, time and value");
-  if (result != VL_OK) return result;
-  d->lens.blades = (uint32_t)blades;
-  d->lens.vignetting = json_is_true(vignetting);
-  d->readout_direction = (vlReadout)direction;
-  d->stereo.mode = (vlStereoMode)mode;
-  d->stereo_eye = (vlEye)eye;
-  d->shutter_points = count / 2;
-  for (uint32_t i = 0; i < d->shutter_points; i++)
-    d->shutter_at[i] = curve[2 * i], d->shutter_value[i] = curve[2 * i + 1];
+static vlResult read_choice(const vlCameraFile *file, const json_t *tree, const Field *field, int *choice) {
+  uint32_t index = 0;
+  vlResult result = word(file, tree, field->name, field->row->choices, count_choices(field->row), &index);
+  if (result == VL_OK) *choice = (int)index;
+  return result;
+}
+
+/* The def is unchanged if the field is missing. */
+static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *def) {
+  void *at = (char *)def + field->offset;
+  const json_t *value = json_object_get(tree, field->name);
+  if (field->read) return field->read(file, tree, field, def);
+  if (!value) return VL_OK;
+  switch (field->form) {
+    case COUNT: return read_count(file, tree, field, at);
+    case CHOICE: return read_choice(file, tree, field, at);
+    case NUMBERS: return read_numbers(file, tree, field, at);
+    case BOOL:
+      if (!json_is_boolean(value)) return vl_camera_wrong(file, "velo: \"%s\" must be true or false", field->name);
+      *(bool *)at = json_is_true(value);
+      return VL_OK;
+    case NOT_HELD: break;
+  }
   return VL_OK;
 }
 
 vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   static const char *const origins[] = {"corner", "center"};
   vlCameraDef *d = &record->camera;
-  uint32_t projection = 0, axis = VL_FOV_SMALLER, origin = 0, count = 0;
+  uint32_t projection = 0, origin = 0;
   const char *projections[PROJECTIONS];
   for (int i = 0; i < PROJECTIONS; i++) projections[i] = projection_key((vlProjection)i);
-  vlResult result = check_names(file, tree);
+  Fields fields;
+  list_fields(&fields);
+  vlResult result = check_names(file, tree, &fields);
   if (result == VL_OK) result = vl_camera_side(file, tree, "width", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, tree, "height", &d->height);
   if (result == VL_OK) result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
-  if (result == VL_OK) result = word(file, tree, "fov_axis", axes, 5, &axis);
   if (result == VL_OK) result = word(file, tree, "pixel_origin", origins, 2, &origin);
-  for (size_t i = 0; i < NUMBERS && result == VL_OK; i++)
-    result = read_field(file, tree, &numbers[i], at(d, &numbers[i]));
-  for (size_t i = 0; i < VECTORS && result == VL_OK; i++)
-    result = read_field(file, tree, &vectors[i], at(d, &vectors[i]));
-  if (result == VL_OK && json_object_get(tree, "shape"))
-    result = vl_camera_numbers(file, tree, "shape", d->shape, 1, 2, &count);
-  if (result == VL_OK) result = read_matrix(file, tree, "world_from_camera", &d->has_matrix, d->world_from_camera);
-  if (result == VL_OK)
-    result = read_matrix(file, tree, "world_from_camera_close", &d->has_matrix_close, d->world_from_camera_close);
-  if (result == VL_OK) result = read_distortion(file, tree, d);
-  if (result == VL_OK) result = read_lens_and_time(file, tree, d);
+  for (size_t i = 0; i < fields.count && result == VL_OK; i++) result = read_field(file, tree, &fields.items[i], d);
   d->projection = (vlProjection)projection;
-  d->fov_axis = (vlFovAxis)axis;
   if (origin) { /* unset values stay unset */
     d->cx += 0.5, d->cy += 0.5;
     d->lens.focus_pixel[0] += 0.5, d->lens.focus_pixel[1] += 0.5;
@@ -203,18 +301,47 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-/* Writes a field if it differs from the default. */
-static void put_field(vlCameraText *text, const Field *field, const double *values, const double *standard) {
-  bool differs = false;
-  for (uint32_t i = 0; i < field->count; i++)
-    differs = differs || (!vl_is_unset(values[i]) && !isinf(values[i]) && values[i] != standard[i]);
-  if (!differs) return;
-  vl_camera_put(text, ",\n  \"%s\": %s", field->name, field->count > 1 ? "[" : "");
-  for (uint32_t i = 0; i < field->count; i++) {
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+static void put_fov_axis(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (!vl_is_unset(d->fov)) vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name, field->row->choices[d->fov_axis]);
+}
+
+static void put_curve(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (d->shutter_points) vl_camera_put(text, ",\n  \"%s\": [", field->name);
+  for (uint32_t i = 0; i < d->shutter_points; i++)
+    vl_camera_put(text, "%s[%.17g, %.17g]", i ? ", " : "", d->shutter_at[i], d->shutter_value[i]);
+  if (d->shutter_points) vl_camera_put(text, "]");
+}
+
+static void put_list(vlCameraText *text, const double *values, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++) {
     if (i) vl_camera_put(text, ", ");
     vl_camera_put(text, vl_is_unset(values[i]) ? "null" : "%.17g", values[i]);
   }
-  if (field->count > 1) vl_camera_put(text, "]");
+}
+
+static void put_shape(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  uint32_t count = vl_is_unset(d->shape[0]) ? 0 : vl_is_unset(d->shape[1]) ? 1 : 2;
+  if (!count) return;
+  vl_camera_put(text, ",\n  \"%s\": [", field->name);
+  put_list(text, d->shape, count);
+  vl_camera_put(text, "]");
+}
+
+static void put_distortion(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (d->distortion == VL_DISTORTION_NONE) return;
+  vl_camera_put(text, ",\n  \"%s\": {\"model\": \"%s\", \"coefficients\": [", field->name, distortions[d->distortion]);
+  put_list(text, d->distortion_coefficients, d->distortion_count);
+  vl_camera_put(text, "]}");
+}
+
+/* A vector of the pose, also where it is the default; not beside a matrix. */
+static void put_vector(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (d->has_matrix) return;
+  vl_camera_put(text, ",\n  \"%s\": [", field->name);
+  put_list(text, (const double *)(const void *)((const char *)d + field->offset), 3);
+  vl_camera_put(text, "]");
 }
 
 static void put_matrix(vlCameraText *text, const char *name, const double m[16]) {
@@ -226,20 +353,59 @@ static void put_matrix(vlCameraText *text, const char *name, const double m[16])
   vl_camera_put(text, "\n  ]");
 }
 
-static void put_lens_and_time(vlCameraText *text, const vlCameraDef *d) {
-  if (d->lens.blades) vl_camera_put(text, ",\n  \"blades\": %u", d->lens.blades);
-  if (d->lens.vignetting) vl_camera_put(text, ",\n  \"vignetting\": true");
-  if (d->readout_direction) vl_camera_put(text, ",\n  \"readout_direction\": \"%s\"", readouts[d->readout_direction]);
-  for (uint32_t i = 0; i < d->shutter_points; i++)
-    vl_camera_put(text, "%s[%.17g, %.17g]", i ? ", " : ",\n  \"shutter_curve\": [", d->shutter_at[i],
-                  d->shutter_value[i]);
-  if (d->shutter_points) vl_camera_put(text, "]");
-  if (d->stereo.mode) vl_camera_put(text, ",\n  \"stereo\": \"%s\"", stereos[d->stereo.mode]);
-  if (d->stereo_eye) vl_camera_put(text, ",\n  \"stereo_eye\": \"%s\"", eyes[d->stereo_eye]);
+static void put_pose(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (d->has_matrix) put_matrix(text, field->name, d->world_from_camera);
+}
+
+static void put_pose_close(vlCameraText *text, const Field *field, const vlCameraDef *d) {
+  if (d->has_matrix_close) put_matrix(text, field->name, d->world_from_camera_close);
+}
+
+static double default_of(const Field *field, const vlCameraDef *standard, uint32_t i) {
+  if (!field->row) return ((const double *)(const void *)((const char *)standard + field->offset))[i];
+  return field->row->flags & VL_PARAMETER_UNSET ? VL_UNSET : field->row->value[i];
+}
+
+static void put_numbers(vlCameraText *text, const Field *field, const double *values, const vlCameraDef *standard) {
+  bool differs = false;
+  for (uint32_t i = 0; i < field->count; i++)
+    differs = differs || (!vl_is_unset(values[i]) && !isinf(values[i]) && values[i] != default_of(field, standard, i));
+  if (!differs) return;
+  vl_camera_put(text, field->count > 1 ? ",\n  \"%s\": [" : ",\n  \"%s\": ", field->name);
+  put_list(text, values, field->count);
+  if (field->count > 1) vl_camera_put(text, "]");
+}
+
+/* Writes a field if it differs from its default. */
+static void put_field(vlCameraText *text, const Field *field, const vlCameraDef *def, const vlCameraDef *standard) {
+  const void *at = (const char *)def + field->offset;
+  if (field->put) {
+    field->put(text, field, def);
+    return;
+  }
+  double usual = field->row ? field->row->value[0] : 0.0;
+  switch (field->form) {
+    case NUMBERS: put_numbers(text, field, at, standard); break;
+    case COUNT:
+      if (*(const uint32_t *)at != (uint32_t)usual)
+        vl_camera_put(text, ",\n  \"%s\": %u", field->name, *(const uint32_t *)at);
+      break;
+    case BOOL:
+      if (*(const bool *)at != (usual != 0))
+        vl_camera_put(text, ",\n  \"%s\": %s", field->name, *(const bool *)at ? "true" : "false");
+      break;
+    case CHOICE:
+      if (*(const int *)at != (int)usual)
+        vl_camera_put(text, ",\n  \"%s\": \"%s\"", field->name, field->row->choices[*(const int *)at]);
+      break;
+    case NOT_HELD: break;
+  }
 }
 
 void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
-  vlCameraDef d = record->camera, standard = vl_default_camera_def(1, 1);
+  const vlCameraDef *d = &record->camera, standard = vl_default_camera_def(1, 1);
+  Fields fields;
+  list_fields(&fields);
   vl_camera_put(text, "{\n  \"velo_camera\": 1,\n");
   if (record->name[0]) {
     vl_camera_put(text, "  \"name\": ");
@@ -247,29 +413,9 @@ void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
     vl_camera_put(text, ",\n");
   }
   vl_camera_put(text, "  \"pixel_origin\": \"corner\",\n  \"axes\": \"x right, y down, z forward\",\n");
-  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u", projection_key(d.projection),
-                d.width, d.height);
-  for (size_t i = 0; i < NUMBERS; i++) put_field(text, &numbers[i], at(&d, &numbers[i]), at(&standard, &numbers[i]));
-  if (!vl_is_unset(d.fov)) vl_camera_put(text, ",\n  \"fov_axis\": \"%s\"", axes[d.fov_axis]);
-  put_lens_and_time(text, &d);
-  int shapes = vl_is_unset(d.shape[0]) ? 0 : vl_is_unset(d.shape[1]) ? 1 : 2;
-  if (shapes) {
-    vl_camera_put(text, ",\n  \"shape\": [");
-    for (int i = 0; i < shapes; i++) vl_camera_put(text, "%s%.17g", i ? ", " : "", d.shape[i]);
-    vl_camera_put(text, "]");
-  }
-  if (d.distortion != VL_DISTORTION_NONE) {
-    vl_camera_put(text, ",\n  \"distortion\": {\"model\": \"%s\", \"coefficients\": [", distortions[d.distortion]);
-    for (uint32_t i = 0; i < d.distortion_count; i++)
-      vl_camera_put(text, "%s%.17g", i ? ", " : "", d.distortion_coefficients[i]);
-    vl_camera_put(text, "]}");
-  }
-  for (size_t i = 0; i < VECTORS && !d.has_matrix; i++) {
-    const double *v = at(&d, &vectors[i]);
-    vl_camera_put(text, ",\n  \"%s\": [%.17g, %.17g, %.17g]", vectors[i].name, v[0], v[1], v[2]);
-  }
-  if (d.has_matrix) put_matrix(text, "world_from_camera", d.world_from_camera);
-  if (d.has_matrix_close) put_matrix(text, "world_from_camera_close", d.world_from_camera_close);
+  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u", projection_key(d->projection),
+                d->width, d->height);
+  for (size_t i = 0; i < fields.count; i++) put_field(text, &fields.items[i], d, &standard);
   vl_camera_put(text, "\n}\n");
 }
 

@@ -41,7 +41,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
     if (result != VL_OK) return result;
     vl_camera_set_fisheye(d, k);
   } else if (strcmp(type, without_distortion) != 0) {
-    return vl_camera_wrong_element(file, model, "unknown model \"%.12s\"; there are %s, %s, %s", type,
+    return vl_camera_wrong_element(file, model, "unknown model \"%s\"; there are %s, %s, %s", vl_short_text(type).text,
                                    without_distortion, with_distortion, kannala_brandt);
   }
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);

@@ -188,7 +188,7 @@ vlResult vl_camera_element_numbers(const vlCameraFile *file, const json_t *eleme
     found++;
   }
   if (found == count && text && text[strspn(text, " \t\r\n,;")] == 0) return VL_OK;
-  return vl_camera_wrong_element(file, element, "<%.12s> must hold %u finite number%s", tag, count,
+  return vl_camera_wrong_element(file, element, "<%s> must hold %u finite number%s", vl_short_text(tag).text, count,
                                  count == 1 ? "" : "s");
 }
 
@@ -196,6 +196,7 @@ vlResult vl_camera_child_number(const vlCameraFile *file, const json_t *element,
                                 double *value) {
   const json_t *child = vl_camera_child(element, tag);
   if (child) return vl_camera_element_numbers(file, child, value, 1);
-  return needed ? vl_camera_wrong_element(file, element, "<%.12s> has no <%s>", vl_camera_text(element, "<"), tag)
+  return needed ? vl_camera_wrong_element(file, element, "<%s> has no <%s>",
+                                          vl_short_text(vl_camera_text(element, "<")).text, tag)
                 : VL_OK;
 }

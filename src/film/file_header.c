@@ -34,13 +34,6 @@ enum { FIELDS = sizeof fields / sizeof *fields };
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 enum { SPACES = sizeof spaces / sizeof *spaces };
 
-static const vlKindFamily *filters(void) {
-  const vlKindFamily *family;
-  for (uint32_t i = 0; (family = vl_kind_family(i)); i++)
-    if (strcmp(family->name, "filters") == 0) break;
-  return family;
-}
-
 static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
 }
@@ -71,7 +64,7 @@ static json_t *film_tree(const vlFilmShape *shape) {
   good = good &&
          put(film, "crop",
              json_pack("[I,I,I,I]", (json_int_t)c[0], (json_int_t)c[1], (json_int_t)c[2], (json_int_t)c[3])) &&
-         put(film, "filter", json_string(filters()->rows[def->filter.kind]->name)) &&
+         put(film, "filter", json_string(vl_kind_family_find("filters")->rows[def->filter.kind]->name)) &&
          put(film, "space", json_string(spaces[def->space])) &&
          put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
          put(film, "sequence", json_integer(shape->sequence));
@@ -135,7 +128,7 @@ static bool take_names(const json_t *film, vlFilmDef *def) {
   const char *filter = json_string_value(json_object_get(film, "filter"));
   const char *space = json_string_value(json_object_get(film, "space"));
   const char *sensor = json_string_value(json_object_get(film, "sensor")), *name;
-  const vlKindFamily *family = filters();
+  const vlKindFamily *family = vl_kind_family_find("filters");
   bool found[3] = {false, false, false};
   for (uint32_t i = 0; filter && i < family->kind_count; i++)
     if (strcmp(family->rows[i]->name, filter) == 0) def->filter.kind = (vlPixelFilterKind)i, found[0] = true;

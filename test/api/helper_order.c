@@ -40,11 +40,10 @@ static vlResult focus(const vlWorld *world, vlCamera *camera, vlError *error) {
 }
 
 static bool find_tracer(const char *name, vlTracer *tracer) {
-  const vlKindFamily *family;
+  const vlKindFamily *tracers = vl_kind_family_find("tracers");
   if (strcmp(name, "-") == 0) return true;
-  for (uint32_t i = 0; (family = vl_kind_family(i)); i++)
-    for (uint32_t k = 0; strcmp(family->name, "tracers") == 0 && k < family->kind_count; k++)
-      if (family->rows[k]->name && strcmp(family->rows[k]->name, name) == 0) return *tracer = (vlTracer)k, true;
+  for (uint32_t k = 0; k < tracers->kind_count; k++)
+    if (tracers->rows[k]->name && strcmp(tracers->rows[k]->name, name) == 0) return *tracer = (vlTracer)k, true;
   return false;
 }
 

@@ -40,6 +40,15 @@ expect_text info_command "  command     velo render room/room.pbrt --spp 2"
 expect_text info_samples "  samples     2 per pixel"
 expect_text info_files "  files       4"
 expect_text info_digest "  parts/leaf.png"
+# The files are in it, too, where the image has the scene's name, and beside images without a header.
+mkdir default
+cp -r room default/
+(cd default && render room/room.pbrt --spp 2)
+run "$VELO" image info default/*.exr
+expect_text default_name_has_files "  files       4"
+render room/room.pbrt --spp 2 -o beside.png -o beside.exr
+run "$VELO" image info beside.exr
+expect_text beside_png_has_files "  files       4"
 render room/room.pbrt --spp 2 -o none.exr --no-receipt
 run "$VELO" image info none.exr
 case $out in *velo.receipt* | *parts/*) fail no_receipt ;; *) pass no_receipt ;; esac

@@ -1,8 +1,7 @@
 /* test/import/test_mesh_run.c: merged small meshes give the same triangles in the world as separate Shapes; failing
  * allocations leak nothing. */
-#include "import/load.h"
+#include "import/load_failing.h"
 
-#include "failing_allocator.h"
 #include "world/world.h"
 
 enum { BEFORE = 4096, QUADS = 60 };
@@ -91,27 +90,10 @@ static void put_together_they_are_the_same(void **state) {
   free(a), free(b), free(apart), free(together);
 }
 
-/* The last calls of the allocator, where the runs are. */
 static void memory_runs_out(void **state) {
   (void)state;
   char *text = text_of(BEFORE);
-  long all = 0;
-  for (long n = 0; n < 300; n++) {
-    failAllocator fail = {.fail_at = n ? all - n : 0};
-    vlContextDef def = vl_default_context_def();
-    def.threads = 1;
-    def.allocator = fail_allocator(&fail);
-    vlContext *context;
-    vlScene *scene;
-    assert_int_equal(vl_context_create(&def, &context), VL_OK);
-    assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-    vlResult r = vl_import_pbrt_memory(scene, text, strlen(text), "t.pbrt", NULL, NULL);
-    if (n == 0) all = atomic_load(&fail.calls) + 1;
-    assert_int_equal(r, fail.refused ? VL_ERROR_MEMORY : VL_OK);
-    vl_scene_destroy(scene);
-    vl_context_destroy(context);
-    assert_int_equal(fail.blocks, 0);
-  }
+  fail_last_allocations(text, 300);
   free(text);
 }
 

@@ -1,8 +1,7 @@
 /* The importer joins consecutive spheres into one shape of many spheres (a run). A world with runs has the same spheres
  * as one without, rays hit a sphere of many where they hit it alone, and a failed allocation leaks no memory. */
-#include "import/load.h"
+#include "import/load_failing.h"
 
-#include "failing_allocator.h"
 #include "scene/solid.h"
 #include "world/shape/surface_point.h"
 
@@ -171,27 +170,10 @@ static void wrong_ones_are_refused(void **state) {
   }
 }
 
-/* Lets each of the last 199 allocations fail; runs are made there. */
 static void memory_runs_out(void **state) {
   (void)state;
   char *text = text_of(BEFORE);
-  long all = 0;
-  for (long n = 0; n < 200; n++) {
-    failAllocator fail = {.fail_at = n ? all - n : 0};
-    vlContextDef def = vl_default_context_def();
-    def.threads = 1;
-    def.allocator = fail_allocator(&fail);
-    vlContext *context;
-    vlScene *scene;
-    assert_int_equal(vl_context_create(&def, &context), VL_OK);
-    assert_int_equal(vl_scene_create(context, &scene), VL_OK);
-    vlResult r = vl_import_pbrt_memory(scene, text, strlen(text), "t.pbrt", NULL, NULL);
-    if (n == 0) all = atomic_load(&fail.calls) + 1;
-    assert_int_equal(r, fail.refused ? VL_ERROR_MEMORY : VL_OK);
-    vl_scene_destroy(scene);
-    vl_context_destroy(context);
-    assert_int_equal(fail.blocks, 0);
-  }
+  fail_last_allocations(text, 200);
   free(text);
 }
 

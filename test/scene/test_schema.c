@@ -19,6 +19,7 @@ static void well_formed(void **state) {
   const vlKindFamily *family;
   uint32_t families = 0;
   for (; (family = vl_kind_family(families)); families++) {
+    assert_ptr_equal(vl_kind_family_find(family->name), family);
     assert_true(family->kind_count > 0 && family->name && family->thing && family->directive);
     for (uint32_t i = 0; i < family->kind_count; i++) {
       const vlKindRow *row = family->rows[i];
@@ -40,6 +41,7 @@ static void well_formed(void **state) {
   }
   assert_true(families >= 3);
   assert_null(vl_kind_family(families));
+  assert_null(vl_kind_family_find("material"));
 }
 
 /* Every default is in range, and is known as the default. */

@@ -5,13 +5,6 @@
 
 enum { MAX_FAMILIES = 16, MAX_CHOICES = 64 };
 
-const vlKindFamily *kind_family(const char *name) {
-  const vlKindFamily *family;
-  for (uint32_t i = 0; (family = vl_kind_family(i)); i++)
-    if (strcmp(family->name, name) == 0) return family;
-  return NULL;
-}
-
 static void fill(const vlKindFamily *family, Choice *choices) {
   int n = 0;
   for (uint32_t i = 0; i < family->kind_count && n + 2 < MAX_CHOICES; i++) {
@@ -32,7 +25,7 @@ const Choice *kind_choices(const char *name) {
 }
 
 const char *kind_name(const char *name, int kind) {
-  const vlKindFamily *family = kind_family(name);
+  const vlKindFamily *family = vl_kind_family_find(name);
   const char *found = family && kind >= 0 && (uint32_t)kind < family->kind_count ? family->rows[kind]->name : NULL;
   return found ? found : "?";
 }

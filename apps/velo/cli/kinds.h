@@ -5,8 +5,6 @@
 #include "cli/choice.h"
 #include "velo/schema.h"
 
-/* The family of that name; null: none. */
-const vlKindFamily *kind_family(const char *name);
 /* The names of the family's kinds, each followed by its aliases. Constant, never freed. */
 const Choice *kind_choices(const char *family);
 /* The name of a kind in scene files. */

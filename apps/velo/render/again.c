@@ -2,44 +2,14 @@
 #include "render/again.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
+#include "render/receipt_repeat.h"
 
 extern const char velo_commit[];
-
-static int fail_command(const Again *again, const char *why) {
-  return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", again->path, why);
-}
-
-/* Parses the words after "velo render". Options that do not determine the image are ignored, so that an image cannot
- * decide where files are written. */
-static int parse_command(Again *again) {
-  char *words[2 * MAX_OPTIONS + 4];
-  const char *word;
-  int count = 0, most = (int)(sizeof words / sizeof *words);
-  for (uint32_t i = 0; (word = vl_receipt_command(again->receipt, i)); i++) {
-    if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(again, "it is not velo render");
-    if (i < 2) continue;
-    if (count == most) return fail_command(again, "it is too long");
-    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(again, "it asks for help");
-    words[count++] = (char *)(uintptr_t)word; /* is not changed */
-  }
-  if (count == 0) return fail_command(again, "there is none");
-  report_usage_of(again->path);
-  int status = options_parse(&render_command, count, words, &again->arguments);
-  report_usage_of(NULL);
-  if (status >= 0) return status;
-  for (const Option *option = render_options; option->name; option++)
-    if (again->arguments.values[option->id].given && !receipt_option_counts(&again->arguments, option->id))
-      return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
-                            again->path, option->name);
-  return again->arguments.operand_count == 1 ? -1 : fail_command(again, "it names no scene");
-}
 
 /* Only options that do not change the image may be given together with --again. */
 static int take_options(Again *again, const Arguments *given) {
@@ -49,10 +19,7 @@ static int take_options(Again *again, const Arguments *given) {
       return report_usage("--again %s makes the same image: --%s would make another", again->path, option->name);
     again->arguments.values[option->id] = given->values[option->id];
   }
-  memcpy(again->arguments.texts, given->texts, sizeof given->texts);
-  again->arguments.text_count = given->text_count;
-  memcpy(again->arguments.folders, given->folders, sizeof given->folders);
-  again->arguments.folder_count = given->folder_count;
+  receipt_take_names(&again->arguments, given);
   return -1;
 }
 
@@ -117,7 +84,7 @@ int again_open(Again *again, const Arguments **arguments) {
   status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
                            : report_error(&error, result, again->path);
   vl_image_destroy(image);
-  if (status < 0) status = parse_command(again);
+  if (status < 0) status = receipt_parse_command(again->receipt, again->path, &again->arguments);
   if (status < 0) status = check_samples(again);
   if (status < 0) status = take_options(again, given);
   if (status < 0) status = take_scene(again, given);
@@ -125,22 +92,6 @@ int again_open(Again *again, const Arguments **arguments) {
   if (status < 0) tell_version(again);
   *arguments = &again->arguments;
   return status;
-}
-
-/* The first differences are named in one line; the rest are counted. */
-typedef struct Difference {
-  char text[500];
-  uint32_t count, more;
-} Difference;
-
-static bool name_difference(void *user, const char *text) {
-  Difference *d = user;
-  size_t used = strlen(d->text), room = sizeof d->text - used;
-  if (d->count++ == 0 || strlen(text) + 3 < room)
-    snprintf(d->text + used, room, "%s%s", used ? "; " : "", text);
-  else
-    d->more++;
-  return true;
 }
 
 int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context, const Job *job,
@@ -152,13 +103,9 @@ int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context,
   uint32_t parts =
       VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
   if (with_camera) parts |= VL_RECEIPT_CAMERA;
-  Difference difference = {.count = 0};
-  vl_receipt_compare(again->receipt, now, parts, name_difference, &difference);
+  int status = receipt_report_differences(again->receipt, now, parts, again->path, ": ");
   vl_receipt_destroy(now);
-  if (!difference.count) return -1;
-  char more[40] = "";
-  if (difference.more) snprintf(more, sizeof more, "; and %u more", difference.more);
-  return report_failure(STATUS_SCENE, "%s: %s%s", again->path, difference.text, more);
+  return status;
 }
 
 void again_close(Again *again) {

@@ -1,43 +1,13 @@
 /* render/continue.c: see continue.h. */
 #include "render/continue.h"
 
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
 #include "render/pattern.h"
-
-static int fail_command(const Continue *c, const char *why) {
-  return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", c->path, why);
-}
-
-/* Parses the words after "velo render". Options that do not determine the samples are ignored, so that a film cannot
- * decide where files are written; only its output names are kept. */
-static int parse_command(Continue *c, const vlReceipt *receipt) {
-  char *words[2 * MAX_OPTIONS + 4];
-  const char *word;
-  int count = 0, most = (int)(sizeof words / sizeof *words);
-  for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) {
-    if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(c, "it is not velo render");
-    if (i < 2) continue;
-    if (count == most) return fail_command(c, "it is too long");
-    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(c, "it asks for help");
-    words[count++] = (char *)(uintptr_t)word; /* is not changed */
-  }
-  if (count == 0) return fail_command(c, "there is none");
-  report_usage_of(c->path);
-  int status = options_parse(&render_command, count, words, &c->arguments);
-  report_usage_of(NULL);
-  if (status >= 0) return status;
-  for (const Option *option = render_options; option->name; option++)
-    if (c->arguments.values[option->id].given && !receipt_option_counts(&c->arguments, option->id))
-      return report_failure(STATUS_SCENE, "%s: the command in its receipt has --%s, which does not make an image",
-                            c->path, option->name);
-  return c->arguments.operand_count == 1 ? -1 : fail_command(c, "it names no scene");
-}
+#include "render/receipt_repeat.h"
 
 /* Given options replace those of the film. Options that must not change are compared later. */
 static void take_options(Continue *c, const Arguments *given, const vlReceipt *receipt) {
@@ -45,10 +15,7 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
   for (const Option *option = render_options; option->name; option++)
     if (given->values[option->id].given) a->values[option->id] = given->values[option->id];
   if (given->values[RENDER_TIME].given && !given->values[RENDER_SPP].given) a->values[RENDER_SPP].given = false;
-  memcpy(a->texts, given->texts, sizeof given->texts);
-  a->text_count = given->text_count;
-  memcpy(a->folders, given->folders, sizeof given->folders);
-  a->folder_count = given->folder_count;
+  receipt_take_names(a, given);
   const char *output;
   bool part =
       given->values[RENDER_SAMPLES].given || given->values[RENDER_SHARD].given || given->values[RENDER_TILES].given;
@@ -84,7 +51,7 @@ int continue_open(Continue *c, const Arguments **arguments) {
   if (result != VL_OK) return report_error(&error, result, NULL);
   const vlReceipt *receipt = vl_film_file_receipt(c->file);
   if (!receipt) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", c->path);
-  status = parse_command(c, receipt);
+  status = receipt_parse_command(receipt, c->path, &c->arguments);
   if (status < 0) take_options(c, given, receipt);
   if (eyes && !given->values[RENDER_EYE].given) c->arguments.values[RENDER_EYE].given = false;
   if (status < 0) status = take_scene(c, given);
@@ -92,31 +59,10 @@ int continue_open(Continue *c, const Arguments **arguments) {
   return status;
 }
 
-/* The first differences are named in one line; the rest are counted. */
-typedef struct Difference {
-  char text[500];
-  uint32_t count, more;
-} Difference;
-
-static bool name_difference(void *user, const char *text) {
-  Difference *d = user;
-  size_t used = strlen(d->text), room = sizeof d->text - used;
-  if (d->count++ == 0 || strlen(text) + 3 < room)
-    snprintf(d->text + used, room, "%s%s", used ? "; " : "", text);
-  else
-    d->more++;
-  return true;
-}
-
 static int compare(const char *path, const vlReceipt *then, const vlReceipt *now) {
-  Difference d = {.count = 0};
+  const uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS;
   if (!then) return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
-  vl_receipt_compare(then, now, VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS,
-                     name_difference, &d);
-  if (!d.count) return -1;
-  char more[40] = "";
-  if (d.more) snprintf(more, sizeof more, "; and %u more", d.more);
-  return report_failure(STATUS_SCENE, "%s cannot be continued: %s%s", path, d.text, more);
+  return receipt_report_differences(then, now, parts, path, " cannot be continued: ");
 }
 
 /* Finds the pixels that have samples, the first sample of the first block, and the last sample of any. */

@@ -152,7 +152,7 @@ static void override_size(vlSceneDefs *defs, uint32_t width, uint32_t height) {
 
 /* Whether the sampler can continue beyond its planned number of samples per pixel. */
 static bool sampler_is_open(vlSamplerKind kind) {
-  const vlKindFamily *samplers = kind_family("samplers");
+  const vlKindFamily *samplers = vl_kind_family_find("samplers");
   return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
 }
 

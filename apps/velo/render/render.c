@@ -220,6 +220,24 @@ static void set_up_reports(const Arguments *arguments) {
                                                                    : REPORT_NORMAL);
 }
 
+/* Whether a file of this render holds a receipt: a film, or an .exr. Without -o the name of the image is known only
+ * when the scene is loaded. */
+static bool writes_receipt(const Render *render, const Arguments *arguments) {
+  const Outputs *outputs = &render->outputs;
+  if (arguments->values[RENDER_DRY_RUN].given) return false;
+  if (render->film_plan.path) return true;
+  if (arguments->values[RENDER_NO_RECEIPT].given) return false;
+  for (int i = 0; i < outputs->count; i++)
+    if (output_holds_layers(outputs->paths[i])) return true;
+  return outputs->count == 0;
+}
+
+/* Records files, which costs a digest of each, where a receipt is written or compared. */
+static void record_files(Render *render, const Arguments *arguments) {
+  render->job.records_files = render->again.receipt || writes_receipt(render, arguments);
+  vl_context_record_files(render->context, render->job.records_files);
+}
+
 /* Sets what the images' receipts have in common. From this call on, files are recorded. */
 static void start_receipt(Render *render, const Arguments *arguments) {
   const Again *again = &render->again;
@@ -227,8 +245,7 @@ static void start_receipt(Render *render, const Arguments *arguments) {
       .arguments = arguments, .opening = &render->opening, .again = again->receipt, .again_is_ours = again->is_ours};
   if (again->camera.given) render->job.receipt_camera = &again->camera;
   if (!arguments->values[RENDER_NO_RECEIPT].given) render->job.receipt = &render->receipt;
-  render->job.records_files = render->job.receipt || again->receipt || render->film_plan.path;
-  vl_context_record_files(render->context, render->job.records_files);
+  record_files(render, arguments);
 }
 
 static int prepare(Render *render, const Arguments *arguments) {
@@ -312,6 +329,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   if (status >= 0) return status;
   if (render->outputs.count == 0 && !render->film_plan.path) {
     choose_output(render, path, render->job.defs->output);
+    record_files(render, arguments);
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
   }

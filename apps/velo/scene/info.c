@@ -73,7 +73,7 @@ static const char *name_of(const vlKindFamily *family, uint32_t kind) {
 
 /* "12: 5 diffuse, 7 conductor", by the family's rows. */
 static void count_kinds(const Facts *f, const char *name, uint64_t all) {
-  const vlKindFamily *family = kind_family(name);
+  const vlKindFamily *family = vl_kind_family_find(name);
   const char *before = ": ";
   printf("%-12s%llu", name, (unsigned long long)all);
   for (uint32_t i = 0; all && i < family->kind_count; i++) {
@@ -136,7 +136,7 @@ static void print_chosen(const vlSceneDefs *defs) {
   Chosen list[CHOSEN];
   chosen(defs, list);
   for (int k = 0; k < CHOSEN; k++) {
-    const vlKindRow *row = kind_family(list[k].family)->rows[list[k].kind];
+    const vlKindRow *row = vl_kind_family_find(list[k].family)->rows[list[k].kind];
     const char *before = ": ";
     printf("%-12s%s", list[k].key, row->name);
     for (uint32_t i = 0; i < row->parameter_count; i++) {
@@ -207,7 +207,7 @@ static void json_kinds(Json *json, const Facts *f) {
   static const char *const families[] = {"shapes", "textures", "materials", "media"};
   json_begin(json, "kinds", '{');
   for (size_t k = 0; k < sizeof families / sizeof *families; k++) {
-    const vlKindFamily *family = kind_family(families[k]);
+    const vlKindFamily *family = vl_kind_family_find(families[k]);
     json_begin(json, families[k], '{');
     for (uint32_t i = 0; i < family->kind_count; i++) {
       uint64_t n = vl_scene_kind_count(f->scene, families[k], i);
@@ -222,7 +222,7 @@ static void json_chosen(Json *json, const vlSceneDefs *defs) {
   Chosen list[CHOSEN];
   chosen(defs, list);
   for (int k = 0; k < CHOSEN; k++) {
-    const vlKindRow *row = kind_family(list[k].family)->rows[list[k].kind];
+    const vlKindRow *row = vl_kind_family_find(list[k].family)->rows[list[k].kind];
     json_begin(json, list[k].key, '{');
     json_text(json, "kind", row->name);
     for (uint32_t i = 0; i < row->parameter_count; i++) {

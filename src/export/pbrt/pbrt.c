@@ -46,43 +46,21 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s) {
 
 /* ---- before the world -------------------------------------------------------------------------------------------- */
 
-/* The film's parameters except its size, which the camera's text holds. shutter: time in seconds that the shutter is
- * open; pbrt's exposure is proportional to it. */
-static void put_film(vlExport *x, double shutter) {
-  const vlSceneDefs *defs = &x->scene->defs;
-  const vlFilmDef *film = &defs->film;
-  double exposure = (double)defs->develop.exposure * defs->camera.exposure_time / shutter;
-  /* pbrt clamps the sensor's output, velo's film its input. */
-  double most = (double)film->max_component * (defs->develop.exposure > 0 ? (double)defs->develop.exposure : 1);
-  if (defs->gbuffer == VL_GBUFFER_WORLD) PUT("  \"string coordinatesystem\" \"world\"\n");
-  if (film->buckets && !defs->gbuffer)
-    PUT("  \"integer nbuckets\" [%u] \"float lambdamin\" [%.9g] \"float lambdamax\" [%.9g]\n", film->buckets,
-        film->lambda_min, film->lambda_max);
-  if (fabs(exposure - 1) > 1e-7) PUT("  \"float iso\" [%.9g]\n", 100 * exposure);
-  if (film->sensor && !strpbrk(film->sensor, "\"\\\n")) PUT("  \"string sensor\" \"%s\"\n", film->sensor);
-  if (film->white_balance > 0) PUT("  \"float whitebalance\" [%.9g]\n", film->white_balance);
-  if (film->max_component < 1e30f) PUT("  \"float maxcomponentvalue\" [%.9g]\n", most);
-  const uint32_t *crop = film->crop;
-  if (crop[0] || crop[1] || crop[2] != film->width || crop[3] != film->height)
-    PUT("  \"integer pixelbounds\" [%u %u %u %u]\n", crop[0], crop[2], crop[1], crop[3]);
-  if (defs->output[0] && !strpbrk(defs->output, "\"\\\n")) PUT("  \"string filename\" \"%s\"\n", defs->output);
-  if (defs->render.centred) PUT("Option \"disablepixeljitter\" true\n");
-  if (defs->render.same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
-  if (defs->render.sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
+static void put_options(vlExport *x) {
+  const vlRenderDef *render = &x->scene->defs.render;
+  if (render->centred) PUT("Option \"disablepixeljitter\" true\n");
+  if (render->same_wavelengths) PUT("Option \"disablewavelengthjitter\" true\n");
+  if (render->sharp_textures) PUT("Option \"disabletexturefiltering\" true\n");
 }
 
 /* The text of the camera is a whole scene. This function copies its part before WorldBegin. */
-static const char *film_kind(const vlSceneDefs *defs) {
-  vlFilmKind kind = defs->gbuffer ? VL_FILM_GBUFFER : defs->film.buckets ? VL_FILM_SPECTRAL : VL_FILM_RGB;
-  return vl_kind_row(&vl_film_family, (int)kind)->name;
-}
 static void put_head(vlExport *x, const char *text, size_t size) {
   static const char film[] = "Film \"rgb\"";
   const char *world = strstr(text, "WorldBegin"), *at = strstr(text, film);
   size_t end = world ? (size_t)(world - text) : size, start = 0;
   if (at && (size_t)(at - text) < end) {
     vl_bytes_put(x->context, &x->text, text, (size_t)(at - text));
-    PUT("Film \"%s\"", film_kind(&x->scene->defs));
+    PUT("Film \"%s\"", vl_pbrt_film_kind(&x->scene->defs));
     start = (size_t)(at - text) + sizeof film - 1;
   }
   vl_bytes_put(x->context, &x->text, text + start, end - start);
@@ -117,13 +95,14 @@ static bool put_camera(vlExport *x) {
     put_head(x, text, size);
   } else {
     vl_export_lose(x, "the camera: left out");
-    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", film_kind(defs), defs->film.width,
-        defs->film.height);
+    PUT("Film \"%s\" \"integer xresolution\" [%u] \"integer yresolution\" [%u]\n", vl_pbrt_film_kind(defs),
+        defs->film.width, defs->film.height);
   }
   double shutter = defs->camera.shutter_close - defs->camera.shutter_open;
   bool has_shutter = r == VL_OK && shutter > 0 && strstr(text, "shutterclose");
   vl_free(x->context, text);
-  put_film(x, has_shutter ? shutter : 1);
+  vl_pbrt_film(x, has_shutter ? shutter : 1);
+  put_options(x);
   return true;
 }
 

@@ -14,6 +14,13 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
 /* Writes the members of a def that differ from the row's defaults. With `all`, every member that is set is written.
  * Arrays, files, inputs and the member `skip` (may be null) are left out. */
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip);
+/* Writes one parameter with the value that it has in the def. Arrays, files and inputs are left out. */
+void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def);
+/* The name of the film's kind. */
+const char *vl_pbrt_film_kind(const vlSceneDefs *defs);
+/* Writes the film's parameters except its size, which the camera's text holds. shutter: time in seconds that the
+ * shutter is open; pbrt's exposure is proportional to it. */
+void vl_pbrt_film(vlExport *x, double shutter);
 /* Writes "medium<index + 1>", before WorldBegin. */
 bool vl_pbrt_medium(vlExport *x, size_t index);
 /* Writes "material<id>" and everything it refers to. */

@@ -7,8 +7,7 @@ static double in_files(const vlParameter *p, double value) {
   return p->factor != 0 ? value / p->factor : value;
 }
 
-/* Arrays, files and textures are left to the caller. */
-static void put_parameter(vlExport *x, const vlParameter *p, const void *def) {
+void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
   const void *at = (const char *)def + p->offset;
   const float *v = at;
   switch (p->type) {
@@ -48,6 +47,6 @@ void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, c
     if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && strcmp(p->name, skip) == 0)) continue;
     bool is_default = vl_parameter_is_default(p, def, false);
     if (p->flags & VL_PARAMETER_UNSET ? is_default : is_default && !all && !(p->flags & VL_PARAMETER_RGB)) continue;
-    put_parameter(x, p, def);
+    vl_pbrt_parameter(x, p, def);
   }
 }

@@ -6,32 +6,40 @@
 
 #include "import/import.h"
 
-static const char *directive_name(vlDirective d) {
+/* The part of a file where a directive may stand: options precede WorldBegin, the world follows it. */
+typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;
+
+typedef struct Rule {
+  const char *name; /* in messages; null: ANYWHERE, no message names it */
+  Part part;
+} Rule;
+
+static Rule rule_of(vlDirective d) {
   switch (d) {
-    case VL_DIR_ATTRIBUTE_BEGIN: return "AttributeBegin";
-    case VL_DIR_ATTRIBUTE_END: return "AttributeEnd";
-    case VL_DIR_TRANSFORM_BEGIN: return "TransformBegin";
-    case VL_DIR_TRANSFORM_END: return "TransformEnd";
-    case VL_DIR_REVERSE_ORIENTATION: return "ReverseOrientation";
-    case VL_DIR_WORLD_BEGIN: return "WorldBegin";
-    case VL_DIR_OBJECT_END: return "ObjectEnd";
-    case VL_DIR_IMPORT_BEGIN: return "Import";
-    case VL_DIR_TRANSFORM_TIMES: return "TransformTimes";
-    case VL_DIR_NAMED_MATERIAL: return "NamedMaterial";
-    case VL_DIR_OBJECT_BEGIN: return "ObjectBegin";
-    case VL_DIR_OBJECT_INSTANCE: return "ObjectInstance";
-    case VL_DIR_FILM: return "Film";
-    case VL_DIR_SAMPLER: return "Sampler";
-    case VL_DIR_INTEGRATOR: return "Integrator";
-    case VL_DIR_PIXEL_FILTER: return "PixelFilter";
-    case VL_DIR_ACCELERATOR: return "Accelerator";
-    case VL_DIR_CAMERA: return "Camera";
-    case VL_DIR_MATERIAL: return "Material";
-    case VL_DIR_MAKE_NAMED_MATERIAL: return "MakeNamedMaterial";
-    case VL_DIR_AREA_LIGHT_SOURCE: return "AreaLightSource";
-    case VL_DIR_LIGHT_SOURCE: return "LightSource";
-    case VL_DIR_SHAPE: return "Shape";
-    case VL_DIR_TEXTURE: return "Texture";
+    case VL_DIR_WORLD_BEGIN: return (Rule){"WorldBegin", OPTIONS};
+    case VL_DIR_TRANSFORM_TIMES: return (Rule){"TransformTimes", OPTIONS};
+    case VL_DIR_FILM: return (Rule){"Film", OPTIONS};
+    case VL_DIR_SAMPLER: return (Rule){"Sampler", OPTIONS};
+    case VL_DIR_INTEGRATOR: return (Rule){"Integrator", OPTIONS};
+    case VL_DIR_PIXEL_FILTER: return (Rule){"PixelFilter", OPTIONS};
+    case VL_DIR_ACCELERATOR: return (Rule){"Accelerator", OPTIONS};
+    case VL_DIR_CAMERA: return (Rule){"Camera", OPTIONS};
+    case VL_DIR_ATTRIBUTE_BEGIN: return (Rule){"AttributeBegin", WORLD};
+    case VL_DIR_ATTRIBUTE_END: return (Rule){"AttributeEnd", WORLD};
+    case VL_DIR_TRANSFORM_BEGIN: return (Rule){"TransformBegin", WORLD};
+    case VL_DIR_TRANSFORM_END: return (Rule){"TransformEnd", WORLD};
+    case VL_DIR_REVERSE_ORIENTATION: return (Rule){"ReverseOrientation", WORLD};
+    case VL_DIR_OBJECT_END: return (Rule){"ObjectEnd", WORLD};
+    case VL_DIR_IMPORT_BEGIN: return (Rule){"Import", WORLD};
+    case VL_DIR_NAMED_MATERIAL: return (Rule){"NamedMaterial", WORLD};
+    case VL_DIR_OBJECT_BEGIN: return (Rule){"ObjectBegin", WORLD};
+    case VL_DIR_OBJECT_INSTANCE: return (Rule){"ObjectInstance", WORLD};
+    case VL_DIR_MATERIAL: return (Rule){"Material", WORLD};
+    case VL_DIR_MAKE_NAMED_MATERIAL: return (Rule){"MakeNamedMaterial", WORLD};
+    case VL_DIR_AREA_LIGHT_SOURCE: return (Rule){"AreaLightSource", WORLD};
+    case VL_DIR_LIGHT_SOURCE: return (Rule){"LightSource", WORLD};
+    case VL_DIR_SHAPE: return (Rule){"Shape", WORLD};
+    case VL_DIR_TEXTURE: return (Rule){"Texture", WORLD};
     case VL_DIR_IDENTITY:
     case VL_DIR_ACTIVE_ALL:
     case VL_DIR_ACTIVE_START:
@@ -51,13 +59,13 @@ static const char *directive_name(vlDirective d) {
     case VL_DIR_ATTRIBUTE:
     case VL_DIR_MAKE_NAMED_MEDIUM: break;
   }
-  return "this directive";
+  return (Rule){NULL, ANYWHERE};
 }
 
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
-    vl_import_remark(import, s->place, "%s a second time: this one counts", directive_name(s->directive));
+    vl_import_remark(import, s->place, "%s a second time: this one counts", rule_of(s->directive).name);
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
   choice->place = s->place;
@@ -111,57 +119,17 @@ static void note_space(vlImport *import, const vlStatement *s) {
 /* ---- statements ------------------------------------------------------------------------------------------------- */
 
 static bool in_right_part(vlImport *import, const vlStatement *s) {
-  switch (s->directive) {
-    case VL_DIR_WORLD_BEGIN:
+  const Rule rule = rule_of(s->directive);
+  switch (rule.part) {
+    case ANYWHERE: return true;
+    case OPTIONS:
       if (!import->in_world) return true;
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "WorldBegin a second time");
-    case VL_DIR_TRANSFORM_TIMES:
-    case VL_DIR_FILM:
-    case VL_DIR_SAMPLER:
-    case VL_DIR_INTEGRATOR:
-    case VL_DIR_PIXEL_FILTER:
-    case VL_DIR_ACCELERATOR:
-    case VL_DIR_CAMERA:
-      if (!import->in_world) return true;
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come before WorldBegin",
-                            directive_name(s->directive));
-    case VL_DIR_ATTRIBUTE_BEGIN:
-    case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_BEGIN:
-    case VL_DIR_TRANSFORM_END:
-    case VL_DIR_REVERSE_ORIENTATION:
-    case VL_DIR_OBJECT_END:
-    case VL_DIR_IMPORT_BEGIN:
-    case VL_DIR_NAMED_MATERIAL:
-    case VL_DIR_OBJECT_BEGIN:
-    case VL_DIR_OBJECT_INSTANCE:
-    case VL_DIR_MATERIAL:
-    case VL_DIR_MAKE_NAMED_MATERIAL:
-    case VL_DIR_AREA_LIGHT_SOURCE:
-    case VL_DIR_LIGHT_SOURCE:
-    case VL_DIR_SHAPE:
-    case VL_DIR_TEXTURE:
-      if (import->in_world) return true;
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come after WorldBegin",
-                            directive_name(s->directive));
-    case VL_DIR_IDENTITY:
-    case VL_DIR_ACTIVE_ALL:
-    case VL_DIR_ACTIVE_START:
-    case VL_DIR_ACTIVE_END:
-    case VL_DIR_IMPORT_END:
-    case VL_DIR_TRANSLATE:
-    case VL_DIR_SCALE:
-    case VL_DIR_ROTATE:
-    case VL_DIR_LOOK_AT:
-    case VL_DIR_TRANSFORM:
-    case VL_DIR_CONCAT_TRANSFORM:
-    case VL_DIR_COORDINATE_SYSTEM:
-    case VL_DIR_COORD_SYS_TRANSFORM:
-    case VL_DIR_COLOR_SPACE:
-    case VL_DIR_MEDIUM_INTERFACE:
-    case VL_DIR_OPTION:
-    case VL_DIR_ATTRIBUTE:
-    case VL_DIR_MAKE_NAMED_MEDIUM: break; /* anywhere */
+      if (s->directive == VL_DIR_WORLD_BEGIN)
+        return vl_import_fail(import, VL_ERROR_SCENE, s->place, "WorldBegin a second time");
+      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come before WorldBegin", rule.name);
+    case WORLD:
+      return import->in_world ||
+             vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come after WorldBegin", rule.name);
   }
   return true;
 }
@@ -173,7 +141,7 @@ static bool obey(vlImport *import, const vlStatement *s) {
     case VL_DIR_TRANSFORM_BEGIN:
       return vl_import_push(import, 'a', s->place); /* pbrt-v4: both save the whole graphics state */
     case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', directive_name(s->directive), s->place);
+    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', rule_of(s->directive).name, s->place);
     case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
     case VL_DIR_IMPORT_END: {
       const vlStackEntry *top = &import->stack.items[import->stack.count - 1];

@@ -12,6 +12,12 @@ const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;
 }
 
+const vlKindFamily *vl_kind_family_find(const char *name) {
+  for (size_t i = 0; i < sizeof families / sizeof *families; i++)
+    if (strcmp(families[i]->name, name) == 0) return families[i];
+  return NULL;
+}
+
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind) {
   return kind >= 0 && (uint32_t)kind < family->kind_count ? family->rows[kind] : NULL;
 }

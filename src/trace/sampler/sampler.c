@@ -2,8 +2,6 @@
  * bits. */
 #include "trace/sampler/sampler.h"
 
-#include <string.h>
-
 #include "velo/schema.h"
 
 static uint32_t bits_for(uint32_t count) { /* smallest b with 2^b >= count */
@@ -47,10 +45,8 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
 /* By the sampler's row: a sampler that can go on without end has one sequence for any number of samples; the others lay
  * out cells for exactly the planned number. */
 uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp) {
-  const vlKindFamily *family;
-  for (uint32_t i = 0; (family = vl_kind_family(i)) != NULL; i++)
-    if (strcmp(family->name, "samplers") == 0 && (uint32_t)kind < family->kind_count &&
-        family->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN)
-      return VL_SEQUENCE_LENGTH;
+  const vlKindFamily *samplers = vl_kind_family_find("samplers");
+  if ((uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN)
+    return VL_SEQUENCE_LENGTH;
   return spp ? spp : 1;
 }

@@ -305,8 +305,7 @@ static vlResult copy_sandbox(vlContext *context) {
   return VL_OK;
 }
 
-/* ---- creation and destruction
- * ------------------------------------------------------------------------------------- */
+/* ---- creation and destruction ------------------------------------------------------------------------------------ */
 
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);

@@ -12,8 +12,7 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost
- * -------------------- */
+/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost ------------------- */
 
 typedef struct {
   const vlCameraFile *file;

@@ -42,8 +42,7 @@ bool check_is_hit(const Check *c) {
   return check_length3(v) != 0;
 }
 
-/* ---- what there is ------------------------------------------------------------------------------------------------
- */
+/* ---- what there is ----------------------------------------------------------------------------------------------- */
 
 /* Index of the first of the channels "N." + "XYZ" when all exist in consecutive order; otherwise -1. */
 static int find_parts(const vlImage *image, const char *name, const char *parts) {

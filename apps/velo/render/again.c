@@ -27,7 +27,7 @@ static int parse_command(Again *again) {
     if (i < 2) continue;
     if (count == most) return fail_command(again, "it is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(again, "it asks for help");
-    words[count++] = (char *)(uintptr_t)word; /* is not changed */
+    words[count++] = (char *)(uintptr_t)word; /* the parser does not change the word */
   }
   if (count == 0) return fail_command(again, "there is none");
   report_usage_of(again->path);
@@ -66,8 +66,8 @@ static int take_scene(Again *again, const Arguments *given) {
                         path, again->path);
 }
 
-/* The camera of another file is taken from the receipt, so that the file is not needed; its lens, where the receipt
- * does not hold it, from the file. */
+/* If the image's camera came from a file of its own, takes it from the receipt, so the file is not needed. If the
+ * receipt does not hold the camera's lens, takes the lens from the file. */
 static int take_camera(Again *again) {
   OptionValue *v = again->arguments.values;
   if (!v[RENDER_CAMERA].given || v[RENDER_TRAJECTORY].given) return -1;
@@ -78,7 +78,8 @@ static int take_camera(Again *again) {
   if (result == VL_ERROR_UNSUPPORTED) return -1;
   if (result != VL_OK) return report_error(&error, result, again->path);
   camera->given = true;
-  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given = false; /* they are in the receipt */
+  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given =
+      false; /* the receipt's film and camera include these settings */
   return -1;
 }
 

@@ -109,11 +109,12 @@ typedef struct {
   const json_t *camera, *resolution; /* the chosen prim, and the first resolution of the file */
   vlMat4 pose;
   uint32_t frames;
-  const json_t *path[64]; /* the prims from the root to the one that is looked at */
+  const json_t *path[64]; /* the prims from the root to the current one */
   int depth;
 } Search;
 
-/* The pose of the innermost prim of the path. Only what is above the chosen camera has to be understood and still. */
+/* Computes the pose of the last prim of the path. Only the chosen camera and its parents must have supported,
+ * constant transforms. */
 static vlResult pose_of(Search *s) {
   s->pose = vl_mat4_identity();
   for (int i = 0; i < s->depth; i++) {

@@ -11,7 +11,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
 
 enum {
   VL_FILM_FORMAT = 1,
-  VL_FILM_BLOCK = 32, /* blocks are at multiples of so many pixels */
+  VL_FILM_BLOCK = 32, /* side of a block in pixels; blocks begin at multiples of it */
   VL_FILM_MOST_RANGES = 1 << 16,
   VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
 };
@@ -47,7 +47,7 @@ static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
-/* The blocks of a window: cells of the image's grid, clipped. */
+/* The number of blocks of a window: cells of the image's grid, clipped to the window. */
 uint32_t vl_film_block_count(const uint32_t window[4]);
 void vl_film_block_place(const uint32_t window[4], uint32_t index, uint32_t place[4]);
 
@@ -69,7 +69,7 @@ typedef struct vlFilmReader {
   vlFilmShape shape;
   char *receipt; /* text; null: none */
   uint32_t blocks, next;
-  /* of the block that was read last */
+  /* head and ranges of the block that was read last */
   vlFilmBlockHead head;
   vlSampleSpan *ranges;
   uint32_t range_capacity;

@@ -51,7 +51,7 @@ void vl_film_set_spp(vlFilm *film, uint32_t spp); /* render calls it after each 
  * first sample; a film without samples has length 0. */
 typedef struct vlFilmSequence {
   uint32_t length, first;
-  bool uneven; /* pixels have different samples (of a file): the film can only be developed */
+  bool uneven; /* a film read from a file whose pixels have different samples: it can only be developed */
 } vlFilmSequence;
 vlFilmSequence vl_film_sequence(const vlFilm *film);
 void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);

@@ -25,7 +25,7 @@ static int parse_command(Continue *c, const vlReceipt *receipt) {
     if (i < 2) continue;
     if (count == most) return fail_command(c, "it is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(c, "it asks for help");
-    words[count++] = (char *)(uintptr_t)word; /* is not changed */
+    words[count++] = (char *)(uintptr_t)word; /* the parser does not change the word */
   }
   if (count == 0) return fail_command(c, "there is none");
   report_usage_of(c->path);

@@ -228,7 +228,7 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
                              file->def->frame ? file->def->frame : "0", search.frames);
   else if (result == VL_OK)
     result = read_camera(&search, tree, record);
-  /* an error without a place is one of the camera that was chosen, or of the file */
+  /* an error without a line gets the line of the chosen camera, or 1 */
   if (result == VL_ERROR_SCENE && file->error && file->error->line == 0) {
     const json_t *line = json_object_get(search.camera, "#");
     file->error->line = line ? (uint32_t)json_number_value(line) : 1, file->error->column = 1;

@@ -1,6 +1,7 @@
-/* bench/error.c: which of two programs, or sets of options, has less error for its time. Both render each scene several
- * times, interleaved, with seeds in pairs; the time is the child's user CPU time. The error is measured against a
- * reference, or where there is none within the pairs: half the squared difference of two seeds is the variance. */
+/* bench/error.c: finds which of two programs, or sets of options, has the smaller error for the same time. Both
+ * render each scene several times, interleaved, with pairs of seeds. The time is the child's user CPU time. The
+ * error is measured against a reference if there is one. Otherwise it is measured within the pairs: half the squared
+ * difference of two seeds is the variance. */
 #include <errno.h>
 #include <math.h>
 #include <spawn.h>
@@ -35,13 +36,13 @@ static const char *const measure_names[MEASURES] = {"relmse_trimmed", "relmse", 
 
 typedef struct Side {
   const char *text;
-  double seconds[PAIRS]; /* of the two renders of a pair */
+  double seconds[PAIRS]; /* total of the two renders of a pair */
   Error errors[PAIRS];
 } Side;
 
 typedef struct Scene {
   char name[64], file[1024], size[32];
-  double efficiency[MEASURES], low[MEASURES], high[MEASURES]; /* B over A, 95 % confidence */
+  double efficiency[MEASURES], low[MEASURES], high[MEASURES]; /* ratio B / A, with its 95 % confidence interval */
   double seconds[2], error[2][MEASURES], spread[2][MEASURES]; /* means, and half the widths of the 95 % intervals */
 } Scene;
 
@@ -73,8 +74,8 @@ static int descending(const void *a, const void *b) {
   return x < y ? 1 : x > y ? -1 : 0;
 }
 
-/* The relative squared error of each pixel, mean over R, G, B. with pair: half the squared difference over the squared
- * mean of both. */
+/* Computes the relative squared error of each pixel as the mean over R, G, B. With `pair` the error is half the
+ * squared difference of both images, divided by the square of their mean. */
 static Error compare(const vlImage *a, const vlImage *reference, bool pair) {
   uint32_t width = vl_image_width(a), height = vl_image_height(a);
   size_t pixels = (size_t)width * height, left_out = (pixels + 999) / 1000;
@@ -103,7 +104,7 @@ static Error compare(const vlImage *a, const vlImage *reference, bool pair) {
 
 /* ---- running ----------------------------------------------------------------------------------------------------- */
 
-/* Appends the words of a text; %o becomes `image`, %n becomes `name`. */
+/* Appends the words of a text. %o is replaced by `image` and %n by `name`. */
 static void add_words(char **words, int *count, const char *text, const char *image, const char *name) {
   char *copy = strdup(text ? text : ""), *state = NULL;
   for (char *word = strtok_r(copy, " ", &state); word; word = strtok_r(NULL, " ", &state)) {
@@ -121,7 +122,7 @@ static void add_words(char **words, int *count, const char *text, const char *im
   free(copy);
 }
 
-/* Renders once. Returns the child's user CPU time. */
+/* Renders once. Returns the child's user CPU time in seconds. */
 static double run(const Bench *b, const Side *side, const Scene *scene, uint32_t seed, const char *image) {
   char *words[WORDS], text[32];
   const char *options = side->text, *program = getenv("VELO");
@@ -162,7 +163,7 @@ static void render_pairs(Bench *b, const Scene *scene) {
   }
   for (int pair = 0; pair < b->pairs; pair++) {
     for (int s = 0; s < 2; s++) b->sides[s].seconds[pair] = 0;
-    for (int k = 0; k < 4; k++) { /* A B B A */
+    for (int k = 0; k < 4; k++) { /* the order is A B B A */
       int s = k == 1 || k == 2, half = k / 2;
       snprintf(images[s][half], sizeof images[s][half], "%s/%d_%d.exr", b->folder, s, half);
       b->sides[s].seconds[pair] += run(b, &b->sides[s], scene, (uint32_t)(2 * pair + half), images[s][half]);
@@ -192,7 +193,7 @@ static double student(int freedom) {
   return freedom < 1 ? INFINITY : freedom <= 20 ? table[freedom] : 1.96 + 2.5 / freedom;
 }
 
-/* The mean of n values and half the width of its 95 % interval. */
+/* Computes the mean of n values, and in *half half the width of its 95 % interval. */
 static double mean_of(const double *x, int n, double *half) {
   double sum = 0, squares = 0;
   for (int i = 0; i < n; i++) sum += x[i];
@@ -201,7 +202,8 @@ static double mean_of(const double *x, int n, double *half) {
   return sum / n;
 }
 
-/* Efficiency is 1 / (error x time); FLIP falls with the root of the variance, so that its square counts. */
+/* The efficiency is 1 / (error x time). FLIP is proportional to the square root of the variance, so its square is
+ * used. */
 static void judge(const Bench *b, Scene *scene) {
   double x[PAIRS], half;
   for (int s = 0; s < 2; s++) {
@@ -236,7 +238,7 @@ static void number(FILE *out, const char *name, double value, const char *end) {
     fprintf(out, "\"%s\": null%s", name, end);
 }
 
-/* The geometric mean of the efficiencies over the scenes, and the worst of them. */
+/* Returns the geometric mean of the efficiencies over the scenes, and in *worst the smallest of them. */
 static double summary(const Bench *b, int m, double *worst) {
   double sum = 0;
   *worst = INFINITY;
@@ -353,7 +355,7 @@ int main(int argc, char **argv) {
     render_pairs(b, &b->scenes[i]);
     judge(b, &b->scenes[i]);
     print_scene(&b->scenes[i]);
-    b->count = i + 1; /* written now, should the rest be stopped */
+    b->count = i + 1; /* results are written after each scene, in case the run is stopped */
     write_json(b);
   }
   for (int m = 0; m < MEASURES; m++) {

@@ -1,9 +1,9 @@
-/* test/failing_allocator.h: an allocator whose n-th call fails and that counts the blocks held.
- *   failAllocator state = {.fail_at = n};             n counts from 1; 0: never
- *   def.allocator = fail_allocator(&state);
- * The out-of-memory loop (fail_everywhere): for n = 1, 2, ... until a run without a failure. Each run with one must
- * return VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so that the code after it runs with partly
- * built data. Include cmocka.h first. */
+/* test/failing_allocator.h: an allocator that counts the blocks held and whose n-th call fails.
+ *     failAllocator state = {.fail_at = n};             n counts from 1; 0: no call fails
+ *     def.allocator = fail_allocator(&state);
+ * fail_everywhere runs a test for n = 1, 2, ... until no call fails. Each run with a failure must return
+ * VL_ERROR_MEMORY and leave state.blocks at 0. Only one call fails, so the code after it runs with partly built
+ * data. Include cmocka.h first. */
 #ifndef TEST_FAILING_ALLOCATOR_H
 #define TEST_FAILING_ALLOCATOR_H
 

@@ -87,7 +87,7 @@ static int unknown_command(int argc, char **argv) {
                       *near ? near : "; \"velo help\" lists the commands");
 }
 
-/* Used by its help page only. */
+/* Only the help page of the program uses this table. */
 static const Option no_options[] = {{0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 static const Command help_command = {
     .name = "help",

@@ -1,4 +1,5 @@
-/* api/check_coats.c: the doctor's last part: what rough coats lose, from the tables that a world would have. */
+/* api/check_coats.c: the last check of vl_scene_check: the light that rough coats lose, from the tables that a world
+ * would have. */
 #include <math.h>
 
 #include "color/color.h"
@@ -6,17 +7,19 @@
 #include "scene/check.h"
 #include "world/material/coat.h"
 
-/* Coats of the same numbers lose the same. */
+/* A coat's loss depends only on these three numbers, so it is computed once for all coats that have the same
+ * numbers. */
 typedef struct Coat {
   float eta, tau, alpha;
   double lost;
 } Coat;
 typedef VL_ARRAY(Coat) Coats;
 
-/* Light that maxdepth leaves out is not the roughness's loss. */
+/* A large limit on bounces: light that is lost because of a material's maxdepth does not count as a loss of
+ * roughness. */
 enum { ALL_BOUNCES = 1000 };
 
-/* Least share of the light that is worth a note. */
+/* A loss below this fraction of the light gives no note. */
 static const double least = 0.01;
 
 static float alpha_of(const vlMaterialDef *m, float roughness) {
@@ -27,11 +30,12 @@ static bool index_of(const vlMaterialDef *m, float *eta) {
   float dense[VL_LAMBDA_COUNT];
   if (vl_spectrum_is_constant(&m->eta.value, eta)) return true;
   if (vl_spectrum_dense(&m->eta.value, VL_ROLE_UNBOUNDED, dense, NULL) != VL_OK) return false;
-  *eta = vl_dense_at(dense, 589.3f); /* as materials.c */
+  *eta = vl_dense_at(dense, 589.3f); /* the same wavelength (nm) as in world/material/materials.c */
   return true;
 }
 
-/* Sets coat->lost: the share that the coat loses over a white base and one that conserves energy does not. */
+/* Sets coat->lost: 1 minus the albedo of the coat over a white base, divided by that of the same coat with conserved
+ * energy. */
 static vlResult measure(vlContext *context, Coat *coat) {
   vlCoatTable *table;
   double kept = 0, whole = 0;
@@ -45,7 +49,8 @@ static vlResult measure(vlContext *context, Coat *coat) {
   return r;
 }
 
-/* Share that this material's coat loses, 0 where it has none that is rough or nobody can tell. */
+/* Returns the fraction of light that this material's coat loses. Returns 0 if it has no rough coat or the loss
+ * cannot be computed. */
 static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
   float u = alpha_of(m, m->u_roughness.value), v = alpha_of(m, m->v_roughness.value);
   Coat coat = {.tau = m->thickness.value, .alpha = sqrtf(u * v)};
@@ -60,12 +65,12 @@ static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
   vlResult r = measure(check->context, &coat);
   Coat *slot = r == VL_OK ? VL_PUSH(check->context, coats) : NULL;
   if (r == VL_ERROR_MEMORY || (r == VL_OK && !slot)) check->no_memory = true;
-  if (!slot) return 0; /* numbers that no coat has: vl_world_build refuses them */
+  if (!slot) return 0; /* the numbers are invalid; vl_world_build reports them */
   *slot = coat;
   return coat.lost;
 }
 
-/* One note for the scene, at the coat that loses most. */
+/* Adds one note for the whole scene. Its place is that of the coat with the largest loss. */
 static void check_coats(vlCheck *check) {
   Coats coats = {0};
   const vlMaterialDef *worst = NULL;

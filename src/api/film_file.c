@@ -1,4 +1,4 @@
-/* api/film_file.c: film files as a program sees them: header, receipt, blocks. */
+/* api/film_file.c: the public functions for film files: header, receipt, blocks. */
 #include <string.h>
 
 #include "base/error.h"
@@ -8,7 +8,7 @@
 struct vlFilmFile {
   vlFilmReader reader;
   vlReceipt *receipt;
-  char *data; /* of a block, when it was first checked */
+  char *data; /* memory for the data of one block, allocated when the first block is checked */
   vlSampleRange *ranges;
   uint32_t capacity;
 };

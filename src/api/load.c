@@ -1,4 +1,5 @@
-/* api/load.c: vl_scene_load: the kind of a scene file by its name; the camera that velo wrote into a glTF file. */
+/* api/load.c: vl_scene_load: chooses the importer by the name of the scene file, and reads the camera that velo
+ * wrote into a glTF file. */
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -20,7 +21,7 @@ static const struct {
 } formats[] = {VL_SCENE_FORMATS(FORMAT)};
 enum { FORMATS = sizeof formats / sizeof *formats };
 
-/* glTF's own camera is a pinhole; velo's exporter puts what it is in truth into the extras. */
+/* Reads the complete camera from the extras, where velo's exporter writes it. glTF's own camera is only a pinhole. */
 static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = VL_CAMERA_DIALECT_GLTF;
@@ -49,7 +50,8 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
-  Import *import = readable ? NULL : vl_import_pbrt; /* it reports what is wrong with the file */
+  Import *import =
+      readable ? NULL : vl_import_pbrt; /* a file that cannot be read goes to an importer that reports why */
   char known[200] = "";
   for (int i = 0; i < FORMATS; i++) {
     size_t n = strlen(known);

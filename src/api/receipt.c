@@ -32,7 +32,7 @@ static bool put_velo(json_t *tree, const char *commit) {
   return vl_receipt_put(tree, "velo", velo);
 }
 
-/* A string of any bytes: what is not UTF-8 (paths may be so) becomes "?". */
+/* Makes a JSON string of any bytes. If they are not UTF-8 (paths may be so), each byte above 0x7f becomes "?". */
 static json_t *string_of(vlContext *context, const char *text) {
   json_t *value = json_string(text);
   if (value) return value;
@@ -52,7 +52,7 @@ static bool put_strings(vlContext *context, json_t *tree, const char *key, const
   return vl_receipt_put(tree, key, list);
 }
 
-/* The path, relative to the scene's folder where it begins with it. */
+/* Returns the path relative to the scene's folder if it begins with that folder, else the whole path. */
 static const char *relative(const char *path, const char *scene) {
   const char *slash = scene ? strrchr(scene, '/') : NULL;
   size_t folder = slash ? (size_t)(slash + 1 - scene) : 0;
@@ -75,12 +75,13 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
   return vl_receipt_put(tree, "files", list);
 }
 
-/* The camera as velo's camera file has it, at the size of its description. The size is that of the film. */
+/* Makes the camera's tree as in velo's camera files, for the image size of its description. The film holds the size
+ * of the image. */
 static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraRecord record = {.camera = *camera};
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
-  /* all numbers real, so that -0 stays what it is; then those that are counts */
+  /* reads all numbers as reals, which keeps -0; the counts become integers below */
   json_t *tree = text.failed ? NULL
                              : json_loadb(text.text.items, text.text.count,
                                           JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, NULL);
@@ -101,7 +102,7 @@ static bool put_digest(json_t *object, const char *key, const uint8_t digest[16]
   return vl_receipt_put(object, key, json_string(text));
 }
 
-/* What the camera file cannot hold: the aperture's image, a lens of many elements. */
+/* Adds digests of what camera files cannot hold: the aperture's image and a lens of many elements. */
 static bool put_optics(json_t *camera, const vlCameraDef *def) {
   uint8_t digest[16];
   if (def->lens.aperture) {
@@ -141,7 +142,7 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
   return vl_receipt_put(tree, "camera", object);
 }
 
-/* The text of a tree. */
+/* Returns the JSON text of a tree. */
 static char *text_of(vlContext *context, const json_t *tree) {
   const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
   size_t length = json_dumpb(tree, NULL, 0, flags);
@@ -200,7 +201,7 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
   return receipt_of(context, tree, copy, receipt, error);
 }
 
-/* The word after --spp. */
+/* Replaces the word after --spp. */
 static bool put_command_samples(json_t *command, uint32_t samples) {
   char text[16];
   size_t index;
@@ -248,7 +249,7 @@ const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index) {
   return json_string_value(json_array_get(json_object_get(receipt->tree, "outputs"), index));
 }
 
-/* A whole number from 0 to 2^32 - 1; 0 for anything else. */
+/* Returns an integer from 0 to 2^32 - 1, or 0 if the value is anything else. */
 static uint32_t count_of(const json_t *value) {
   json_int_t number = json_integer_value(value);
   return number >= 0 && number <= UINT32_MAX ? (uint32_t)number : 0;

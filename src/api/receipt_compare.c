@@ -1,4 +1,4 @@
-/* api/receipt_compare.c: the differences of two receipts in words. */
+/* api/receipt_compare.c: describes the differences of two receipts in words. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,12 +21,13 @@ static void differ(Comparison *c, const char *format, ...) {
   vsnprintf(text, sizeof text, format, list);
   va_end(list);
   for (char *at = text; *at; at++)
-    if ((unsigned char)*at < 0x20 || *at == 0x7f) *at = ' '; /* one line, whatever the receipt holds */
+    if ((unsigned char)*at < 0x20 || *at == 0x7f)
+      *at = ' '; /* keeps the text on one line, whatever the receipt holds */
   c->count++;
   if (c->fn && !c->fn(c->user, text)) c->ended = true;
 }
 
-/* Takes text as far as there is room. used: the length of all of it. */
+/* A buffer that drops text beyond `size`. used: the length of the whole text, including what was dropped. */
 typedef struct Sink {
   char *text;
   size_t size, used;
@@ -40,7 +41,7 @@ static int fill(const char *part, size_t length, void *user) {
   return 0;
 }
 
-/* A value in words: as JSON, cut off where it is long; strings without quotes. */
+/* Returns a value as text: strings without quotes, other values as JSON, shortened if they are long. */
 static const char *words_of(const json_t *value, char *text, size_t size) {
   if (!value || json_is_null(value)) return "not given";
   if (json_is_string(value)) {
@@ -54,7 +55,8 @@ static const char *words_of(const json_t *value, char *text, size_t size) {
   return text;
 }
 
-/* Ten digits tell most numbers apart; where they do not, the words would be the same. */
+/* Reports a changed value. Numbers have ten digits; if both texts are still equal, the message only says that they
+ * differ. */
 static void differ_value(Comparison *c, const char *thing, const char *name, const json_t *then, const json_t *now) {
   char before[120], after[120];
   const char *was = words_of(then, before, sizeof before), *is = words_of(now, after, sizeof after);
@@ -97,7 +99,7 @@ static void compare_member(Comparison *c, const char *thing, const vlReceipt *th
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
-/* Files are by path, so that one walk along both lists finds all differences. */
+/* Both lists are sorted by path, so one walk along both finds all differences. */
 static void compare_files(Comparison *c, const vlReceipt *then, const vlReceipt *now) {
   vlFileRecord old = {0}, new = {0};
   uint32_t i = 0, j = 0;

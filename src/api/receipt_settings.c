@@ -1,5 +1,5 @@
-/* api/receipt_settings.c: the settings of a receipt: the members of the defs by their names, enumerators by the names
- * of their kinds. Numbers that are unset are left out. */
+/* api/receipt_settings.c: the settings in a receipt: the members of the defs by their names. Enumerators have the
+ * names of their kinds. Numbers that are not set are left out. */
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -16,9 +16,9 @@ typedef struct Field {
   const char *name;
   Type type;
   size_t offset;
-  uint32_t count;           /* of numbers: more than one is a list */
-  const char *const *names; /* CHOICE: by enumerator, ending with null */
-  const char *family;       /* FAMILY: its name in velo/schema.h */
+  uint32_t count;           /* number of values; more than one value is written as a list */
+  const char *const *names; /* CHOICE: the name of each enumerator, ending with null */
+  const char *family;       /* FAMILY: name of the family in velo/schema.h */
 } Field;
 
 #define MEMBER(def, member, type, size) #member, type, offsetof(def, member), sizeof((def *)0)->member / (size)
@@ -81,7 +81,7 @@ static const Field build_fields[] = {
     FIELD_CHOICE(vlBuildDef, color, colors), FIELD_CHOICE(vlBuildDef, light_sampler, light_samplers),
     FIELD_BOOL(vlBuildDef, imitate_pbrt),    FIELD_BOOL(vlBuildDef, regularize),
     FIELD_CHOICE(vlBuildDef, bits, bits),    FIELD_END};
-/* Not time_limit: the samples say what it let through. */
+/* time_limit is not among the fields, since the number of samples records its effect. */
 static const Field render_fields[] = {FIELD_FAMILY(vlRenderDef, tracer, "tracers"),
                                       FIELD_FAMILY(vlRenderDef, sampler, "samplers"),
                                       FIELD_COUNT(vlRenderDef, spp),
@@ -107,7 +107,7 @@ bool vl_receipt_put(json_t *parent, const char *key, json_t *value) {
   return (key ? json_object_set_new(parent, key, value) : json_array_append_new(parent, value)) == 0;
 }
 
-/* The names of kinds are those of files; kinds that files cannot name have that of their constant. */
+/* Returns the name of a kind in scene files. If it has none there, returns the name of its constant. */
 static const char *kind_name(const char *family, uint32_t kind) {
   const vlKindFamily *f = vl_kind_family_find(family);
   if (!f || kind >= f->kind_count) return "unknown";
@@ -124,7 +124,7 @@ static json_t *number(double value) {
   return isinf(value) ? json_string(value > 0 ? "infinity" : "-infinity") : json_real(value);
 }
 
-/* One value of a field. *unset: it is a number that is not given. */
+/* Makes the JSON of value i of a field. *unset: the value is a number that is not set. */
 static json_t *value_of(const Field *field, const char *at, uint32_t i, bool *unset) {
   double d = 0;
   uint32_t u = 0;
@@ -160,7 +160,7 @@ static bool put_field(json_t *object, const Field *field, const void *def) {
   return vl_receipt_put(object, field->name, list);
 }
 
-/* Adds an object with the members of a def; null: none. */
+/* Adds an object with the members of a def. Adds nothing if def is null. */
 static bool put_def(json_t *tree, const char *name, const Field *fields, const void *def) {
   if (!def) return true;
   json_t *object = json_object();
@@ -169,14 +169,14 @@ static bool put_def(json_t *tree, const char *name, const Field *fields, const v
   return vl_receipt_put(tree, name, object);
 }
 
-/* With fast bits they depend on Embree's instruction set. */
+/* Adds the build settings. With fast bits the image also depends on Embree's instruction set, which is added, too. */
 static bool put_build(json_t *tree, const vlBuildDef *build) {
   if (!put_def(tree, "build", build_fields, build)) return false;
   return build->bits == VL_BITS_PORTABLE ||
          vl_receipt_put(json_object_get(tree, "build"), "embree", json_string(vl_accel_fast_set()));
 }
 
-/* The length of the sequence in figures, also where it is the default. */
+/* Adds the render settings. A default length of the sequence is replaced by its number. */
 static bool put_render(json_t *tree, vlRenderDef render) {
   if (!render.sequence) render.sequence = vl_sampler_sequence(render.sampler, render.spp);
   return put_def(tree, "render", render_fields, &render) &&

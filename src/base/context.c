@@ -232,7 +232,8 @@ vlResult vl_try_threads(vlContext *context, vlError *error) {
   pthread_t *threads = vl_alloc_array(context, wanted + 1, sizeof *threads);
   if (!threads) return vl_fail_memory(error);
   pthread_mutex_t all = PTHREAD_MUTEX_INITIALIZER;
-  pthread_mutex_lock(&all); /* until the last has started, since a limit is one of threads at once */
+  pthread_mutex_lock(&all); /* held until the last thread has started: systems limit the number of threads that exist at
+                               the same time */
   while (started < wanted && pthread_create(&threads[started], NULL, wait_turn, &all) == 0) started++;
   pthread_mutex_unlock(&all);
   for (uint32_t i = 0; i < started; i++) pthread_join(threads[i], NULL);
@@ -249,7 +250,8 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
     return;
   }
   Pool *pool = &context->pool;
-  pthread_mutex_lock(&context->run_mutex); /* one parallel loop at a time, from any thread */
+  pthread_mutex_lock(
+      &context->run_mutex); /* only one parallel loop runs at a time, also if several threads call this function */
   pthread_mutex_lock(&pool->mutex);
   pool->body = body;
   pool->loop_user = loop_user;
@@ -305,8 +307,7 @@ static vlResult copy_sandbox(vlContext *context) {
   return VL_OK;
 }
 
-/* ---- creation and destruction
- * ------------------------------------------------------------------------------------- */
+/* ---- creation and destruction ------------------------------------------------------------------------------------ */
 
 vlContextDef vl_default_context_def_abi(uint32_t abi) {
   long cores = sysconf(_SC_NPROCESSORS_ONLN);

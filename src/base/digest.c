@@ -11,7 +11,7 @@ static uint64_t mix(uint64_t k) {
   return k ^ k >> 33;
 }
 
-/* Up to 8 bytes, the first one lowest. */
+/* Loads up to 8 bytes; the first byte becomes the lowest. */
 static uint64_t load(const uint8_t *bytes, size_t count) {
   uint64_t value = 0;
   for (size_t i = 0; i < count; i++) value |= (uint64_t)bytes[i] << 8 * i;

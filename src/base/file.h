@@ -40,6 +40,6 @@ void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint6
 vlResult vl_file_commit(vlFileWriter *writer, vlError *error);
 void vl_file_abandon(vlFileWriter *writer);
 
-double vl_seconds(void); /* monotonic */
+double vl_seconds(void); /* seconds of a monotonic clock */
 
 #endif

@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "base/digest.h"
 
-/* The index of the path, or of the place where it belongs. */
+/* Returns the index of the path, or the index at which it would be inserted. */
 static size_t find(const vlFileRecords *records, const char *path, bool *found) {
   size_t low = 0, high = records->files.count;
   *found = false;

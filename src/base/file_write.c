@@ -59,7 +59,7 @@ static bool open_nameless(vlFileWriter *writer) {
 #endif
 }
 
-/* Links it to a temporary name, just before it is renamed. False: errno is set. */
+/* Links the nameless file to a temporary name, just before it is renamed. False: errno is set. */
 static bool give_name(vlFileWriter *writer) {
   char self[64];
   snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
@@ -177,7 +177,7 @@ static void keep_permissions(const vlFileWriter *writer) {
   if (fchmod(writer->descriptor, writer->mode) != 0) errno = 0;
 }
 
-/* Makes the new name last, where the file system can sync a folder. */
+/* Makes the new name durable, if the file system can sync a folder. */
 static void sync_folder(const vlFileWriter *writer) {
   char folder[4096];
   snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);

@@ -5,14 +5,15 @@
 
 #include "velo/base.h"
 
-/* The widest set this machine has, or the wish if the machine has it (else UNSUPPORTED). AUTO looks at the environment
- * variable VELO_ISA first. BASE gives the lowest set of the library: V2 on x86-64. */
+/* Chooses an instruction set. AUTO: the set that the environment variable VELO_ISA names, else the widest set that
+ * the machine has. BASE: the lowest set of the library, V2 on x86-64. Error: UNSUPPORTED if the machine does not
+ * have the set. */
 vlResult vl_isa_choose(vlIsa wish, vlIsa *isa);
 vlIsa vl_isa_best(void);
 
-/* Declares the kernel table of hot files: PREFIX_kernel_table, the name within the hot file that defines it; the
- * same per instruction set, for all others; and PREFIX_kernels(isa), the table of a set. The build links the hot
- * files of a set into one object in which only these tables are global (CMakeLists.txt has their list). */
+/* Declares the kernel tables of hot files. PREFIX_kernel_table is the name within the hot file that defines the
+ * table. All other files use PREFIX_kernels(isa), which returns the table of an instruction set. The build links the
+ * hot files of a set into one object in which only these tables are global (CMakeLists.txt has their list). */
 #if defined(__x86_64__)
 #define VL_KERNEL_TABLE(type, prefix)                                                          \
   extern const type prefix##_kernel_table, prefix##_kernel_table_v2, prefix##_kernel_table_v3, \

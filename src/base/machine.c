@@ -11,7 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
-#ifndef MAP_NORESERVE /* Linux and the BSDs of old; elsewhere PROT_NONE reserves no memory either */
+#ifndef MAP_NORESERVE /* older Linux and BSD headers; on other systems PROT_NONE reserves no memory either */
 #define MAP_NORESERVE 0
 #endif
 
@@ -32,7 +32,8 @@ void vl_machine_large_pages(void *block, size_t size) {
 #if defined(MADV_HUGEPAGE)
   const uintptr_t page = (uintptr_t)2 << 20;
   uintptr_t from = ((uintptr_t)block + page - 1) & ~(page - 1), to = ((uintptr_t)block + size) & ~(page - 1);
-  if (to > from) madvise((void *)from, to - from, MADV_HUGEPAGE); /* advice: a failure changes no result */
+  if (to > from)
+    madvise((void *)from, to - from, MADV_HUGEPAGE); /* only advice: if it fails, nothing changes but the speed */
 #else
   (void)block, (void)size;
 #endif
@@ -41,13 +42,13 @@ void vl_machine_large_pages(void *block, size_t size) {
 unsigned vl_machine_flush_denormals(void) {
 #if defined(__SSE__)
   unsigned state = _mm_getcsr();
-  _mm_setcsr(state | 0x8040u); /* flush to zero, denormals are zero */
+  _mm_setcsr(state | 0x8040u); /* bits FTZ (results) and DAZ (inputs): denormals become 0 */
   return state;
 #elif defined(__aarch64__)
   uint64_t state;
   __asm__ volatile("mrs %0, fpcr" : "=r"(state));
-  __asm__ volatile("msr fpcr, %0" ::"r"(state | UINT64_C(1) << 24)); /* FZ: inputs and results */
-  return (unsigned)state;                                            /* its upper half is reserved */
+  __asm__ volatile("msr fpcr, %0" ::"r"(state | UINT64_C(1) << 24)); /* bit FZ: denormal inputs and results become 0 */
+  return (unsigned)state;                                            /* the upper half of the register is reserved */
 #else
   return 0;
 #endif

@@ -61,7 +61,7 @@ void vl_list_name(char *list, size_t size, const char *name) {
   memcpy(list + used + 2, name, length + 1);
 }
 
-/* Bytes of the UTF-8 character at text, 0 if there is none or it is cut; *code: its code point. */
+/* Number of bytes of the UTF-8 character at text; 0 if the bytes are not valid or incomplete. *code: its code point. */
 static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *code) {
   static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
   unsigned char c = text[0];
@@ -75,7 +75,7 @@ static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *co
   return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
 }
 
-/* Control characters, and those that have no width or turn the direction of writing. */
+/* Whether a character is a control character, has no width, or changes the direction of writing. */
 static bool is_hidden(uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0xad || (c >= 0x200b && c <= 0x200f) ||
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) || c == 0xfeff || c >= 0xe0000;

@@ -15,10 +15,10 @@ void vl_tell_names(char *text, size_t size, const char *name, const char *const 
 void vl_list_name(char *list, size_t size, const char *name);
 /* vl_short_text of `length` bytes, which may hold zeros. */
 vlShortText vl_short_text_of(const char *text, size_t length);
-/* Replaces what vl_short_text replaces, in a whole message, by "?". Nothing is cut: names of files stay whole. A UTF-8
- * sequence that the end of a buffer has cut is removed. */
+/* Replaces the same characters as vl_short_text by "?", but in a whole message and without shortening it, so names
+ * of files stay complete. Removes an incomplete UTF-8 sequence at the end. */
 void vl_make_printable(char *message);
-/* Length of a message of jansson's without its end, which quotes the file: " near '...'". */
+/* Length of one of jansson's messages without its end (" near '...'"), which quotes the file. */
 size_t vl_json_problem_length(const char *message);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
 /* result = folder of the file base_file + name; name alone if it is absolute. False: it does not fit. */

@@ -124,8 +124,7 @@ bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical,
   return p.valid > 0.0 && isfinite(*radius) && *radius > 0.0;
 }
 
-/* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order) -------------------------------------------
- */
+/* ---- COLMAP's models (sensor/models.h of COLMAP; parameters in its order) ---------------------------------------- */
 
 typedef struct {
   const char *name;

@@ -105,7 +105,8 @@ static vlResult focus(vlOptics *o, vlError *error) {
   if (!(m.c < 0.0) || !isfinite(m.c))
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: it does not gather light (its focal length is %g)", -1.0 / m.c);
   double f = -1.0 / m.c, length = o->surfaces[o->count - 1].z;
-  /* principal planes, from the rear vertex: rear (of a parallel ray from the scene) and front (of one from the film) */
+  /* distances from the rear vertex to the rear principal plane (for a parallel ray from the scene) and to the front
+   * one (for a parallel ray from the film) */
   double rear = (1.0 - m.d) * f, front = length + (m.a - 1.0) * f, image = f;
   if (isfinite(o->def.focus_distance)) {
     double rest = o->def.focus_distance - (front - rear); /* distance from the object to the front principal plane, plus
@@ -115,7 +116,7 @@ static vlResult focus(vlOptics *o, vlError *error) {
                      "lens: it cannot focus at a distance of %g; the nearest for its focal length of %g is %g",
                      o->def.focus_distance, f, 4.0 * f + front - rear);
     image = 0.5 * (rest - sqrt(rest * (rest - 4.0 * f)));
-    /* The difference above loses digits for far objects: one Newton step on image (rest - image) = f rest. */
+    /* The difference loses digits for far objects, so one Newton step for f rest = image (rest - image) follows. */
     image -= (image * (rest - image) - f * rest) / (rest - 2.0 * image);
     if (!isfinite(image)) image = 2.0 * f;
   }
@@ -133,8 +134,8 @@ static vlResult focus(vlOptics *o, vlError *error) {
                            .focus_distance = o->def.focus_distance,
                            .film_diagonal = 2.0 * o->half};
   if (o->has_stop && !o->def.aperture) {
-    /* a ray parallel to the axis in front of the lens has d times its height at the stop; d is of the part in front
-     * of it */
+    /* d is that of the part of the lens in front of the stop: a ray that is parallel to the axis in front of the
+     * lens has d times its height at the stop */
     double share = paraxial(o, o->stop, o->count - 1).d;
     o->info.f_number = f / (2.0 * sqrt(o->surfaces[o->stop].aperture2) / share);
   }

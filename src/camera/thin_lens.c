@@ -1,5 +1,5 @@
-/* camera/thin_lens.c: the lens part of vl_camera_make: radius or f-number, the plane in focus, the aperture's shape,
- * exposure from the camera's settings. After intrinsics and pose. */
+/* camera/thin_lens.c: the part of vl_camera_make for the lens: radius or f-number, the plane in focus, the
+ * aperture's shape, and the exposure from the camera's settings. Runs after intrinsics and pose. */
 #include <math.h>
 
 #include "base/error.h"
@@ -9,7 +9,8 @@
 
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
 
-/* Projections that see only what lies ahead: planes of constant z stand where others have spheres around the eye. */
+/* Whether a projection sees only the half-space z > 0. Its surfaces of focus and clipping are planes of constant z;
+ * those of other projections are spheres around the eye. */
 static bool given(double value) {
   return !vl_is_unset(value);
 }

@@ -1,5 +1,5 @@
-/* camera/timing.c: the time part of vl_camera_make: shutter, curve, readout, the second pose; and a moving camera
- * frozen at one time. */
+/* camera/timing.c: the part of vl_camera_make for time: shutter, shutter curve, readout and the second pose. It also
+ * makes the copy of a moving camera that is frozen at one time. */
 #include "camera/time.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static vlResult check_curve(const vlCameraDef *d, vlError *error) {
   return VL_OK;
 }
 
-/* Parts of the second pose that are not given are taken from the first. */
+/* Fills the members of the second pose that are not given from the first pose. */
 static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   *close = *def;
   bool given = !vl_is_unset(def->roll_close);
@@ -48,7 +48,7 @@ static bool second_pose(const vlCameraDef *def, vlCameraDef *close) {
   return given;
 }
 
-/* Sets the motion from the camera's pose to another. */
+/* Sets the camera's motion from its pose to the pose `close`. */
 static vlResult go_to(const double close[16], vlCamera *camera, vlError *error) {
   const double *t = camera->pose_times;
   vlMotion motion;
@@ -111,7 +111,7 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
     case VL_READOUT_RIGHT: t->per_column = columns; break;
     case VL_READOUT_LEFT: t->per_column = -columns; break;
   }
-  /* relative to the first pixel that is read, whose exposure begins when the shutter opens */
+  /* times are relative to the pixel that is read first; its exposure begins when the shutter opens */
   t->first_column = t->per_column < 0.0 ? camera->width - 1.0 : 0.0;
   t->first_row = t->per_row < 0.0 ? camera->height - 1.0 : 0.0;
   t->moves = camera->moves && vl_motion_make(camera->world_from_camera, camera->world_from_camera_close, &t->motion);

@@ -1,6 +1,6 @@
-/* camera_files/basalt.c: Basalt's calibration JSON: value0 with T_imu_cam (IMU from camera: px py pz, qx qy qz qw),
- * intrinsics, resolution. x right, y down, z forward; the IMU's space is the world's; the first pixel's centre is
- * (0, 0). */
+/* camera_files/basalt.c: Basalt's calibration JSON. value0 holds T_imu_cam (IMU from camera: px py pz, qx qy qz qw),
+ * intrinsics and resolution. Camera axes: x right, y down, z forward. The world's space is that of the IMU. The
+ * first pixel's centre is (0, 0). */
 #include <string.h>
 
 #include "camera_files/files.h"

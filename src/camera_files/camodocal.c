@@ -1,6 +1,7 @@
-/* camera_files/camodocal.c: camodocal's camera files, which VINS-Mono and VINS-Fusion read too, alone or named by their
- * configuration. x right, y down, z forward; the first pixel's centre is (0, 0). A configuration's body_T_cam0 (or
- * extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the body's space is the world's. */
+/* camera_files/camodocal.c: camodocal's camera files, which VINS-Mono and VINS-Fusion also read, directly or through
+ * a configuration file that names them. Camera axes: x right, y down, z forward. The first pixel's centre is (0, 0).
+ * A configuration's body_T_cam0 (or extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the
+ * world's space is that of the body. */
 #include <stdio.h>
 #include <string.h>
 
@@ -11,8 +12,8 @@
 typedef struct {
   const char *name;
   vlLensFamily family;
-  const char *intrinsics[4]; /* in projection_parameters */
-  const char *lens[8];       /* in OpenCV's order, in distortion_parameters; of a fisheye in projection_parameters */
+  const char *intrinsics[4]; /* names in projection_parameters */
+  const char *lens[8]; /* names in OpenCV's order, in distortion_parameters; for a fisheye in projection_parameters */
 } Model;
 
 static const Model models[] = {
@@ -71,7 +72,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCame
                             vl_short_text(name).text);
 }
 
-/* Reads the camera file that a configuration names. */
+/* Reads the camera file whose name is in a configuration file. */
 static vlResult read_named(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraRecord *record) {
   char path[4096], *text;
   size_t size;

@@ -76,7 +76,7 @@ static vlResult put_images(Bytes *bytes, vlCameraText *text) {
     }
     for (; name < stop; name++) vl_camera_put(text, "%c", *name == '\n' || *name == '\r' ? ' ' : *name);
     bytes->at = stop + 1;
-    vl_camera_put(text, "\n\n"); /* the line of points */
+    vl_camera_put(text, "\n\n"); /* the empty line is the image's line of points */
     uint64_t points = whole(bytes, 8);
     if (points > (uint64_t)(bytes->end - bytes->at) / 24)
       bytes->cut = true;

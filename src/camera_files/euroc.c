@@ -1,5 +1,5 @@
-/* camera_files/euroc.c: sensor.yaml of the EuRoC datasets (ASL's format). x right, y down, z forward; T_BS is body
- * (IMU) from camera, and the body's space is the world's; the first pixel's centre is (0, 0). */
+/* camera_files/euroc.c: sensor.yaml of the EuRoC datasets (ASL's format). Camera axes: x right, y down, z forward.
+ * T_BS is body (IMU) from camera, and the world's space is that of the body. The first pixel's centre is (0, 0). */
 #include <string.h>
 
 #include "camera_files/files.h"

@@ -141,8 +141,7 @@ vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
  * Returns false if the model is not one of OpenCV's. */
 bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- lenses --------------------------------------------------------------------------------------------------------
- */
+/* ---- lenses ------------------------------------------------------------------------------------------------------ */
 
 /* Sets fx, fy, cx, cy from values for which the centre of the first pixel is (0, 0). */
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy);
@@ -163,8 +162,7 @@ typedef enum vlLensFamily {
 } vlLensFamily;
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
 
-/* ---- rotations: row-major 3 x 3 -------------------------------------------------------------------------------------
- */
+/* ---- rotations: row-major 3 x 3 ---------------------------------------------------------------------------------- */
 
 void vl_rotation_from_vector(const double v[3], double r[9]);
 void vl_rotation_to_vector(const double r[9], double v[3]);

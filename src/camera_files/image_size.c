@@ -1,5 +1,5 @@
-/* camera_files/image_size.c: the image's size of files that have none: as the caller gives it, or that of an image
- * beside the file, by the first bytes of a PNG or JPEG. */
+/* camera_files/image_size.c: the image size for files that have none. It is the size that the caller gives, or that
+ * of an image beside the file, read from the first bytes of a PNG or JPEG. */
 #include <stdio.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@ static uint32_t big_endian(const unsigned char *b, int count) {
   return value;
 }
 
-/* Walks over a JPEG's segments to the frame header. */
+/* Skips the segments of a JPEG up to the frame header, which holds the size. */
 static bool jpeg_size(FILE *file, uint32_t size[2]) {
   unsigned char b[8];
   if (fseek(file, 2, SEEK_SET) != 0) return false;

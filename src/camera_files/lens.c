@@ -1,4 +1,4 @@
-/* camera_files/lens.c: the lens models that calibration tools share, and poses given as matrices. */
+/* camera_files/lens.c: the lens models that calibration tools have in common, and poses given as matrices. */
 #include <string.h>
 
 #include "camera_files/files.h"

@@ -1,5 +1,5 @@
-/* camera_files/okvis.c: the cameras of OKVIS's configuration. x right, y down, z forward; T_SC is sensor (IMU) from
- * camera, and the sensor's space is the world's; the first pixel's centre is (0, 0). */
+/* camera_files/okvis.c: the cameras of OKVIS's configuration files. Camera axes: x right, y down, z forward. T_SC is
+ * sensor (IMU) from camera, and the world's space is that of the sensor. The first pixel's centre is (0, 0). */
 #include <string.h>
 
 #include "camera_files/files.h"

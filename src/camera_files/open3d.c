@@ -1,6 +1,6 @@
-/* camera_files/open3d.c: Open3D's JSON: PinholeCameraIntrinsic, PinholeCameraParameters, PinholeCameraTrajectory. x
- * right, y down, z forward; extrinsic is camera from world; matrices are written column by column; the first pixel's
- * centre is (0, 0). */
+/* camera_files/open3d.c: Open3D's JSON: PinholeCameraIntrinsic, PinholeCameraParameters, PinholeCameraTrajectory.
+ * Camera axes: x right, y down, z forward. extrinsic is camera from world. Matrices are stored by columns. The first
+ * pixel's centre is (0, 0). */
 #include <math.h>
 #include <string.h>
 
@@ -52,7 +52,8 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCame
                             file->def->frame ? file->def->frame : "0", record->frames);
 }
 
-/* intrinsic_matrix alone: by columns, the principal point is at its end. OpenCV's has it in the third number. */
+/* Recognises a lone intrinsic_matrix. Open3D stores it by columns, so the principal point is in its last numbers. In
+ * OpenCV's matrices, stored by rows, it is in the third number. */
 static bool is_open3d(const json_t *tree) {
   const char *name = vl_camera_text(tree, "class_name");
   const json_t *k = json_object_get(tree, "intrinsic_matrix");

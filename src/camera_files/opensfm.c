@@ -1,7 +1,7 @@
-/* camera_files/opensfm.c: OpenSfM's reconstruction.json (a list of reconstructions: cameras, shots) and
- * camera_models.json (cameras by name), which OpenDroneMap writes too. x right, y down, z forward; a shot's rotation
- * (axis and angle) and translation are camera from world. Lengths in the image are shares of its larger side, from its
- * middle: velo's cx is width / 2 + c_x max(width, height). */
+/* camera_files/opensfm.c: OpenSfM's reconstruction.json (a list of reconstructions with cameras and shots) and
+ * camera_models.json (cameras by name), which OpenDroneMap also writes. Camera axes: x right, y down, z forward. A
+ * shot's rotation (axis and angle) and translation are camera from world. Lengths in the image are fractions of its
+ * larger side, measured from its middle: velo's cx is width / 2 + c_x max(width, height). */
 #include <string.h>
 
 #include "camera_files/files.h"
@@ -79,7 +79,7 @@ static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const js
   return result;
 }
 
-/* Cameras without shots: camera_models.json. */
+/* Reads camera_models.json, which holds cameras without shots. */
 static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlCameraRecord *record) {
   const char *name, *chosen = NULL;
   json_t *camera;
@@ -96,7 +96,7 @@ static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlC
   return read_camera(file, json_object_get(cameras, chosen), record);
 }
 
-/* The shots of all reconstructions of the file, one after another. */
+/* Reads the shots of all reconstructions in the file, one reconstruction after the other. */
 static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *list = json_object_get(tree, "[]"), *chosen = NULL, *of = NULL;
   const char *name, *chosen_name = NULL;

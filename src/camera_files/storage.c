@@ -1,7 +1,7 @@
-/* camera_files/storage.c: OpenCV's FileStorage in XML, <opencv_storage>, as the tree that its YAML form gives: an
- * element with children is an object, or a list if they are all <_>; text is a number, a list of numbers separated by
- * blanks, or a word; type_id="opencv-matrix" is an object of rows, cols and data. XML of another root is returned as it
- * is parsed. */
+/* camera_files/storage.c: converts OpenCV's FileStorage in XML, <opencv_storage>, to the same tree as its YAML form.
+ * An element with children becomes an object, or a list if all children are <_>. Text becomes a number, a list of
+ * numbers separated by blanks, or a string. An element with type_id="opencv-matrix" becomes an object of rows, cols
+ * and data. XML with another root is returned unchanged. */
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +83,7 @@ vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t si
   vlResult result = vl_camera_xml(file, text, size, NULL, &root);
   if (result != VL_OK) return result;
   if (strcmp(vl_camera_text(root, "<"), "opencv_storage") != 0) {
-    *tree = root; /* another tool's: its elements hold their own places */
+    *tree = root; /* a file of another tool: the elements hold their own places in the file */
     return VL_OK;
   }
   if (!(*tree = convert(file, root, 32))) result = vl_fail_memory(file->error);

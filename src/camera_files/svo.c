@@ -1,7 +1,7 @@
-/* camera_files/svo.c: SVO's camera files: of version 1 (cam_model: Pinhole or ATAN) and of version 2 (a rig: cameras,
- * each with camera and T_B_C). x right, y down, z forward; T_B_C is body from camera, and the body's space is the
- * world's; the first pixel's centre is (0, 0). ATAN's numbers are shares of the image's sides, and its image begins at
- * (-0.5, -0.5): in velo's pixels cx is cam_cx times the width. */
+/* camera_files/svo.c: SVO's camera files of version 1 (cam_model: Pinhole or ATAN) and version 2 (a rig of cameras,
+ * each with camera and T_B_C). Camera axes: x right, y down, z forward. T_B_C is body from camera, and the world's
+ * space is that of the body. The first pixel's centre is (0, 0). ATAN's numbers are fractions of the image's sides,
+ * and its image begins at (-0.5, -0.5); so cx in velo's pixels is cam_cx times the width. */
 #include <string.h>
 
 #include "camera_files/files.h"

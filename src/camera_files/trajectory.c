@@ -79,8 +79,7 @@ vlResult vl_trajectory_add_camera(vlTrajectory *t, const vlCameraFile *file, con
   return VL_OK;
 }
 
-/* ---- which file ----------------------------------------------------------------------------------------------------
- */
+/* ---- which file -------------------------------------------------------------------------------------------------- */
 
 /* Adds a camera with its pose as a frame. */
 static vlResult add_record(void *data, const vlCameraFile *file, const vlCameraRecord *record, uint32_t frame) {
@@ -153,8 +152,7 @@ static vlResult read_any(vlTrajectory *t, const vlCameraFile *file) {
   return result == VL_OK && single ? vl_camera_read_each(file, &(vlCameraSink){add_record, t}) : result;
 }
 
-/* ---- the public face -----------------------------------------------------------------------------------------------
- */
+/* ---- the public face --------------------------------------------------------------------------------------------- */
 
 vlResult vl_trajectory_load(vlContext *context, const char *path, const vlCameraFileDef *def, vlTrajectory **trajectory,
                             vlError *error) {

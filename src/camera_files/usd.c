@@ -12,8 +12,7 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost
- * -------------------- */
+/* ---- transforms: matrices for column vectors; the first operation of an order is the outermost ------------------- */
 
 typedef struct {
   const vlCameraFile *file;
@@ -110,11 +109,12 @@ typedef struct {
   const json_t *camera, *resolution; /* the chosen prim, and the first resolution of the file */
   vlMat4 pose;
   uint32_t frames;
-  const json_t *path[64]; /* the prims from the root to the one that is looked at */
+  const json_t *path[64]; /* the prims from the root to the current one */
   int depth;
 } Search;
 
-/* The pose of the innermost prim of the path. Only what is above the chosen camera has to be understood and still. */
+/* Computes the pose of the last prim of the path. Only the chosen camera and its parents must have supported,
+ * constant transforms. */
 static vlResult pose_of(Search *s) {
   s->pose = vl_mat4_identity();
   for (int i = 0; i < s->depth; i++) {
@@ -228,7 +228,7 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
                              file->def->frame ? file->def->frame : "0", search.frames);
   else if (result == VL_OK)
     result = read_camera(&search, tree, record);
-  /* an error without a place is one of the camera that was chosen, or of the file */
+  /* an error without a line gets the line of the chosen camera, or 1 */
   if (result == VL_ERROR_SCENE && file->error && file->error->line == 0) {
     const json_t *line = json_object_get(search.camera, "#");
     file->error->line = line ? (uint32_t)json_number_value(line) : 1, file->error->column = 1;

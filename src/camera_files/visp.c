@@ -1,7 +1,7 @@
-/* camera_files/visp.c: ViSP's camera XML: <root> with cameras, each with an image size and models. x right, y down, z
- * forward; no pose; the first pixel's centre is (0, 0). Distortion kud: from the ideal to the distorted point, which is
- * OpenCV's k1; kdu, the way back, is not used. Kannala-Brandt: k1 to k4 are those of OpenCV's fisheye; ViSP writes a k5
- * and does not use it. */
+/* camera_files/visp.c: ViSP's camera XML: <root> with cameras, each with an image size and models. Camera axes: x
+ * right, y down, z forward. There is no pose. The first pixel's centre is (0, 0). The distortion kud maps the ideal
+ * point to the distorted one and equals OpenCV's k1. kdu, the inverse, is not used. k1 to k4 of Kannala-Brandt are
+ * those of OpenCV's fisheye model; ViSP writes a k5 and does not use it. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +12,7 @@ static const char with_distortion[] = "perspectiveProjWithDistortion";
 static const char without_distortion[] = "perspectiveProjWithoutDistortion";
 static const char kannala_brandt[] = "ProjWithKannalaBrandtDistortion";
 
-/* The text of a child without blanks around it; "" if there is none. */
+/* Copies the text of a child without the blanks around it; "" if there is no such child. */
 static void child_text(const json_t *element, const char *tag, char text[64]) {
   const char *from = vl_camera_text(vl_camera_child(element, tag), "$");
   text[0] = 0;
@@ -68,7 +68,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   return VL_OK;
 }
 
-/* Each model of each camera is one to choose from, by the camera's name or its number. */
+/* Each model of each camera counts as one camera, which is chosen by the camera's name or its number. */
 static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
   const json_t *camera, *model, *chosen = NULL, *of = NULL;
   size_t i, k;
@@ -103,7 +103,7 @@ static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *recor
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
   bool fits = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV || family == VL_LENS_FISHEYE;
   bool fisheye = family == VL_LENS_FISHEYE;
-  for (int i = 1; i < 14 && !fisheye; i++) fits = fits && k[i] == 0.0; /* k1 alone */
+  for (int i = 1; i < 14 && !fisheye; i++) fits = fits && k[i] == 0.0; /* ViSP's model has k1 only */
   if (!fits) return vl_camera_no_model(file, &record->camera);
   bool bent = !fisheye && k[0] != 0.0;
   const char *name = record->name[0] && !strpbrk(record->name, "<>&") ? record->name : "Camera";

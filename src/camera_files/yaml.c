@@ -1,6 +1,7 @@
-/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias is a copy of what its anchor names;
- * the number of values of a file with aliases is bounded, for a small file could grow without bound. "<<" merges maps.
- * OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is ignored, and its tabs are blanks. */
+/* camera_files/yaml.c: parses YAML by libyaml into the same tree as JSON. An alias becomes a copy of the value that
+ * its anchor names. The number of values in a file with aliases is limited, since a small file could otherwise
+ * expand without bound. "<<" merges maps. OpenCV's first line "%YAML:1.0" is not a valid YAML directive and is
+ * ignored, and its tabs count as blanks. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* color/named.c: finding spectra by name. */
+/* color/named.c: finds spectra by name. */
 #include "color/named.h"
 
 #include <string.h>

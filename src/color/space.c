@@ -1,4 +1,4 @@
-/* color/space.c: the colour spaces and the observer, from the constant tables. */
+/* color/space.c: the colour spaces and the standard observer, from the constant tables. */
 #include "color/tables.h"
 
 static const vlSpaceTable *space_table(vlColorSpace space) {

@@ -64,7 +64,7 @@ typedef struct vlFilmReader {
   vlFilmShape shape;
   char *receipt; /* text; null: none */
   uint32_t blocks, next;
-  /* of the block that was read last */
+  /* head and ranges of the block that was read last */
   vlFilmBlockHead head;
   vlSampleSpan *ranges;
   uint32_t range_capacity;

@@ -1,4 +1,4 @@
-/* film/file_common.c: what readers and writers of film files share. */
+/* film/file_common.c: functions that readers and writers of film files share. */
 #include <string.h>
 #include <zlib.h>
 
@@ -7,7 +7,7 @@
 const char vl_film_magic[8] = {'V', 'E', 'L', 'O', 'F', 'I', 'L', 'M'};
 
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size) {
-  return size ? (uint32_t)crc32_z(crc, data, size) : crc; /* zlib begins anew where data is null */
+  return size ? (uint32_t)crc32_z(crc, data, size) : crc; /* crc32_z with null data would restart the CRC */
 }
 
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count) {

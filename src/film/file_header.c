@@ -1,4 +1,4 @@
-/* film/file_header.c: the header of a film file: what its film is, as JSON, and the receipt of its render. */
+/* film/file_header.c: the header of a film file as JSON: the film's def and the receipt of its render. */
 #include <jansson.h>
 #include <math.h>
 #include <stddef.h>
@@ -172,7 +172,7 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
   }
   json_decref(tree);
   if (result != VL_OK) return result;
-  vlFilm *film = NULL; /* checks the def, takes no memory for pixels */
+  vlFilm *film = NULL; /* vl_film_create checks the def; it allocates no memory for pixels yet */
   result = vl_film_create(context, &shape->def, &film);
   vl_film_destroy(film);
   if (result == VL_OK) return VL_OK;

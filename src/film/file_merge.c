@@ -1,5 +1,5 @@
-/* film/file_merge.c: adds blocks of sums. Integers: the order does not matter. Reading has checked that nothing can
- * overflow. */
+/* film/file_merge.c: adds blocks of sums. The sums are integers, so the order does not matter. The reader has
+ * checked that no sum can overflow. */
 #include "film/file.h"
 
 static void add_squares(uint64_t to[3], const uint64_t from[3]) {

@@ -1,11 +1,12 @@
-/* film/file_read.c: vl_film_read: the blocks of a file become a film in memory. */
+/* film/file_read.c: vl_film_read: reads the blocks of a file into a film in memory. */
 #include <string.h>
 
 #include "base/error.h"
 #include "film/file.h"
 #include "velo/film.h"
 
-/* What the blocks with samples have in common. */
+/* Summary of all blocks that have samples. crop: their bounding box, pixels; range: the samples of the first;
+ * pixels: their number; least: the smallest number of samples of a block. */
 typedef struct Extent {
   uint32_t crop[4];
   vlSampleSpan range;
@@ -53,7 +54,7 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
                  r->path);
 }
 
-/* Copies a block's sums to their places. data: as in the file. */
+/* Copies a block's sums into the film. data: the sums as stored in the file. */
 static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
   uint32_t width = h->x1 - h->x0, height = h->y1 - h->y0, n = film->def.buckets;
   size_t pixels = (size_t)width * height;
@@ -115,7 +116,8 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
     vlFilmDef def = reader.shape.def;
     memcpy(def.crop, extent.crop, sizeof def.crop);
     result = vl_film_create(context, &def, &made);
-    if (result != VL_OK) result = vl_fail_memory(error); /* the header's film was checked */
+    if (result != VL_OK)
+      result = vl_fail_memory(error); /* the def was checked with the header, so only memory can be missing */
   }
   bool blocks_differ = extent.joined && !extent.even;
   if (result == VL_OK) result = fill(&reader, made, blocks_differ, error);

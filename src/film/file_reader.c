@@ -1,5 +1,5 @@
-/* film/file_reader.c: reads film files block by block. Each byte is checked: preamble, header and blocks have CRCs, and
- * sizes must agree with the file's. */
+/* film/file_reader.c: reads film files block by block. All bytes are checked: preamble, header and blocks have CRCs,
+ * and their sizes must match the size of the file. */
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
@@ -13,7 +13,7 @@ static vlResult damaged(const vlFilmReader *r, const char *what, vlError *error)
   return vl_fail(error, VL_ERROR_SCENE, "%s: damaged film file: %s", r->path, what);
 }
 
-/* Reads `size` bytes at `at`, which the file has. */
+/* Reads `size` bytes at offset `at`. The caller has checked that the file is long enough. */
 static vlResult get(const vlFilmReader *r, void *data, size_t size, uint64_t at, vlError *error) {
   char *to = data;
   while (size) {
@@ -80,7 +80,7 @@ void vl_film_reader_close(vlFilmReader *r) {
   r->ranges = NULL;
 }
 
-/* Ascending, apart, and not more than a film can hold. */
+/* Whether ranges are ascending, have gaps between them, and have at most as many samples as a film can hold. */
 static bool good_ranges(const vlSampleSpan *ranges, uint32_t count) {
   for (uint32_t i = 0; i < count; i++)
     if (ranges[i].first >= ranges[i].end || (i && ranges[i].first <= ranges[i - 1].end)) return false;
@@ -134,7 +134,7 @@ static bool within(vlInt128 value, uint64_t samples, int bits) {
   return value >= -most && value <= most;
 }
 
-/* Whether sums are possible for so many samples, so that no addition to them can overflow. */
+/* Whether sums are possible for this number of samples. If they are, no addition to them can overflow. */
 static bool good_values(const vlFilmDef *def, size_t pixels, uint64_t samples, const void *data) {
   const vlFilmPixel *p = data;
   bool good = true;

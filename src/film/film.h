@@ -70,7 +70,7 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
  * first sample; a film without samples has length 0. */
 typedef struct vlFilmSequence {
   uint32_t length, first;
-  bool uneven; /* pixels have different samples (of a file): the film can only be developed */
+  bool uneven; /* a film read from a file whose pixels have different samples: it can only be developed */
 } vlFilmSequence;
 vlFilmSequence vl_film_sequence(const vlFilm *film);
 void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);

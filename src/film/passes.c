@@ -1,4 +1,4 @@
-/* film/passes.c: creation of films, passes, merging. */
+/* film/passes.c: creation of films; passes; merging of films. */
 #include "base/cookie.h"
 #include "color/sensor.h"
 #include "film/sums.h"
@@ -21,7 +21,7 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
 }
 
-/* Sets the sensor's curves and matrix, its name as a static string, and pbrt's default white balance for it. */
+/* Sets the sensor's response curves and matrix, its name (a static string), and pbrt's default white balance for it. */
 static vlResult set_sensor(vlFilm *film) {
   vlFilmDef *def = &film->def;
   if (!def->sensor || strcmp(def->sensor, vl_sensor_name(0)) == 0) {
@@ -138,8 +138,8 @@ vlResult vl_film_begin_pass(vlFilm *film) {
   return VL_OK;
 }
 
-/* Ends the running pass and advances the pass number. When it wraps, all stamps are cleared, so that no old stamp is
- * taken for current. */
+/* Ends the running pass and advances the pass number. If the number wraps around, all stamps are cleared; otherwise
+ * old stamps would count as current. */
 static void next_pass(vlFilm *film) {
   film->in_pass = false;
   if (++film->pass == 0) {
@@ -172,7 +172,7 @@ void vl_film_abandon_pass(vlFilm *film) {
   if (film->in_pass) next_pass(film);
 }
 
-/* Clears the film. Where there are two sets of sums, one is freed: the next pass begins as the first one does. */
+/* Clears the film. If there are two sets of sums, one of them is freed. The next pass then begins as in a new film. */
 void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
   vl_film_set_spp(film, 0);

@@ -1,5 +1,6 @@
-/* math/elementary.c: see elementary.h. A pair is an unevaluated sum of two doubles, |low| <= half a unit in the last
- * place of high: 106 bits. Sums after Knuth, products after Dekker (1971), which need no fused multiply-add. */
+/* math/elementary.c: see elementary.h. Numbers are pairs of doubles. A pair is the unevaluated sum of its two
+ * doubles, with |low| <= half a unit in the last place of high, which gives 106 bits. Sums are computed after Knuth,
+ * products after Dekker (1971); neither needs a fused multiply-add. */
 #include "math/elementary.h"
 
 #include <math.h>
@@ -11,10 +12,9 @@ typedef struct Pair {
   double high, low;
 } Pair;
 
-/* ---- arithmetic of pairs ------------------------------------------------------------------------------------------
- */
+/* ---- arithmetic of pairs ----------------------------------------------------------------------------------------- */
 
-/* a + b where |a| >= |b|, or a = 0. */
+/* a + b, exactly. Requires |a| >= |b| or a = 0. */
 static Pair sum_ordered(double a, double b) {
   double s = a + b;
   return (Pair){s, b - (s - a)};
@@ -25,7 +25,7 @@ static Pair sum(double a, double b) {
   return (Pair){s, (a - (s - t)) + (b - t)};
 }
 
-/* |a|, |b| < 2^995 */
+/* a b, exactly. Requires |a|, |b| < 2^995. */
 static Pair product(double a, double b) {
   const double split = 134217729.0; /* 2^27 + 1 */
   double p = a * b, ta = split * a, tb = split * b;
@@ -68,28 +68,28 @@ static Pair one(double x) {
   return (Pair){x, 0.0};
 }
 
-/* ---- exponential and logarithm -------------------------------------------------------------------------------------
- */
+/* ---- exponential and logarithm ----------------------------------------------------------------------------------- */
 
-/* ln 2 in three parts, the first two of 40 bits: their products with whole numbers below 2^13 are exact. */
+/* ln 2 as the sum of three parts. The first two have 40 bits, so their products with integers below 2^13 are exact. */
 static const double ln2[3] = {0x1.62e42fefa2p-1, 0x1.9ef35793c6p-41, 0x1.673007e5ed5e8p-81};
 
 static Pair times_ln2(double whole) {
   return add(sum_ordered(whole * ln2[0], whole * ln2[1]), one(whole * ln2[2]));
 }
 
-/* (exp(x) - 1) / x by its series, terms of it. */
+/* (exp(x) - 1) / x, by the first `terms` terms of its power series. */
 static Pair exp_series(Pair x, int terms) {
   Pair s = one(1.0);
   for (int k = terms; k > 1; k--) s = add(one(1.0), divide(multiply(x, s), one(k)));
   return s;
 }
 
-/* exp(x) = result * 2^*exponent, |x| < 2^12. */
+/* exp(x) = result * 2^*exponent. Requires |x| < 2^12. */
 static Pair exp_pair(Pair x, int *exponent) {
   double n = floor(x.high * 1.4426950408889634 + 0.5);
   Pair r = add(x, negate(times_ln2(n)));
-  r.high *= 0x1p-6, r.low *= 0x1p-6; /* below 0.0055: 14 terms are beyond the last bit */
+  r.high *= 0x1p-6,
+      r.low *= 0x1p-6; /* |r| is now below 0.0055, so terms after the 14th are smaller than the last bit */
   Pair e = add(one(1.0), multiply(r, exp_series(r, 14)));
   for (int k = 0; k < 6; k++) e = multiply(e, e);
   *exponent = (int)n;
@@ -105,7 +105,8 @@ static double exp_of(Pair x) {
   return ldexp(e.high, exponent);
 }
 
-/* x > 0 and finite: ln m = 2 artanh((m - 1) / (m + 1)), m in [sqrt(1/2), sqrt 2). */
+/* Natural logarithm of a finite x > 0. x = m 2^exponent with m in [sqrt(1/2), sqrt 2); ln m = 2 artanh((m - 1) / (m
+ * + 1)). */
 static Pair log_pair(double x) {
   int exponent;
   double m = frexp(x, &exponent);
@@ -115,7 +116,7 @@ static Pair log_pair(double x) {
   return add(times_ln2(exponent), multiply(s, t));
 }
 
-/* Whether the logarithm of x is no finite number, and what it is then. */
+/* Returns whether the logarithm of x is infinite or NaN, and then sets *value to it. */
 static bool log_special(double x, double *value) {
   if (x > 0.0 && !isinf(x)) return false;
   *value = x == 0.0 ? -INFINITY : x > 0.0 ? INFINITY : NAN;
@@ -179,10 +180,10 @@ double vl_precise_hypot(double x, double y) {
   return square_root(add(product(x, x), product(y, y))).high;
 }
 
-/* ---- angles ---------------------------------------------------------------------------------------------------------
- */
+/* ---- angles ------------------------------------------------------------------------------------------------------ */
 
-/* pi / 2 in four parts, three of them of 33 bits: their products with whole numbers up to 2^20 are exact. */
+/* pi / 2 as the sum of four parts. The first three have 33 bits, so their products with integers up to 2^20 are
+ * exact. */
 static const double half_pi[4] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
 
 typedef struct SinCos {
@@ -222,7 +223,8 @@ double vl_precise_tan(double x) {
   return divide(s.sin, s.cos).high;
 }
 
-/* One step from an angle right to the last bits but few: what is left is (y cos a - x sin a) / (x cos a + y sin a). */
+/* Angle of (x, y). One step refines the angle a, which is accurate up to its last bits: the remaining angle is (y
+ * cos a - x sin a) / (x cos a + y sin a). */
 static double angle_of(Pair y, Pair x) {
   double a = vl_atan2_double(y.high, x.high);
   SinCos s = sincos_pair(a);
@@ -235,7 +237,7 @@ double vl_precise_atan2(double y, double x) {
   if (isnan(x) || isnan(y)) return NAN;
   if (isinf(x) || isinf(y)) y = copysign(isinf(y) ? 1.0 : 0.0, y), x = copysign(isinf(x) ? 1.0 : 0.0, x);
   if (y == 0.0) return signbit(x) ? copysign(2.0 * (half_pi[0] + half_pi[1]), y) : y;
-  /* scaled, so that products neither overflow nor lose bits */
+  /* the scale avoids overflow and underflow of products */
   int exponent;
   frexp(fmax(fabs(x), fabs(y)), &exponent);
   return angle_of(one(ldexp(y, -exponent)), one(ldexp(x, -exponent)));

@@ -31,10 +31,11 @@ static inline vlFresnel vl_fresnel_dielectric(float cos_i, float eta) {
   return (vlFresnel){inside > 0.0f ? r : 1.0f, root};
 }
 
-/* Complex index eta + i k relative to vacuum, for one channel. Values are clamped to 1e6 (their powers would
- * overflow). With the usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2), Rp = Rs (t3 - t4)/(t3 + t4), so that their mean is
- * Rs t3/(t3 + t4). t1 is 0 for an index of 1 at grazing, t3 for an index of 0 at normal incidence: `nonzero` makes both
- * 0/0 a reflectance of 1, and is lost in rounding elsewhere. */
+/* Reflectance for the complex index eta + i k relative to vacuum, for one channel. Both are clamped to 1e6, since
+ * their powers would overflow. With the usual t1 ... t4: Rs = (t1 - t2)/(t1 + t2) and Rp = Rs (t3 - t4)/(t3 + t4),
+ * so their mean is Rs t3/(t3 + t4). t1 is 0 for an index of 1 at grazing angles, and t3 is 0 for an index of 0 at
+ * normal incidence. Adding `nonzero` gives the reflectance 1 in these cases instead of 0/0; in all others it is
+ * smaller than the rounding. */
 static inline float vl_fresnel_conductor(float cos_i, float eta, float k) {
   const float nonzero = 1e-20f;
   float c = cos_i > 1.0f ? 1.0f : cos_i;

@@ -1,4 +1,4 @@
-/* math/lowdiscrepancy.c: the first 256 primes, bases of the Halton points. */
+/* math/lowdiscrepancy.c: the first 256 primes, which are the bases of the Halton sequence. */
 #include "math/lowdiscrepancy.h"
 
 const uint16_t vl_primes[VL_PRIME_COUNT] = {

@@ -27,7 +27,7 @@ vlMat4 vl_mat4_multiply(vlMat4 a, vlMat4 b) {
 }
 
 bool vl_mat4_inverse(vlMat4 a, vlMat4 *inverse) {
-  /* Gauss-Jordan with full row pivoting. */
+  /* Gauss-Jordan elimination with row pivoting. */
   double w[4][8];
   for (int i = 0; i < 4; i++)
     for (int j = 0; j < 8; j++) w[i][j] = j < 4 ? a.m[4 * i + j] : (j - 4 == i);

@@ -1,6 +1,7 @@
-/* render/boxes.c: bounding boxes and pixel counts of each object and instance: of its visible pixels, and of all pixels
- * that it would cover with nothing in front of it. Rays through the pixels' centres collect all crossings, not only the
- * first. Counts are sums and extremes of integers, so that the result does not depend on the order of work. */
+/* render/boxes.c: bounding boxes and pixel counts of each object and instance, both for its visible pixels and for
+ * all pixels that it would cover if nothing were in front of it. Rays through the pixels' centres collect all
+ * intersections, not only the first. Counts are sums and extremes of integers, so the result does not depend on the
+ * order of work. */
 #include "render/boxes.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
-/* render/channel_samples.c: ground truth of a pixel's area. The image's own samples are traced once more, up to their
- * first hit. They give Cryptomatte's coverages, and the film point that a pixel's values belong to where that is not
- * its centre.
+/* render/channel_samples.c: ground truth of a pixel's area. The image's own samples are traced once more, up to
+ * their first hit. They give Cryptomatte's coverages. If a pixel's values are not those at its centre, the samples
+ * also determine the film point of the values.
  *
- * The samples of a pixel are consecutive, in the order of their indices; sums are of integers. */
+ * The samples of a pixel are consecutive, in the order of their indices. All sums are sums of integers. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -51,13 +51,14 @@ static vlTallyEntry *tally_best(vlTally *t) {
 
 /* ---- samples ----------------------------------------------------------------------------------------------------- */
 
-/* What is counted: the choice of a film point, or Cryptomatte. */
+/* State of counting one pixel's samples, for the choice of a film point or for Cryptomatte. */
 typedef struct Count {
   const vlFilmRays *rays;
   bool matte;
   uint32_t spp;             /* samples per pixel in this tile */
   int64_t total;            /* weight of the pixel's samples */
-  float off, x, y, nearest; /* of the choice: the sample closest to the centre, or the nearest surface */
+  float off, x, y, nearest; /* for the choice: squared distance from the centre and film point of the chosen sample;
+                               distance of the nearest surface */
 } Count;
 
 static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t i, int64_t weight) {

@@ -215,8 +215,8 @@ static void free_all(vlChannelPass *p) {
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
 }
 
-/* Prepares the rays of the image's samples: unchanged, and through the middle of the lens at the middle of the
- * shutter's time. */
+/* Prepares two sets of rays for the image's samples: unchanged ones, and ones through the middle of the lens at the
+ * middle of the shutter interval. */
 static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa) {
   const vlChannelsDef *def = p->def;
   if (!(def->channels & (CRYPTO | VL_CHANNEL_FEATURES)) && def->mode == VL_CHANNEL_MODE_CENTRE) return;

@@ -1,9 +1,10 @@
-/* render/flow.c: optical flow: the film point at which another camera images the surface point of a pixel, its
- * displacement on the film, and whether the point is visible from there, by a ray of the other camera.
+/* render/flow.c: optical flow. It projects the surface point of each pixel with another camera, computes the point's
+ * displacement on the film, and decides by a ray of the other camera whether the point is visible from there.
  *
  *   P -> project -> (u, v) - the pixel's point;   other camera -> ray towards P -> is the first hit P?
  *
- * A pixel of the sky has flow, too: by its direction; it is visible if the other camera's ray meets nothing. */
+ * Pixels of the sky have flow, too. Their target is a direction; it is visible if the other camera's ray hits
+ * nothing. */
 #include <math.h>
 #include <string.h>
 

@@ -30,8 +30,7 @@ void vl_check_images(vlCheck *check); /* checks image files, albedos and the pow
 void vl_check_meshes(vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */
 void vl_check_inside(vlCheck *check); /* finds cameras inside solids, and wrong media of nested solids */
 
-/* ---- helpers ------------------------------------------------------------------------------------------------------
- */
+/* ---- helpers ----------------------------------------------------------------------------------------------------- */
 
 /* The material of a shape; null: the default diffuse material. */
 static inline const vlMaterialDef *vl_check_material(const vlCheck *check, vlMaterialId id) {

@@ -1,4 +1,4 @@
-/* trace/scratch.c: the size of the working memory of a worker. */
+/* trace/scratch.c: the size of a worker's working memory. */
 #include "trace/trace.h"
 
 #include "trace/stages.h"

@@ -1,8 +1,11 @@
-/* Renders a scene with the library, its parallel loops run in another order: from last to first, or shuffled by a seed.
- * Usage: helper_order SCENE WIDTH HEIGHT SPP TRACER SEED ORDER OUT.pfm. TRACER: its name in pbrt files, -: the scene's;
- * ORDER: 0 first to last, 1 last to first, above: shuffled. The image is that of `velo render SCENE --resolution
- * WIDTHxHEIGHT
- * --spp SPP --seed SEED`. */
+/* Renders a scene with the library while its parallel loops run in another order: from last to first, or shuffled by
+ * a seed.
+ *
+ * Usage: helper_order SCENE WIDTH HEIGHT SPP TRACER SEED ORDER OUT.pfm
+ *
+ * TRACER is a name of pbrt files, or - for the
+ * scene's own. ORDER is 0 (first to last), 1 (last to first), or a larger number (the seed of a shuffle). The image
+ * must equal that of `velo render SCENE --resolution WIDTHxHEIGHT --spp SPP --seed SEED`. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

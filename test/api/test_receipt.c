@@ -1,9 +1,10 @@
-/* test/api/test_receipt.c: receipts: what they hold is exact, they tell what changed, and damaged ones are refused. */
+/* test/api/test_receipt.c: receipts store exact values, comparisons find every difference, and damaged receipts are
+ * refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-/* cmocka wants these four before it */
+/* cmocka.h needs the four headers above */
 #include <cmocka.h>
 #include <math.h>
 #include <stdio.h>
@@ -60,7 +61,7 @@ static vlReceipt *parse(Fixture *f, const char *text) {
 
 typedef struct Lines {
   char text[4000];
-  uint32_t left; /* calls until the comparison is ended */
+  uint32_t left; /* number of differences after which the callback ends the comparison */
 } Lines;
 
 static bool add_line(void *user, const char *line) {
@@ -70,7 +71,7 @@ static bool add_line(void *user, const char *line) {
   return lines->left-- > 1;
 }
 
-/* All differences, a line each. */
+/* Returns all differences of two receipts, one per line. */
 static const char *differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts) {
   static Lines lines;
   lines = (Lines){.left = 1000};
@@ -81,7 +82,7 @@ static const char *differences(const vlReceipt *then, const vlReceipt *now, uint
   return lines.text;
 }
 
-/* The published values of MurmurHash3_x64_128 for seed 0, and a length of each kind of end. */
+/* The published values of MurmurHash3_x64_128 for seed 0, and distinct digests for inputs of 0 to 63 bytes. */
 static void digests_are_murmur3(void **state) {
   (void)state;
   static const struct {
@@ -147,7 +148,7 @@ static void files_are_recorded(void **state) {
   rmdir(folder);
 }
 
-/* A number whose shortest text is long; bits differ in the last place. */
+/* Numbers that are easily changed by a conversion to text and back. */
 static const double awkward[] = {0.1, -0.0, 1.0 / 3.0, 1e-300, 6.02214076e23, 12345678.9, 5e-324};
 
 static void numbers_are_exact(void **state) {
@@ -158,7 +159,7 @@ static void numbers_are_exact(void **state) {
     camera->has_matrix = true;
     for (int k = 0; k < 16; k++) camera->world_from_camera[k] = awkward[(i + (size_t)k) % 7];
     camera->focus_distance = awkward[i];
-    camera->lens.tilt_x = awkward[(i + 1) % 7] + 0.0; /* a default of 0 is left out, whatever its sign */
+    camera->lens.tilt_x = awkward[(i + 1) % 7] + 0.0; /* turns -0 into 0 */
     defs->film.filter.sigma = (float)awkward[i];
     vlReceiptDef def = vl_default_receipt_def();
     def.defs = defs;
@@ -260,7 +261,7 @@ static void a_film_has_the_receipt_of_its_image(void **state) {
   assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
   vl_receipt_destroy(image);
   vl_receipt_destroy(film);
-  film = parse(f, vl_receipt_text(straight)); /* as it is read from a file */
+  film = parse(f, vl_receipt_text(straight)); /* parsed from text, as if read from a file */
   assert_int_equal(vl_receipt_of_image(film, 64, &image, NULL), VL_OK);
   assert_string_equal(vl_receipt_text(image), vl_receipt_text(straight));
   vl_receipt_destroy(image);
@@ -305,10 +306,10 @@ static void wrong_receipts_are_refused(void **state) {
   }
   assert_int_equal(vl_receipt_make(f->context, NULL, &receipt, &error), VL_ERROR_ARGUMENT);
   vlReceiptDef def = vl_default_receipt_def();
-  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error), VL_ERROR_ARGUMENT); /* no defs */
+  assert_int_equal(vl_receipt_make(f->context, &def, &receipt, &error), VL_ERROR_ARGUMENT); /* the def has no defs */
 }
 
-/* Members of wrong types are as if they were missing. */
+/* Members of a wrong type count as missing. */
 static void wrong_members_are_missing(void **state) {
   Fixture *f = *state;
   vlReceipt *odd = parse(f,
@@ -332,7 +333,8 @@ static void wrong_members_are_missing(void **state) {
   vl_receipt_destroy(empty);
 }
 
-/* Reads a scene with recording, makes its receipt, reads it, derives an image's. user: path of the scene. */
+/* Reads a scene while files are recorded, makes its receipt, reads that receipt, and derives an image's receipt from
+ * it. user: path of the scene. */
 static vlResult all_of_it(vlContext *context, void *user) {
   vlScene *scene = NULL;
   vlReceipt *receipt = NULL, *read = NULL, *image = NULL;

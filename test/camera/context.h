@@ -1,4 +1,4 @@
-/* test/camera/context.h: one context for the tests of a program. */
+/* test/camera/context.h: the context that all tests of a program share. */
 #ifndef TEST_CAMERA_CONTEXT_H
 #define TEST_CAMERA_CONTEXT_H
 

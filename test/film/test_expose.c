@@ -1,5 +1,5 @@
-/* Radiance to the film's colours, and films with error sums added: against the definitions of colour spaces, and
- * against one film that got all samples. */
+/* Tests the conversion of radiance to the film's colours against the definitions of colour spaces, and the merging
+ * of films with error sums against one film with all samples. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -50,7 +50,7 @@ static void rec709_stays_as_it_is(void **state) {
     for (int i = 0; i < N; i++) assert_true(out[c][i] == 2.0f * colors[c][i]);
 }
 
-/* Rec.2020 from linear Rec.709: ITU-R BT.2087-0, table 2; both have white D65. */
+/* The conversion from linear Rec.709 to Rec.2020 is that of ITU-R BT.2087-0, table 2. Both have the white D65. */
 static void rec2020_is_that_of_bt_2087(void **state) {
   (void)state;
   static const double m[3][3] = {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0114}, {0.0164, 0.0880, 0.8956}};
@@ -65,7 +65,7 @@ static void rec2020_is_that_of_bt_2087(void **state) {
     }
 }
 
-/* The largest of X, Y, Z is at most max_component, and the colour keeps its ratios. */
+/* The largest of X, Y, Z is limited to max_component, and the ratios of the components do not change. */
 static void bright_colours_are_scaled(void **state) {
   (void)state;
   static const double m[3][3] = {

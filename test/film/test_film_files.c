@@ -1,4 +1,4 @@
-/* Film files: what is written is read, parts become the whole in any order, and no damage goes unseen. */
+/* Film files: a film is read as it was written, parts merge to the whole in any order, and all damage is detected. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -87,7 +87,7 @@ static float value(uint32_t x, uint32_t y, uint32_t sample, uint32_t salt) {
   return vl_unit_float(vl_hash3(x | y << 16, sample, salt)) * 3.0f - 0.5f;
 }
 
-/* A film with the samples first to end - 1 of the pixels of the tiles. */
+/* Makes a film that has the samples first to end - 1 in the pixels of the tiles. */
 static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint32_t first, uint32_t last) {
   vlFilmDef def = film_def(kind);
   if (tiles) memcpy(def.crop, tiles, sizeof def.crop);
@@ -177,7 +177,7 @@ static void shuffle(const char **paths, uint32_t count, uint32_t seed) {
   }
 }
 
-/* Six parts by samples and tiles, one of them twice, in any order and grouping. */
+/* Merges six parts, divided by samples and by tiles, in any order and grouping. One part is given twice. */
 static void parts_become_the_whole(void **state) {
   (void)state;
   static const uint32_t left[4] = {5, 0, 32, HEIGHT - 2}, right[4] = {32, 0, WIDTH, HEIGHT - 2};
@@ -223,7 +223,7 @@ static void what_does_not_belong_together_is_refused(void **state) {
   assert_int_not_equal(access(output, F_OK), 0);
 }
 
-/* The merged film of two parts with a gap can be developed and not continued; an even one both. */
+/* Two merged parts with a gap between their samples can be developed but not continued. Without the gap both work. */
 static void a_film_with_gaps_is_only_developed(void **state) {
   (void)state;
   const char *paths[2] = {path_of("one.film"), path_of("two.film")};
@@ -251,7 +251,8 @@ static vlResult read_bytes(const char *bytes, size_t size, vlError *error) {
   return result;
 }
 
-/* Each byte of the header and of the first block's head, each hundredth of the rest; each cut. */
+/* Changes each byte of the header and of the first block's head, and every hundredth of the other bytes; also
+ * truncates the file at each length. */
 static void no_damage_goes_unseen(void **state) {
   (void)state;
   size_t size, held = vl_context_memory(context, NULL);
@@ -279,7 +280,7 @@ static void no_damage_goes_unseen(void **state) {
   assert_int_equal(vl_context_memory(context, NULL), held);
 }
 
-/* Sums that no samples can have would overflow later, whatever their CRC. */
+/* Sums that no samples can produce are refused even if their CRC is right, since later additions could overflow. */
 static void impossible_sums_are_refused(void **state) {
   (void)state;
   size_t size;

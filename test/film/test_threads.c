@@ -1,10 +1,11 @@
-/* test/film/test_threads.c: a render with checkpoints that another thread ends, its continuation, shards rendered and
- * films merged at the same time. Meant for the thread sanitizer; the films must also have the bytes of one render. */
+/* test/film/test_threads.c: at the same time, a render with checkpoints is stopped by another thread and continued,
+ * shards are rendered, and films are merged. The test is meant for the thread sanitizer. The films must also have
+ * the same bytes as those of a single render. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-/* cmocka wants these four before it */
+/* cmocka.h needs the four headers above */
 #include <cmocka.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -69,7 +70,7 @@ static void assert_same_files(const char *a, const char *b) {
 
 /* ---- a render with checkpoints ----------------------------------------------------------------------------------- */
 
-/* Writes a film after each pass; the thread waits for the disk while the next pass renders. */
+/* Writes a film after each pass. A thread waits for the disk while the next pass renders. */
 typedef struct Keeper {
   const vlFilm *film;
   const char *name;
@@ -110,7 +111,7 @@ static vlFilm *new_film(void) {
   return vl_film_create(context, &def, &film) == VL_OK ? film : NULL;
 }
 
-/* Samples from `first`, or from where the film ends, to `spp`; a film file after each pass. */
+/* Renders the samples from `first`, or from the film's end, to `spp`, and writes a film file after each pass. */
 static bool render_kept(vlFilm *film, const char *name, uint32_t first, uint32_t spp) {
   Keeper keeper = {.film = film, .name = name};
   vlRenderDef def = vl_default_render_def();

@@ -11,8 +11,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* An untrusted file may use memory in proportion to its size; a gzip stream expands at most a thousandfold. Beyond this
- * bound the target stops, which counts as a crash. */
+/* An untrusted file may use memory in proportion to its size; a gzip stream expands at most a thousandfold. If a
+ * target exceeds this bound, it stops, which counts as a crash. */
 enum { FUZZ_MEMORY = 1 << 28, FUZZ_LEFT = 1 << 16 /* the context's own */ };
 
 static inline vlContext *fuzz_context(void) {

@@ -1,5 +1,5 @@
-/* Film files: header, blocks, develop, merge. The input as it is, and with its CRCs repaired, so that what is behind
- * them is reached. */
+/* Fuzzes film files: header, blocks, develop, merge. Each input is used twice: unchanged, and with repaired CRCs, so
+ * that the code after the CRC checks is reached. */
 #include "fuzz.h"
 
 #include <stdint.h>
@@ -18,7 +18,8 @@ static uint32_t word(const uint8_t *at) {
   return value;
 }
 
-/* docs/film-files.md: 24 bytes, the header, blocks of 48 bytes, ranges, sums, a CRC. */
+/* Repairs the CRCs. Layout (docs/film-files.md): 24 bytes, the header, then blocks of 48 bytes, ranges, sums and a
+ * CRC. */
 static void repair(uint8_t *data, size_t size) {
   if (size < 24 || word(data + 12) > size - 24) return;
   size_t header = word(data + 12), at = 24 + header;

@@ -1,5 +1,5 @@
-/* Receipts: read, asked for all that they hold, compared with themselves and with another; a camera that is read is
- * made. */
+/* Fuzzes receipts: reads one, queries all its contents, compares it with itself and with another one, and makes the
+ * camera that it holds. */
 #include "fuzz.h"
 
 static bool keep_length(void *user, const char *difference) {

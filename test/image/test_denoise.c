@@ -1,5 +1,6 @@
-/* The denoiser on images whose ground truth is known: what has no noise stays, noise goes, edges that features tell
- * stay, values that are not finite are filled, and the bits depend neither on threads nor on the instruction set. */
+/* Tests the denoiser on images with a known ground truth. Pixels without noise do not change, noise is removed,
+ * edges that features show are kept, and values that are not finite are replaced. The bits depend neither on the
+ * number of threads nor on the instruction set. */
 #include "sample_images.h"
 
 #include "velo/denoise.h"
@@ -31,7 +32,7 @@ static float *at(vlImage *image, uint32_t x, uint32_t y) {
   return (float *)vl_image_pixels(image) + ((size_t)y * W + x) * vl_image_channels(image);
 }
 
-/* The reflectance of a texture of stripes, and the light on it. */
+/* The reflectance of a striped texture; the second function gives the light on it. */
 static float albedo(uint32_t x, uint32_t y) {
   return (x / 3 + y / 5) % 2 ? 0.6f : 0.4f;
 }
@@ -39,7 +40,7 @@ static float light(uint32_t x, uint32_t y) {
   return 1.0f + 0.004f * (float)x + 0.01f * (float)y;
 }
 
-/* The texture in that light, with noise of this standard deviation. */
+/* Makes the image of the texture in that light, with noise of standard deviation sigma. */
 static vlImage *textured(vlContext *context, float sigma) {
   vlImage *image = make(context, CHANNELS);
   uint32_t seed = 7;
@@ -67,7 +68,7 @@ static vlImage *clean_of(const vlImage *image, vlDenoiseStats *stats) {
   return clean;
 }
 
-/* Mean squared error against the texture in its light. */
+/* Mean squared error of the image against the texture in that light. */
 static double squared_error(vlImage *image) {
   double sum = 0;
   for (uint32_t y = 0; y < H; y++)
@@ -83,7 +84,7 @@ static void test_constant_stays(void **state) {
   (void)state;
   failAllocator failing;
   vlContext *context = make_context(&failing);
-  for (int noisy = 0; noisy < 2; noisy++) { /* also where large noise is claimed */
+  for (int noisy = 0; noisy < 2; noisy++) { /* the second time with standard errors that claim large noise */
     vlImage *image = make(context, 7);
     for (uint32_t y = 0; y < H; y++)
       for (uint32_t x = 0; x < W; x++) {
@@ -112,7 +113,7 @@ static void test_constant_stays(void **state) {
   end_context(context);
 }
 
-/* Without noise edges stay where no feature tells of them. */
+/* In an image without noise, edges are kept although no feature shows them. */
 static void test_edges_stay(void **state) {
   (void)state;
   failAllocator failing;
@@ -132,7 +133,7 @@ static void test_edges_stay(void **state) {
   end_context(context);
 }
 
-/* Noise far above the texture's steps goes, and the texture, which the albedo tells, stays. */
+/* Noise far above the texture's steps is removed; the texture is kept, because the albedo feature shows it. */
 static void test_noise_goes(void **state) {
   (void)state;
   failAllocator failing;
@@ -148,7 +149,7 @@ static void test_noise_goes(void **state) {
   end_context(context);
 }
 
-/* A pixel of one sample's light, thousands of times its surroundings', does not stain them. */
+/* A pixel that is thousands of times brighter than its neighbours, because of one sample, does not brighten them. */
 static void test_outlier(void **state) {
   (void)state;
   failAllocator failing;
@@ -171,10 +172,10 @@ static void test_not_finite(void **state) {
   vlImage *image = textured(context, 0.01f);
   at(image, 0, 0)[0] = NAN;
   at(image, 149, 60)[1] = INFINITY;
-  at(image, 80, 20)[5] = INFINITY; /* its standard error */
+  at(image, 80, 20)[5] = INFINITY; /* the standard error of that pixel */
   for (uint32_t y = 30; y < 36; y++)
     for (uint32_t x = 30; x < 36; x++) at(image, x, y)[2] = NAN;
-  at(image, 100, 10)[9] = NAN; /* a feature: the pixel itself is valid */
+  at(image, 100, 10)[9] = NAN; /* only a feature: the pixel's colour is valid */
   vlDenoiseStats stats;
   vlImage *clean = clean_of(image, &stats);
   assert_int_equal(stats.not_finite, 3 + 36);
@@ -190,7 +191,7 @@ static void test_not_finite(void **state) {
     }
   vl_image_destroy(clean);
 
-  for (uint32_t y = 0; y < H; y++) /* one sample per pixel: no standard error is known */
+  for (uint32_t y = 0; y < H; y++) /* with one sample per pixel the standard error is unknown */
     for (uint32_t x = 0; x < W; x++) at(image, x, y)[4] = INFINITY;
   vlError error;
   assert_int_equal(vl_denoise(image, NULL, &clean, NULL, &error), VL_ERROR_SCENE);
@@ -213,7 +214,7 @@ static void test_bits(void **state) {
     def.threads = machines[i].threads;
     def.isa = machines[i].isa;
     vlContext *context;
-    if (vl_context_create(&def, &context) != VL_OK) continue; /* this machine does not have the set */
+    if (vl_context_create(&def, &context) != VL_OK) continue; /* this machine does not have the instruction set */
     vlImage *image = textured(context, 0.3f), *clean = clean_of(image, NULL);
     if (!first) {
       first = malloc(size);

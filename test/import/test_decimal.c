@@ -1,4 +1,4 @@
-/* test/import/test_decimal.c: decimal numbers become the nearest double, as strtod has it, however they are written. */
+/* test/import/test_decimal.c: decimal numbers are converted to the nearest double, as by strtod, in every notation. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,7 +35,7 @@ static void random_digits(void **state) {
   }
 }
 
-/* Doubles as programs print them, and the points half way to the next one, which 17 digits do not have. */
+/* Doubles as programs print them, and the midpoints between neighbouring doubles, which need more than 17 digits. */
 static void doubles_and_ties(void **state) {
   (void)state;
   statRng rng = stat_rng(6);
@@ -55,7 +55,7 @@ static void doubles_and_ties(void **state) {
     char *e = strchr(text, 'e');
     char tail[16] = "";
     if (e) snprintf(tail, sizeof tail, "%s", e), n = (int)(e - text);
-    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".", tail); /* a little above */
+    snprintf(text + n, sizeof text - (size_t)n, "%s1%s", strchr(text, '.') ? "" : ".", tail); /* above */
     same(text);
   }
 }
@@ -95,7 +95,7 @@ static void ends(void **state) {
   memset(text, '0', sizeof text - 1);
   text[1] = '.', text[3000] = '7';
   strcpy(text + 3600, "e2999");
-  same(text); /* 0.7 behind 3000 zeros, with an exponent that brings it back */
+  same(text); /* 7 after 3000 zeros; the exponent makes it 0.7 */
   text[0] = '1', text[2500] = '.', text[1] = '0';
   strcpy(text + 3600, "e-2499");
   same(text);

@@ -150,8 +150,7 @@ static void filters(void **state) {
   }
 }
 
-/* ---- animation ----------------------------------------------------------------------------------------------------
- */
+/* ---- animation --------------------------------------------------------------------------------------------------- */
 
 static void pointers(void **state) {
   (void)state;
@@ -178,8 +177,7 @@ static void pointers(void **state) {
   free(g);
 }
 
-/* ---- surroundings -------------------------------------------------------------------------------------------------
- */
+/* ---- surroundings ------------------------------------------------------------------------------------------------ */
 
 /* Six faces in the order +x -x +y -y +z -z, as OpenGL's cube maps have them (specification 4.6, table 8.19): each of a
  * colour, a quarter at its image's top left in white. What is seen along each axis and towards that corner. */
@@ -234,8 +232,7 @@ static void faces(void **state) {
   free(g);
 }
 
-/* ---- variants ------------------------------------------------------------------------------------------------------
- */
+/* ---- variants ---------------------------------------------------------------------------------------------------- */
 
 /* Without a choice, and for a variant that a primitive does not name: the primitive's own material. */
 static void variants(void **state) {

@@ -1,5 +1,5 @@
-/* Shapes that are put together (curves, small meshes, spheres) lie in the media of the Shapes that they come from:
- * those of the state in which each stood, not of the one in which the run is closed. */
+/* Shapes that are combined (curves, small meshes, spheres) have the media of the Shapes from which they are made.
+ * These are the media of the state at each Shape, not those of the state when the run of shapes ends. */
 #include "import/load.h"
 
 enum { BEFORE = 4096 };
@@ -10,7 +10,8 @@ static const char *const kinds[3] = {
     "Shape \"sphere\"\n",
 };
 
-/* Four shapes in fog, four between mist and fog, and four in none; `integrator` stands before. */
+/* Makes the text of a scene: four shapes in fog, four between mist and fog, and four without media. `integrator` is
+ * written before them. */
 static char *text_of(const char *shape, const char *integrator) {
   char *text = malloc(20 * (size_t)BEFORE + 4000), *at = text;
   at += sprintf(at, "%sWorldBegin\n", integrator);
@@ -35,7 +36,7 @@ static void runs_lie_in_their_media(void **state) {
     load_fine(&l, text);
     uint32_t seen[3] = {0};
     size_t shapes = l.scene->shapes.count - BEFORE;
-    assert_true(shapes <= 4); /* 12 Shapes in 3 runs; curves may be cut by the state alone */
+    assert_true(shapes <= 4); /* 12 Shapes in 3 runs; for curves a change of state alone may also end a run */
     for (size_t i = 0; i < l.scene->shapes.count; i++) {
       const vlShapeDef *d = &l.scene->shapes.items[i];
       if (d->kind == VL_SHAPE_DISK) continue;
@@ -53,7 +54,7 @@ static void runs_lie_in_their_media(void **state) {
   }
 }
 
-/* The warning that an integrator looks past media names the place of the run's first Shape. */
+/* The warning that an integrator ignores media has the place of the run's first Shape. */
 static void runs_are_warned_of(void **state) {
   (void)state;
   for (int k = 0; k < 3; k++) {

@@ -1,5 +1,5 @@
-/* test/math/test_elementary.c: elementary functions of one rounding against those of the C library in long double,
- * whose own error is some thousandths of a double's last place. */
+/* test/math/test_elementary.c: compares the correctly rounded elementary functions with those of the C library in
+ * long double, whose error is some thousandths of a double's last place. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +14,7 @@
 
 enum { N = 20000 };
 
-/* Distance of got from the true value, in units in the last place of got. */
+/* Error of `got` in units in its last place. */
 static double error_of(double got, long double expected) {
   if (isnan(got) || isinf(got))
     return isnan(got) == isnan((double)expected) && (isnan(got) || got == (double)expected) ? 0 : 1e9;
@@ -67,7 +67,7 @@ static void two_arguments(void **state) {
   }
 }
 
-/* Bits of a double: zeros have signs. */
+/* The bits of a double, which also distinguish 0 from -0. */
 static uint64_t bits(double x) {
   uint64_t b;
   memcpy(&b, &x, sizeof b);

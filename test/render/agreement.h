@@ -1,5 +1,5 @@
-/* test/render/agreement.h: whether two tracers have the same mean. Renders with several seeds give means of image bands
- * and their standard errors; those of two tracers must agree within both. */
+/* test/render/agreement.h: tests whether two tracers have the same mean. Renders with several seeds give the means
+ * of image bands and their standard errors. The means of two tracers must agree within their standard errors. */
 #ifndef TEST_RENDER_AGREEMENT_H
 #define TEST_RENDER_AGREEMENT_H
 

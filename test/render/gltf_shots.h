@@ -15,7 +15,7 @@ typedef struct Shot {
   const char *material;   /* the members of the glTF material */
   vlEnvironmentKind room; /* AUTO: white */
   bool spectral, from_behind;
-  uint32_t spp, depth; /* 0: 64, 64 */
+  uint32_t spp, depth; /* samples per pixel, bounces; 0 means 64 */
 } Shot;
 
 static UNUSED void put_ball(Gltf *g) {

@@ -120,7 +120,7 @@ static UNUSED Image assert_same_bits(Rendering *render, const void *what, uint32
   assert_non_null(a.rgba);
   for (uint32_t threads = 1; threads <= 3; threads += step)
     for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
-      if (isa == VL_ISA_V2) continue; /* which BASE is on x86-64 */
+      if (isa == VL_ISA_V2) continue; /* BASE is V2 on x86-64 */
       Image b = image_in(render, what, threads, (vlIsa)isa);
       if (!b.rgba) continue;
       assert_memory_equal(a.rgba, b.rgba, (size_t)a.width * a.height * 4 * sizeof(float));

@@ -29,8 +29,7 @@ static Image lamp_image(const char *node, const char *light) {
   return p;
 }
 
-/* ---- lamps ---------------------------------------------------------------------------------------------------------
- */
+/* ---- lamps ------------------------------------------------------------------------------------------------------- */
 
 static void point_and_spot(void **state) {
   (void)state;
@@ -167,8 +166,7 @@ static void emissive_image(void **state) {
   for (int i = 0; i < 4; i++) image_free(&p[i]);
 }
 
-/* ---- colours, coverage, uv sets -------------------------------------------------------------------------------------
- */
+/* ---- colours, coverage, uv sets ---------------------------------------------------------------------------------- */
 
 static void painted_walls(void **state) {
   (void)state;

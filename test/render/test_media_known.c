@@ -188,8 +188,7 @@ static void rgb_grids(void **state) {
   }
 }
 
-/* ---- emissive and scattering --------------------------------------------------------------------------------------
- */
+/* ---- emissive and scattering ------------------------------------------------------------------------------------- */
 
 /* A thin ball of little albedo: emission along the ray, and once scattered emission, which is small but known to order:
  * the whole lies between none scattered and all of it coming from an endless medium. */

@@ -1,5 +1,5 @@
-/* A sample depends on the sequence's length, not on how many samples were planned: a film that is continued, rendered
- * in parts or for a time is the film of one render. */
+/* A sample depends on the length of the sequence, not on the planned number of samples. So a film that is continued,
+ * rendered in parts, or rendered for a given time equals the film of a single render. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -68,7 +68,7 @@ static bool same(const vlFilm *a, const vlFilm *b) {
   return equal;
 }
 
-/* Renders to `stop` samples and then to `all`; whether that is the same as `all` at once. */
+/* Renders to `stop` samples and continues to `all`. Returns whether the film equals one rendered to `all` at once. */
 static bool continues(vlRenderDef def, uint32_t stop, uint32_t all) {
   vlFilm *parts = make_film(), *whole = make_film();
   assert_int_equal(render(parts, def, stop), VL_OK);
@@ -90,7 +90,8 @@ static void each_tracer_continues(void **state) {
   }
 }
 
-/* Samplers that divide the sequence into cells have the length of the first render: a straight render needs it. */
+/* For samplers that divide the sequence into cells, the length is that of the first render. A single render must be
+ * given the same length. */
 static void each_sampler_continues(void **state) {
   (void)state;
   for (int sampler = 0; sampler < SAMPLERS; sampler++) {

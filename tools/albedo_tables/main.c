@@ -6,7 +6,7 @@
 
 #include "math/ggx.h"
 
-/* Caps: fine, for the long tails of narrow lobes. */
+/* Numbers of quadrature points. CAPS is large because narrow lobes have long tails. */
 enum { TURNS = 24, CAPS = 384, SHEEN_POINTS = 64, LOSS_TURNS = 16, LOSS_CAPS = 96 };
 
 static float table_cos(uint32_t column) {
@@ -14,7 +14,8 @@ static float table_cos(uint32_t column) {
   return c > 1e-5f ? c : 1e-5f;
 }
 
-/* Visible normals make the sample's weight G/G1 F: a smooth function, so that a midpoint rule does. */
+/* Directional albedo for F0 (a) and F90 (b). With visible-normal sampling the weight of a sample is the smooth
+ * function G/G1 F, so the midpoint rule is accurate. */
 static void specular_at(float cosine, float alpha, float *a, float *b) {
   vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
   float lo = vl_ggx_length(o, alpha, alpha);
@@ -33,8 +34,8 @@ static void specular_at(float cosine, float alpha, float *a, float *b) {
   *b = (float)(sum_b / (TURNS * CAPS));
 }
 
-/* The share of light from o that goes nowhere at a rough boundary of glass, after one bounce or refraction at one
- * microfacet; forth: index on the other side over that on this one; eta: inside over outside. */
+/* Fraction of the light from o that single scattering loses at a rough glass boundary. forth: index on the other
+ * side over that on this side; eta: index inside over that outside. */
 static float loss_at(float cosine, float alpha, float eta, int inside) {
   vlVec3 o = vl_vec3(__builtin_sqrtf(1.0f - cosine * cosine), 0.0f, cosine);
   float lo = vl_ggx_length(o, alpha, alpha), forth = inside ? 1.0f / eta : eta, back = 1.0f / forth;
@@ -56,7 +57,8 @@ static float loss_at(float cosine, float alpha, float eta, int inside) {
   return loss > 0.0 ? (float)loss : 0.0f;
 }
 
-/* Over polar angle and azimuth; denser towards the horizon, where the sheen is. */
+/* Albedo of the sheen, integrated over polar angle and azimuth. Points are denser towards the horizon, where sheen
+ * is strong. */
 static float sheen_at(float cosine, float alpha) {
   float sine = __builtin_sqrtf(1.0f - cosine * cosine);
   double sum = 0;
@@ -71,7 +73,7 @@ static float sheen_at(float cosine, float alpha) {
   return (float)(sum * 2.0 * (double)VL_PI / (SHEEN_POINTS * SHEEN_POINTS));
 }
 
-/* int E 2 cos dcos with cos = x^2. */
+/* The integral of 2 E cos over cos, with the substitution cos = x^2. */
 static float mean_of(const float *row, uint32_t count) {
   double sum = 0, weight = 0;
   for (uint32_t j = 0; j < count; j++) {

@@ -1,8 +1,10 @@
-/* channels.c: three spectra that share the light between the channels of linear sRGB (Mallett and Yuksel 2019, Spectral
- * Primary Decomposition): each within [0, 1], together 1 at every wavelength, and under the space's illuminant exactly
- * (1,0,0), (0,1,0) and (0,0,1). Of all that are, the smoothest: the least sum of squared steps.
+/* channels.c: three spectra that divide the light among the channels of linear sRGB (Mallett and Yuksel 2019,
+ * Spectral Primary Decomposition). Each is within [0, 1], their sum is 1 at every wavelength, and their colours
+ * under the space's illuminant are exactly (1,0,0), (0,1,0) and (0,0,1). Of all such spectra these are the
+ * smoothest: they have the smallest sum of squared differences between neighbouring knots.
  *
- * A quadratic programme, solved with an active set. Only + - * /: the same bits everywhere. */
+ * This is a quadratic programme, solved by an active-set method. It uses only + - * /, so the bits are the same on
+ * every machine. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -10,18 +12,19 @@
 
 #include "tables.h"
 
-/* Unknowns: red's and green's share at each knot; blue's is the rest. Between knots they are linear. */
+/* Unknowns are the shares of red and green at each knot. The share of blue is 1 minus their sum. Shares are linear
+ * between knots. */
 enum { STEP = 5, KNOTS = (LAMBDA_COUNT - 1) / STEP + 1, UNKNOWNS = 2 * KNOTS, COLORS = 6 };
 enum { CONSTRAINTS = COLORS + 3 * KNOTS, SIZE = UNKNOWNS + CONSTRAINTS, ROUNDS = 200 };
 _Static_assert((KNOTS - 1) * STEP + 1 == LAMBDA_COUNT, "the last knot is the last wavelength");
 
 typedef struct programme {
   double color[COLORS][UNKNOWNS], target[COLORS];
-  bool active[3 * KNOTS]; /* share k at knot j is 0: 3 j + k */
+  bool active[3 * KNOTS]; /* active[3 j + k]: share k at knot j is held at 0 */
   double a[SIZE][SIZE + 1], x[SIZE];
 } programme;
 
-/* Share k of 3 at a knot. */
+/* Share of channel k (0 to 2) at a knot. */
 static double share_at(const double *x, int knot, int k) {
   return k < 2 ? x[k * KNOTS + knot] : 1.0 - x[knot] - x[KNOTS + knot];
 }
@@ -40,7 +43,7 @@ static void set_colors(programme *p, const space *s) {
     }
 }
 
-/* Gauss's elimination of the first n rows with pivots; a's column n is the right side. */
+/* Gaussian elimination with pivoting of the first n rows. Column n of a is the right-hand side. */
 static bool solve(programme *p, int n) {
   for (int k = 0; k < n; k++) {
     int best = k;
@@ -64,12 +67,13 @@ static bool solve(programme *p, int n) {
   return true;
 }
 
-/* The smoothest shares with the active constraints as equations; x: unknowns, then multipliers. */
+/* Computes the smoothest shares, with the active constraints as equations. x: the unknowns, then the Lagrange
+ * multipliers. */
 static bool solve_active(programme *p) {
   int n = UNKNOWNS + COLORS;
   for (int i = 0; i < 3 * KNOTS; i++) n += p->active[i];
   for (int i = 0; i < n; i++) memset(p->a[i], 0, sizeof p->a[i]);
-  for (int j = 0; j + 1 < KNOTS; j++) /* steps of red, green and of their sum, squared */
+  for (int j = 0; j + 1 < KNOTS; j++) /* adds the squared differences of red, of green and of their sum */
     for (int u = 0; u < 2; u++)
       for (int v = 0; v < 2; v++) {
         double w = u == v ? 2.0 : 1.0;
@@ -91,7 +95,8 @@ static bool solve_active(programme *p) {
   return solve(p, n);
 }
 
-/* Constraints that are violated become active, those that no longer hold a share up leave. True: neither. */
+/* Activates violated constraints and releases active ones whose multiplier shows that they are no longer needed.
+ * Returns true if nothing changed. */
 static bool change_active(programme *p) {
   bool same = true;
   int row = UNKNOWNS + COLORS;

@@ -1,5 +1,6 @@
-/* dense.c: spectra every nm from 360 to 830 nm: the observer, illuminants, metals, glasses; and the matrices of the
- * colour spaces. All sums run over whole nanometres of the values rounded to float, as velo itself will see them. */
+/* dense.c: spectra at every nanometre from 360 to 830 nm (standard observer, illuminants, metals, glasses), and the
+ * matrices of the colour spaces. All sums are over whole nanometres and use values rounded to float, as velo itself
+ * does. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,7 +21,8 @@ typedef struct state {
   int count;
 } state;
 
-/* Sprague's fifth-degree interpolation of values 5 nm apart, as the CIE recommends (CIE 167); ends are repeated. */
+/* Sprague's fifth-degree interpolation of values 5 nm apart, as the CIE recommends (CIE 167). The values at the ends
+ * are repeated. */
 static double sprague(const double *v, int count, int lambda) {
   int i = (lambda - LAMBDA_MIN) / 5;
   double x = (lambda - LAMBDA_MIN) % 5 / 5.0, p[6];
@@ -55,7 +57,7 @@ static named *add(state *s, const char *prefix, const char *name, const char *su
   return n;
 }
 
-/* Linear between the points, the first and last value beyond them. */
+/* Adds a spectrum that is linear between the points, and constant before the first and after the last one. */
 static void add_points(state *s, const char *name, const char *suffix, const double (*points)[2], int count) {
   named *n = add(s, "metal-", name, suffix);
   for (int i = 0, j = 0; i < LAMBDA_COUNT; i++) {
@@ -91,7 +93,7 @@ static void add_glass(state *s, const char *name, const sellmeier *g) {
   }
 }
 
-/* Illuminants are scaled so that their Y, the sum over all nm, is that of the constant spectrum 1. */
+/* Illuminants are scaled so that their Y, the sum over all nanometres, is equal to that of the constant spectrum 1. */
 static void add_illuminant(state *s, const char *prefix, const char *name, const double values[LAMBDA_COUNT]) {
   named *n = add(s, prefix, name, "");
   double y = 0;
@@ -131,10 +133,10 @@ static void add_all(state *s) {
 #undef POINTS
   for (size_t i = 0; i < sizeof glasses / sizeof *glasses; i++) {
     add_glass(s, glasses[i].name, &glasses[i]);
-    /* pbrt's scene files write F5 for SF5 and so on */
+    /* pbrt's names omit the S: F5 is SF5 */
     if (glasses[i].name[0] == 'S') add_glass(s, glasses[i].name + 1, &glasses[i]);
   }
-  /* Illuminant A: Planck's law with the old second radiation constant, 2848 K (CIE 15) */
+  /* Illuminant A: Planck's law at 2848 K with the second radiation constant of that time (CIE 15) */
   double a[LAMBDA_COUNT];
   for (int i = 0; i < LAMBDA_COUNT; i++) {
     double l = LAMBDA_MIN + i;
@@ -175,7 +177,7 @@ static int find(const state *s, const char *name) {
   abort();
 }
 
-/* Primaries as published; the white is the illuminant's own colour, so that it is exactly (1, 1, 1). */
+/* The primaries are the published ones. The white is the illuminant's own colour, so it is exactly (1, 1, 1). */
 static void make_space(const state *s, space *p, const double primaries[6], const char *illuminant_name) {
   p->illuminant = find(s, illuminant_name);
   const float *illuminant = s->list[p->illuminant].values;

@@ -1,5 +1,5 @@
-/* main.c: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin: writes the colour tables of velo. Run by the
- * build (CMakeLists.txt); some seconds of one core in all. */
+/* main.c: color_tables spectra FILE.c | color_tables rgb SPACE FILE.bin: writes velo's colour tables. The build runs
+ * it (CMakeLists.txt); all runs together take some seconds on one core. */
 #include <stdlib.h>
 #include <string.h>
 

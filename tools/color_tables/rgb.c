@@ -1,8 +1,10 @@
-/* rgb.c: RGB to spectrum, the optimiser (Jakob and Hanika 2019, with the changes told in color/rgb_table.h): for every
- * node of the table the coefficients whose sigmoid has the node's colour under the space's illuminant; where no such
- * spectrum exists (outside the colours of real surfaces) the nearest in XYZ, gently regularised.
+/* rgb.c: RGB to spectrum (Jakob and Hanika 2019, with the changes described in color/rgb_table.h). For every node of
+ * the table it computes the coefficients whose sigmoid has the node's colour under the space's illuminant. If no
+ * such spectrum exists (the colour is outside the gamut of real surfaces), it computes the nearest one in XYZ,
+ * slightly regularised.
  *
- * Levenberg-Marquardt on three unknowns, in double; only + - * / sqrt, so the table has the same bits everywhere. */
+ * The method is Levenberg-Marquardt with three unknowns in double precision. It uses only + - * / sqrt, so the table
+ * has the same bits on every machine. */
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -12,16 +14,16 @@
 
 enum { BLOCK = 8, PADDED = (LAMBDA_COUNT + BLOCK - 1) / BLOCK * BLOCK };
 
-/* The polynomial in u = 2 t - 1 of [-1, 1]: p0 + p1 u + p2 (u^2 - 1/3). */
+/* A polynomial in u = 2 t - 1, which lies in [-1, 1]: p0 + p1 u + p2 (u^2 - 1/3). */
 typedef struct poly {
   double p[3];
 } poly;
 
-/* The problem of one space: colour = sum of weight * sigmoid(poly), in XYZ over the white's XYZ. */
+/* The problem for one space: colour = sum of weight * sigmoid(poly), in XYZ relative to the white's XYZ. */
 typedef struct problem {
   double weight[3][PADDED];
   double u[PADDED], v[PADDED];
-  double xyz_from_rgb[9]; /* white is (1, 1, 1) on both sides */
+  double xyz_from_rgb[9]; /* the white is (1, 1, 1) in both RGB and XYZ */
 } problem;
 
 static void setup(problem *q, const space *s) {
@@ -39,8 +41,8 @@ static void setup(problem *q, const space *s) {
   }
 }
 
-/* The colour and its derivatives (row k, column unknown). Sums run in 8 lanes, so that the loop vectorises as written.
- */
+/* Computes the colour and its derivatives (row k: component, column: unknown). Sums have 8 lanes, so that compilers
+ * vectorise the loop without reassociation. */
 static void evaluate(const problem *q, const poly *c, double value[3], double jacobian[9]) {
   double sum[12][BLOCK] = {{0}};
   for (int start = 0; start < PADDED; start += BLOCK) {
@@ -67,7 +69,7 @@ static void evaluate(const problem *q, const poly *c, double value[3], double ja
   }
 }
 
-/* a x = b for symmetric positive a; b becomes x. */
+/* Solves a x = b for a symmetric positive definite a. b becomes x. */
 static bool solve3(double a[9], double b[3]) {
   for (int k = 0; k < 3; k++) {
     if (!(a[4 * k] > 0)) return false;
@@ -84,8 +86,9 @@ static bool solve3(double a[9], double b[3]) {
   return true;
 }
 
-/* What is made small: distance from the target, plus a little of |p|^2 and of |p|^4. The latter two hardly touch
- * colours that can be reached (scaled |p| below 30) and keep those that cannot from turning into ever steeper steps. */
+/* The objective: the squared distance from the target, plus a small multiple of |p|^2 and of |p|^4. These two terms
+ * hardly affect colours that can be reached (scaled |p| below 30). For other colours they keep the spectrum from
+ * becoming steeper without limit. */
 typedef struct pull {
   double square, fourth;
 } pull;
@@ -98,8 +101,8 @@ static double cost_of(const double value[3], const double target[3], const poly 
   return cost + w.square * square + w.fourth * square * square;
 }
 
-/* From a first guess in *c. z: largest component, the size of what counts as an error. scale: coefficients times scale
- * stay of one size towards black. */
+/* Fits the coefficients, starting from *c. z: the colour's largest component, the unit of errors. scale: the
+ * coefficients times scale stay of one magnitude towards black. */
 static void fit(const problem *q, const double rgb[3], double z, double scale, poly *c) {
   double target[3], value[3], jacobian[9], damping = 1e-10, zs = z * z * scale * scale;
   pull regular = {1e-11 * zs, 1e-13 * zs * scale * scale};
@@ -124,7 +127,7 @@ static void fit(const problem *q, const double rgb[3], double z, double scale, p
       damping = damping * 100 + 1e-12;
       continue;
     }
-    /* Not too far at once: a spectrum that has collapsed to 0 or 1 has no slope to come back by. */
+    /* Limits the step: a spectrum that is 0 or 1 everywhere has no derivative that leads back. */
     double length = sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]), size = sqrt(square_of(c));
     double factor = length > 0.5 * size + 0.5 ? (0.5 * size + 0.5) / length : 1.0;
     poly next = *c;
@@ -156,13 +159,13 @@ enum { NX = VL_RGB_TABLE_XY, NZ = VL_RGB_TABLE_Z };
 static double node_of(int i, int size) {
   return (double)vl_rgb_axis_value((float)i * (1.0f / (float)(size - 1)));
 }
-/* The factor that makes coefficients smooth towards black. */
+/* The factor that makes coefficients a smooth function of the colour towards black. */
 static double scale_of(const double rgb[3]) {
   double m = (rgb[0] + rgb[1] + rgb[2]) / 3;
   return sqrt(m * (1 - m));
 }
 
-/* Scaled coefficients of the nodes of one face; [z][y][x]. */
+/* Scaled coefficients of the nodes of one face, indexed [z][y][x]. */
 typedef struct face {
   poly node[NZ][NX][NX];
 } face;
@@ -174,8 +177,8 @@ static void store(const poly *c, float *out) {
   out[2] = (float)(c->p[0] - c->p[1] + c->p[2] * (2.0 / 3.0));
 }
 
-/* The table is asked for colours with z + smallest <= 1 only: nodes that no such colour's cell touches are not solved
- * but take a neighbour's value. */
+/* Whether a node can be used. The table is read only for colours with z + smallest component <= 1. A node that
+ * belongs to no cell of such a colour is not solved and takes a neighbour's value. */
 static bool is_used(double z_below, double x_below, double y_below) {
   return z_below * (1 + fmin(x_below, y_below)) <= 1;
 }
@@ -187,7 +190,8 @@ void solve_space(const space *s, float *coefficients) {
   for (int big = 0; big < 3; big++) {
     for (int k = 0; k < NZ; k++) {
       double z = node_of(k, NZ);
-      /* At black itself the scaled coefficients have a limit, taken a little above; at 1 a little below. */
+      /* At black and at 1 the scaled coefficients have limits, which are computed slightly above 0 and slightly
+       * below 1. */
       z = fmin(fmax(z, 1e-6), 1 - 1e-6);
       for (int j = NX - 1; j >= 0; j--) {
         for (int i = NX - 1; i >= 0; i--) {
@@ -199,7 +203,8 @@ void solve_space(const space *s, float *coefficients) {
           if (grey) {
             *n = (poly){{node_of(k, NZ) - 0.5, 0, 0}};
           } else {
-            /* guess: along z, straight on from the last two; at first from the neighbour nearer to grey */
+            /* the first guess is extrapolated along z from the last two nodes; at the start it is the neighbour
+             * nearer to grey */
             if (k == 0)
               guess = i < NX - 1 ? f.node[k][j][i + 1] : f.node[k][j + 1][i];
             else

@@ -56,7 +56,7 @@ static int fails(const char *call) {
   return 1;
 }
 
-/* The function of the C library behind the one that is defined here. */
+/* The C library's own function that the function defined here replaces. */
 #define NEXT(name, ...) ((__typeof__(name) *)dlsym(RTLD_NEXT, #name))(__VA_ARGS__)
 
 void *malloc(size_t size) {

@@ -61,7 +61,7 @@ static int load_scene_camera(vlContext *context, const char *path, vlCameraRecor
     *record = (vlCameraRecord){.camera = from->camera, .dialect = VL_CAMERA_DIALECT_PBRT, .frames = 1};
   }
   int status = result == VL_OK ? -1 : report_error(&error, result, path);
-  /* objects to which a camera points are freed with its scene */
+  /* the camera points to objects of its scene, which are freed with the scene */
   if (status < 0 && record->camera.lens.optics)
     status = report_failure(STATUS_SCENE, "%s: a lens of many elements is a camera of its scene alone", path);
   if (status < 0 && record->camera.lens.aperture) {

@@ -19,8 +19,8 @@ static double angle_between(const vlCamera *c, double x0, double y0, double x1, 
   return atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/* Angle between two opposite edges as the sum of the angles to the principal point, which can exceed 180 degrees. NaN:
- * an edge has no ray. */
+/* Angle between two opposite edges of the image. It is the sum of the angles between each edge and the principal
+ * point, so it can exceed 180 degrees. NaN: an edge has no ray. */
 static double field(const vlCamera *c, double x0, double y0, double x1, double y1) {
   return angle_between(c, x0, y0, c->cx, c->cy) + angle_between(c, c->cx, c->cy, x1, y1);
 }

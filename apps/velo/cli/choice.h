@@ -1,4 +1,4 @@
-/* cli/choice.h: a name that an option takes, and what it stands for. */
+/* cli/choice.h: a name that an option accepts, and the value that the name means. */
 #ifndef APP_CLI_CHOICE_H
 #define APP_CLI_CHOICE_H
 

@@ -1,11 +1,11 @@
-/* cli/context.h: contexts of commands. */
+/* cli/context.h: creates the context of a command. */
 #ifndef APP_CLI_CONTEXT_H
 #define APP_CLI_CONTEXT_H
 
 #include "cli/report.h"
 
-/* Creates a context whose messages are reported by `def->log`. Returns -1, or the exit code after reporting the reason:
- * a folder of --sandbox, the environment variable VELO_ISA, memory or threads. */
+/* Creates a context whose messages are reported by `def->log`. Returns -1 on success. Otherwise it reports the
+ * reason (a folder of --sandbox, the environment variable VELO_ISA, memory or threads) and returns the exit code. */
 int context_open(const vlContextDef *def, vlContext **context);
 
 #endif

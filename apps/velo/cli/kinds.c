@@ -14,7 +14,7 @@ static void fill(const vlKindFamily *family, Choice *choices) {
 }
 
 const Choice *kind_choices(const char *name) {
-  static Choice choices[MAX_FAMILIES][MAX_CHOICES]; /* each ends with the zeros that were there */
+  static Choice choices[MAX_FAMILIES][MAX_CHOICES]; /* zero-initialised, so each list ends with zeros */
   const vlKindFamily *family;
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {
     if (strcmp(family->name, name) != 0) continue;

@@ -15,7 +15,7 @@ static struct {
   Verbosity verbosity;
   const vlContext *context; /* whose memory use is reported; may be null */
   size_t memory_limit;
-  const char *usage_file; /* that holds the command line; null: it is the user's */
+  const char *usage_file; /* the file that holds the command line; null: the command line is the user's own */
   char *json_text;
   size_t json_size;
 } state;

@@ -20,7 +20,8 @@ enum {
 typedef enum Verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 } Verbosity;
 
 void report_setup(bool json, Verbosity verbosity);
-/* Sets the context whose memory use, and its limit (0: none), an out-of-memory error reports. Null: none. */
+/* Sets the context whose memory use an out-of-memory error reports, and the memory limit in bytes (0: none). A null
+ * context: no report of memory use. */
 void report_memory_of(const vlContext *context, size_t limit);
 bool report_is_json(void);
 bool report_is_quiet(void);
@@ -40,7 +41,7 @@ int report_error(const vlError *error, vlResult result, const char *file);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code. */
 int report_reason(vlResult result, const char *file, const char *what);
-/* Not reported with --quiet or as JSON. */
+/* Reports a note. Prints nothing with --quiet or in JSON mode. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* The context's log callback. */
 void report_log(void *user, vlLogLevel level, const vlError *where, const char *message);

@@ -7,7 +7,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { MOST_SIGNALS = 2 }; /* the next signal ends the program */
+enum { MOST_SIGNALS = 2 }; /* after this number of signals, the next one ends the program */
 
 static atomic_int pending, count;
 static atomic_bool remember, on_terminal;
@@ -21,7 +21,7 @@ static void say(const char *text) {
 
 static void handle(int number) {
   if (!remember) {
-    if (on_terminal) say("\n"); /* after the ^C that it shows */
+    if (on_terminal) say("\n"); /* ends the line on which the terminal shows ^C */
     say("velo: interrupted; nothing was rendered yet, nothing is written\n");
     _exit(128 + number);
   }

@@ -1,4 +1,4 @@
-/* film/develop.c: `velo film develop`: images of a film file, without its scene. */
+/* film/develop.c: `velo film develop`: makes the images of a film file, without the scene. */
 #include <math.h>
 #include <string.h>
 

@@ -36,14 +36,13 @@ bool check_is_hit(const Check *c) {
   if (c->primitive >= 0) return c->pixel[c->primitive] != 0;
   double v[3];
   int vector = c->ng >= 0 ? c->ng : c->n;
-  if (vector < 0) vector = c->p; /* the world's origin counts as nothing then */
+  if (vector < 0) vector = c->p; /* the length of the world's position is then not included */
   if (vector < 0) return true;
   check_load3(c, vector, v);
   return check_length3(v) != 0;
 }
 
-/* ---- what there is ------------------------------------------------------------------------------------------------
- */
+/* ---- what there is ----------------------------------------------------------------------------------------------- */
 
 /* Index of the first of the channels "N." + "XYZ" when all exist in consecutive order; otherwise -1. */
 static int find_parts(const vlImage *image, const char *name, const char *parts) {

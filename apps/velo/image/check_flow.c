@@ -52,9 +52,10 @@ static void compare_distances(Check *c, int hidden, const double at[2], bool hit
   c->flow_wrong += hidden == VL_HIDDEN_BEHIND ? nearest >= distance : farthest < distance * 0.99;
 }
 
-/* P and the distance are 32-bit floats: p is known up to a share of the largest length that it was computed from. How
- * far the pixel moves when p moves by all of that length, by the derivative of the projection: near the other camera's
- * plane of depth 0 it grows as size / depth^2. An error divided by it is the relative error of p that explains it. */
+/* How far the pixel moves if p has an error as large as the largest length from which it was computed, by the
+ * derivative of the projection. Near the other camera's plane of depth 0 it grows as size / depth^2. P and the
+ * distance are 32-bit floats, so p has an error relative to that length. A flow error divided by the result is the
+ * relative error of p that would explain it. */
 static double pixels_of_rounding(const Check *c, const double p[3], const double at[2]) {
   const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
   double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]}, near = check_length3(away), largest = 0;

@@ -9,8 +9,7 @@
 
 static const char *const types[3] = {"CryptoObject", "CryptoMaterial", "CryptoInstance"};
 
-/* ---- the manifest -------------------------------------------------------------------------------------------------
- */
+/* ---- the manifest ------------------------------------------------------------------------------------------------ */
 
 /* Reads a JSON string into `to` (of `size`); null when invalid. \u is not needed: manifests are UTF-8. */
 static const char *read_string(const char *at, char *to, size_t size) {
@@ -103,8 +102,7 @@ void check_free_mattes(Check *c) {
   for (int k = 0; k < 3; k++) free(c->mattes[k].known);
 }
 
-/* ---- a pixel ------------------------------------------------------------------------------------------------------
- */
+/* ---- a pixel ----------------------------------------------------------------------------------------------------- */
 
 /* Sums the coverages and checks the ids: known to the manifest, each once, with coverage, in descending order of
  * coverage. */

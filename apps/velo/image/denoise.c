@@ -1,4 +1,4 @@
-/* image/denoise.c: `velo image denoise`: a denoised copy of a rendered image. */
+/* image/denoise.c: `velo image denoise`: writes a denoised copy of a rendered image. */
 #include <stdio.h>
 #include <string.h>
 

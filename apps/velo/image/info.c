@@ -236,7 +236,8 @@ static int run_info(const Command *command, const Arguments *arguments) {
   vlReceipt *receipt = NULL;
   vlAttribute attribute;
   if (status < 0 && vl_image_find_attribute(image, RECEIPT_ATTRIBUTE, &attribute) == VL_OK && attribute.string)
-    vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt, NULL); /* else printed as it is */
+    vl_receipt_parse(context, attribute.string, strlen(attribute.string), &receipt,
+                     NULL); /* without a valid receipt the attribute is printed unchanged */
   if (status < 0) {
     if (arguments->values[INFO_JSON].given)
       print_json(arguments->operands[0], image);

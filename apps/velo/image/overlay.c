@@ -68,7 +68,7 @@ void overlay_line(Overlay *o, double x0, double y0, double x1, double y1, double
   if (!isfinite(x0 + y0 + x1 + y1) || !clip(p, -reach, -reach, o->width + reach, o->height + reach)) return;
   const double a[2] = {p[0], p[1]}, d[2] = {p[2] - p[0], p[3] - p[1]};
   double length2 = d[0] * d[0] + d[1] * d[1];
-  /* steps along the longer axis; covers the pen's width across */
+  /* one step per pixel of the longer axis; each step paints the pen's width along the other axis */
   bool flat = fabs(d[0]) >= fabs(d[1]);
   double slope = flat ? (d[0] != 0.0 ? d[1] / d[0] : 0.0) : d[0] / d[1];
   double low = fmin(flat ? p[0] : p[1], flat ? p[2] : p[3]), high = fmax(flat ? p[0] : p[1], flat ? p[2] : p[3]);

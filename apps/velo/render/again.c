@@ -33,8 +33,8 @@ static int take_scene(Again *again, const Arguments *given) {
                         path, again->path);
 }
 
-/* The camera of another file is taken from the receipt, so that the file is not needed; its lens, where the receipt
- * does not hold it, from the file. */
+/* If the image's camera came from a file of its own, takes it from the receipt, so the file is not needed. If the
+ * receipt does not hold the camera's lens, takes the lens from the file. */
 static int take_camera(Again *again) {
   OptionValue *v = again->arguments.values;
   if (!v[RENDER_CAMERA].given || v[RENDER_TRAJECTORY].given) return -1;
@@ -45,7 +45,8 @@ static int take_camera(Again *again) {
   if (result == VL_ERROR_UNSUPPORTED) return -1;
   if (result != VL_OK) return report_error(&error, result, again->path);
   camera->given = true;
-  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given = false; /* they are in the receipt */
+  v[RENDER_RESOLUTION].given = v[RENDER_CROP].given = v[RENDER_CROPWINDOW].given =
+      false; /* the receipt's film and camera include these settings */
   return -1;
 }
 

@@ -15,8 +15,9 @@ typedef struct Continue {
 /* Reads the film's receipt and replaces *arguments by those of its command. If each eye has a film (%v in the name), it
  * reads the receipt of the left film. Returns -1 or the exit code. */
 int continue_open(Continue *c, const Arguments **arguments);
-/* Reads the film in `path`, if its receipt is `now` and it has the samples before those that are to be rendered; its
- * pixels, where it has not all, become the crop of defs. Returns -1, or the exit code after naming the differences. */
+/* Reads the film in `path`. Its receipt must equal `now`, and it must have the samples before those that will be
+ * rendered. If it has only some of the pixels, they become the crop of defs. Returns -1, or the exit code after
+ * naming the differences. */
 int continue_film(const char *path, const Arguments *arguments, const vlReceipt *now, vlContext *context,
                   vlSceneDefs *defs, vlFilm **film);
 void continue_close(Continue *c);

@@ -56,7 +56,8 @@ uint64_t denoised_memory(uint64_t pixels) {
 }
 
 double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads) {
-  const double per_pixel = 2.5e-6, ray = 0.3; /* seconds of one thread; a camera ray's share of a sample, measured */
+  const double per_pixel = 2.5e-6,
+               ray = 0.3; /* measured on one thread: seconds per pixel; cost of a camera ray relative to a sample */
   uint32_t features = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES;
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;
 }

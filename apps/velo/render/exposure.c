@@ -1,4 +1,5 @@
-/* render/exposure.c: see exposure.h. The key of 0.18: Reinhard et al., "Photographic tone reproduction", 2002. */
+/* render/exposure.c: see exposure.h. The target value 0.18 is from Reinhard et al., "Photographic tone
+ * reproduction", 2002. */
 #include "render/exposure.h"
 
 #include <math.h>

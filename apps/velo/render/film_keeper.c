@@ -1,5 +1,5 @@
-/* render/film_keeper.c: see film_keeper.h. A checkpoint is written between two passes, on all workers; a thread then
- * waits for the disk and renames the file, while the render goes on. */
+/* render/film_keeper.c: see film_keeper.h. All workers write a checkpoint between two passes. A thread then waits
+ * until the file is on the disk and renames it, while the render continues. */
 #include "render/film_keeper.h"
 
 #include <stdio.h>
@@ -46,7 +46,7 @@ static void *end_write(void *user) {
   return NULL;
 }
 
-/* Waits for the last checkpoint. */
+/* Waits until the last checkpoint is on the disk. */
 static vlResult join(FilmKeeper *k) {
   if (!k->running) return VL_OK;
   pthread_join(k->thread, NULL);
@@ -89,7 +89,7 @@ void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
 }
 
 double film_keeper_seconds(const FilmKeeper *k, uint64_t bytes) {
-  const double bytes_per_second = 3e8; /* before there is a checkpoint */
+  const double bytes_per_second = 3e8; /* assumed until a checkpoint has been measured */
   if (!k->path[0]) return 0;
   return k->cost > 0 ? k->cost : (double)bytes / bytes_per_second;
 }

@@ -21,7 +21,7 @@ typedef struct FilmKeeper {
   char path[4096];    /* path of the film file; empty: none */
   double every;       /* seconds between two checkpoints */
   double share;       /* largest fraction of the time for checkpoints; 0: no limit */
-  uint32_t window[4]; /* of the whole render */
+  uint32_t window[4]; /* crop window of the whole render */
   vlReceipt *receipt;
   double last, cost; /* time of the last checkpoint; seconds it took */
   uint32_t written;  /* samples in the file */

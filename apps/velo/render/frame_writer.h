@@ -7,7 +7,7 @@
 /* A complete image, passed to the writer, which frees it. */
 typedef struct FrameImage {
   Frame frame;
-  Job jobs[2]; /* per view, with its camera */
+  Job jobs[2]; /* one job per view; each has the view's camera */
   Channels channels[2];
   vlImage *images[2];
   uint32_t spp;

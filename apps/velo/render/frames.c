@@ -109,7 +109,8 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
   vlResult result = VL_OK;
   memcpy(camera->mount, base.world_from_camera, sizeof camera->mount);
   if (frames->trajectory) {
-    /* but a negative fy of a calibration file gives the y direction of all frames (a scene's camera has a pose) */
+    /* a negative fy in a calibration file, however, is the direction of y for all frames (a camera of a scene has it
+     * in its pose) */
     const OptionValue *file = &arguments->values[RENDER_CAMERA];
     bool turned = !record && file->given && !camera_is_scene(file->text) &&
                   memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;

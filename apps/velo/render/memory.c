@@ -10,8 +10,7 @@
 #include "cli/report.h"
 #include "render/progress.h"
 
-/* ---- the process --------------------------------------------------------------------------------------------------
- */
+/* ---- the process ------------------------------------------------------------------------------------------------- */
 
 /* Bytes of address space and of resident memory of the process. */
 static void process_size(uint64_t *addresses, uint64_t *resident) {

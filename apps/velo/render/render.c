@@ -39,7 +39,7 @@ typedef struct Render {
   Progress progress;
   uint32_t begun_spp;            /* samples per pixel of a film that is continued */
   uint32_t written_spp;          /* samples per pixel of the last progress image */
-  bool part_named;               /* their paths were reported */
+  bool part_named;               /* the paths of the NAME.part.EXT files were reported */
   double last_write, write_cost; /* seconds: when, and for how long, a progress image was written */
   double first_pass;             /* seconds of the first pass, one sample; 0: not done */
   double start, render_start;    /* start of the command, start of the first pass; seconds */
@@ -550,11 +550,11 @@ static int check_again(const Render *render) {
     which.is_frame = frames->trajectory != NULL;
     const Frame first = frames_at(frames, 0);
     which.frame = first.number;
-    job = &first.camera->job; /* a file of poses may have cameras of its own */
+    job = &first.camera->job; /* a file of poses may have its own cameras */
     if (frames_count(frames) > 1)
       return report_usage("--again: the images of a rig are made again by the command in the receipt");
   }
-  /* of several images each has a camera of its own, which follows from files and command */
+  /* several images have different cameras; the files and the command determine them */
   return again_check(&render->again, &render->receipt, render->context, job, &which, !render->many);
 }
 

@@ -44,14 +44,15 @@ int shard_check(const Arguments *arguments) {
 
 /* ---- tiles ------------------------------------------------------------------------------------------------------- */
 
-/* Cuts a rectangle of blocks into `count` parts of about the same area and keeps part `index`, from 0. */
+/* Divides a rectangle of blocks into `count` parts of about the same area and keeps only part `index`, counted from
+ * 0. */
 static void cut(uint32_t blocks[4], uint32_t index, uint32_t count) {
   while (count > 1) {
     uint32_t width = blocks[2] - blocks[0], height = blocks[3] - blocks[1], low = count / 2;
     int axis = width >= height ? 0 : 1;
     uint32_t size = axis ? height : width, other = axis ? width : height;
     uint32_t at = (uint32_t)(((uint64_t)size * low + count / 2) / count);
-    while ((uint64_t)at * other < low) at++; /* each part has a block */
+    while ((uint64_t)at * other < low) at++; /* every part gets at least one block */
     while ((uint64_t)(size - at) * other < count - low) at--;
     if (index < low) {
       blocks[2 + axis] = blocks[axis] + at;

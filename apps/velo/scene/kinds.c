@@ -82,9 +82,10 @@ static bool same_parameter(const vlParameter *a, const vlParameter *b) {
          memcmp(a->value, b->value, sizeof a->value) == 0 && a->low == b->low && a->high == b->high;
 }
 
-enum { SHARED = 6 }; /* fewer parameters are repeated */
+enum { SHARED = 6 }; /* smaller numbers of common parameters are listed again for each kind */
 
-/* Returns the earlier kind whose parameters are the longest beginning of this kind's parameters, or null. */
+/* Returns an earlier kind whose parameters are all the first parameters of this kind. Of several, returns the one
+ * with the most parameters; null if there is none. */
 static const vlKindRow *base_of(const vlKindFamily *family, uint32_t kind) {
   const vlKindRow *row = family->rows[kind], *base = NULL;
   for (uint32_t i = 0; i < kind; i++) {

@@ -22,7 +22,8 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
   return vl_camera_write(x->context, path, &def, record, &error);
 }
 
-/* Makes axes orthogonal that are not only because of rounding, since readers of glTF decompose transforms. */
+/* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of glTF decompose
+ * transforms. */
 static void square_up(double m[16]) {
   double a[3][3], dot, l;
   for (int c = 0; c < 3; c++)

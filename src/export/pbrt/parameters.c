@@ -62,7 +62,7 @@ static void put(vlExport *x, const vlParameter *p, const void *def, bool spectru
     case VL_PARAMETER_FLOAT: PUT(" \"float %s\" [%.9g]", p->name, k * (double)*(const float *)at); break;
     case VL_PARAMETER_DOUBLE: PUT(" \"float %s\" [%.17g]", p->name, k * *(const double *)at); break;
     case VL_PARAMETER_FLOAT3: put_float3(x, p, at); break;
-    case VL_PARAMETER_DOUBLE3: break; /* of cameras alone */
+    case VL_PARAMETER_DOUBLE3: break; /* only cameras have parameters of this type */
     case VL_PARAMETER_CHOICE: PUT(" \"string %s\" \"%s\"", p->name, p->choices[*(const int *)at]); break;
     case VL_PARAMETER_STRING: PUT(" \"string %s\" \"%s\"", p->name, *(const char *const *)at); break;
     case VL_PARAMETER_FILE: PUT(" \"string %s\" \"%s\"", p->name, prepared->file); break;

@@ -138,8 +138,7 @@ enum {
   VL_GLTF_REPORTED_MOTION = 64
 };
 
-/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false ----------
- */
+/* ---- errors and JSON (json.c): a function that returns bool has reported the error when it returns false --------- */
 
 /* Report the error "path: place: message". Always return false. */
 bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) __attribute__((format(printf, 3, 4)));

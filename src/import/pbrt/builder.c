@@ -215,8 +215,7 @@ static bool recover(void *user) {
   return vl_import_recover(user);
 }
 
-/* ---- a whole file -------------------------------------------------------------------------------------------------
- */
+/* ---- a whole file ------------------------------------------------------------------------------------------------ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
   for (size_t i = 0; i < count; i++) vl_param_list_free(context, &items[i].params);

@@ -75,11 +75,11 @@ static const char *wanted_types(uint32_t bits, char *text, size_t size) {
 }
 
 static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *name, uint32_t bits, vlParam *found) {
-  for (size_t i = params->list.count; i > 0; i--) { /* the last one given counts */
+  for (size_t i = params->list.count; i > 0; i--) { /* the last of several values counts */
     vlParam *p = params->list.items[i - 1];
     if (strcmp(p->name, name) != 0) continue;
     if (bits & 1u << p->type) {
-      p->used = true; /* earlier duplicates count as used, too */
+      p->used = true; /* also marks earlier duplicates as used */
       if (!found) found = p;
     } else if (!p->optional && !found) {
       char types[160];

@@ -7,7 +7,7 @@
 #include "import/pbrt/param.h"
 
 typedef enum vlDirective {
-  /* without arguments */
+  /* directives without arguments */
   VL_DIR_ATTRIBUTE_BEGIN,
   VL_DIR_ATTRIBUTE_END,
   VL_DIR_TRANSFORM_BEGIN,
@@ -21,7 +21,7 @@ typedef enum vlDirective {
   VL_DIR_ACTIVE_END,
   VL_DIR_IMPORT_BEGIN, /* Import "file": its directives follow, then IMPORT_END */
   VL_DIR_IMPORT_END,
-  /* followed by numbers */
+  /* directives followed by numbers */
   VL_DIR_TRANSLATE,
   VL_DIR_SCALE,
   VL_DIR_ROTATE,
@@ -29,7 +29,7 @@ typedef enum vlDirective {
   VL_DIR_TRANSFORM,
   VL_DIR_CONCAT_TRANSFORM,
   VL_DIR_TRANSFORM_TIMES,
-  /* followed by one or two names */
+  /* directives followed by one or two names */
   VL_DIR_COORDINATE_SYSTEM,
   VL_DIR_COORD_SYS_TRANSFORM,
   VL_DIR_COLOR_SPACE,
@@ -38,7 +38,7 @@ typedef enum vlDirective {
   VL_DIR_OBJECT_INSTANCE,
   VL_DIR_MEDIUM_INTERFACE, /* inside, outside */
   VL_DIR_OPTION,           /* name, value as written */
-  /* followed by a name and parameters */
+  /* directives followed by a name and parameters */
   VL_DIR_ATTRIBUTE,
   VL_DIR_FILM,
   VL_DIR_SAMPLER,

@@ -92,8 +92,7 @@ vlLightDef vl_default_light_def(vlLightKind kind) {
   return def;
 }
 
-/* ---- power, a function per kind -----------------------------------------------------------------------------------
- */
+/* ---- power, a function per kind ---------------------------------------------------------------------------------- */
 
 typedef double Power(const vlLightDef *def, double luminance, double radius);
 

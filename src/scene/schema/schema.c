@@ -1,4 +1,4 @@
-/* scene/schema/schema.c: the families, their rows by name, and defaults. */
+/* scene/schema/schema.c: the families of kinds; finds rows by name and applies their defaults. */
 #include "scene/schema/schema.h"
 
 #include <string.h>

@@ -1,9 +1,10 @@
-/* trace/ground_truth/channels.hot.c: ground truth of a batch of rays: ids, distance in double, normals, albedo.
+/* trace/ground_truth/channels.hot.c: ground truth for a batch of rays: ids, distance in double, normals, albedo.
  *
  *   exact rays -> rounded to float -> ids (Embree) -> distance in double, from the exact ray and the surface itself
  *                                                  -> the tracers' stages: normals, uv, textures (64 wavelengths)
  *
- * Hits are those of the tracers: interfaces are passed, mixed materials are decided by a hash of the ray. */
+ * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the ray decides mixed
+ * materials. */
 #include "trace/ground_truth/scratch.h"
 #include "world/material/bssrdf.h"
 #include "world/material/measured_lookup.h"
@@ -37,8 +38,9 @@ static Exact exact_corner(const vlWorldShape *s, const vlWorldInstance *q, float
   return (Exact){r[0], r[1], r[2]};
 }
 
-/* Distance to the triangle's plane, clamped to the distances of its corners: at grazing angles the float ray that found
- * the triangle may differ so much that the exact ray's crossing lies far outside. */
+/* Distance to the triangle's plane, clamped to the range of the distances of its corners. At grazing angles the
+ * float ray that found the triangle and the exact ray may differ so much that the exact ray meets the plane far
+ * outside the triangle. */
 static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q, float time, uint32_t prim, Exact o,
                                 Exact d, double otherwise) {
   const uint32_t *f = s->indices + 3 * (size_t)prim;
@@ -54,13 +56,14 @@ static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
   return t > high ? high : t;
 }
 
-/* The crossing of a curved shape near t, where the float ray found it. */
+/* Distance at which the exact ray meets a curved shape, near the distance t that the float ray found. */
 static double curved_distance(const vlWorldShape *s, const vlWorldInstance *q, uint32_t prim, Exact o, Exact d,
                               double t) {
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
-  /* At grazing angles rounding moves the crossing further: the interval grows in four steps, to 1 / 64 at most. */
+  /* At grazing angles rounding moves the intersection further, so the search interval grows in four steps up to 1 /
+   * 64. */
   for (double reach = VL_REFIND; reach < 0.01; reach *= 32.0)
     if (vl_shape_intersect(s, prim, go, gd, t * (1.0 - reach), t * (1.0 + reach) + VL_REFIND_LEAST, &hit)) return hit.t;
   return t;
@@ -90,8 +93,8 @@ static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
     }
 }
 
-/* Albedo of one lane at channel c. Conductors and measured materials: reflectance at normal incidence. Subsurface
- * materials: diffuse reflectance. Materials that transmit specularly: 1. */
+/* Albedo of one lane at channel c. For conductors and measured materials it is the reflectance at normal incidence,
+ * for subsurface materials the diffuse reflectance, and for materials with specular transmission 1. */
 static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float lambda, int c, uint32_t i) {
   if (m->reflectance >= 0) return sh->reflectance[c][i];
   if (m->measured) return vl_measured_albedo(m->measured, c, lambda);
@@ -150,7 +153,7 @@ static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPath
   }
 }
 
-/* Copies the lanes of a with a hit to b, without gaps. */
+/* Copies those lanes of a that have a hit to b, without gaps. */
 static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
   const vlPaths *a = &s->a;
   vlPaths *b = &s->b;
@@ -238,7 +241,7 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
   }
 }
 
-/* Steps past each surface by the bound of its point's error, as hits.hot.c passes interfaces. */
+/* Advances past each surface by the error bound of the hit point, as hits.hot.c does at interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
   for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];

@@ -1,4 +1,4 @@
-/* trace/light/distant.hot.c: lights infinitely far away in one direction (pbrt book 12.3). */
+/* trace/light/distant.hot.c: lights at an infinite distance in one direction (pbrt book 12.3). */
 #include "trace/light/kinds.h"
 
 void vl_light_sample_distant(const vlLightQuery *q, vlLightSample *out) {

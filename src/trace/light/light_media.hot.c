@@ -21,8 +21,8 @@ static bool borders(const vlWorldShape *s) {
   return s->inside != s->outside;
 }
 
-/* Finds the most frequent medium around p. Returns false if no ray finds one. far: p is outside the world, and rays go
- * towards its centre. */
+/* Finds the most frequent medium around p. Returns false if no ray finds one. far: p is outside the world, and rays
+ * go towards the world's centre. */
 static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_t *medium) {
   uint32_t answer[ANSWERS], votes[ANSWERS], answers = 0, best = 0;
   for (int k = 0; k < ASKED; k++) {

@@ -53,7 +53,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   }
 }
 
-/* Rotates dpdu around the normal: the tangent of the anisotropic microfacets. */
+/* Rotates dpdu around the normal. The result is the tangent of the anisotropic microfacets. */
 static void turn_tangent(vlTextureRun *r, const float *angle) {
   vlSurface *f = &r->s->surface;
   for (uint32_t i = r->first; i < r->last; i++) {

@@ -28,7 +28,8 @@ typedef struct vlEnvironment {
   uint16_t *row_guide;      /* guide table of VL_GUIDES entries for the rows */
   uint16_t *cell_guide;     /* a guide table of VL_GUIDES entries per row, for its cells */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
-  const struct vlPortal *portal; /* portal through which alone it is visible (world/light/portal.h); null: none */
+  const struct vlPortal *portal; /* the portal through which the environment is visible (world/light/portal.h); null: it
+                                    is visible everywhere */
 } vlEnvironment;
 
 static inline uint32_t vl_guide_index(float u) {

@@ -70,8 +70,7 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
   return channels < 3 ? t.c[0] : 0.2126f * t.c[0] + 0.7152f * t.c[1] + 0.0722f * t.c[2];
 }
 
-/* ---- infinite lights ----------------------------------------------------------------------------------------------
- */
+/* ---- infinite lights --------------------------------------------------------------------------------------------- */
 
 vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
                                    vlError *error) {

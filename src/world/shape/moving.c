@@ -227,8 +227,7 @@ float vl_moving_vertex_error(const vlWorldShape *s, uint32_t vertex, float time)
   return worst;
 }
 
-/* ---- following a point
- * -------------------------------------------------------------------------------------------- */
+/* ---- following a point ------------------------------------------------------------------------------------------- */
 
 static void map(const float m[12], const double p[3], double q[3]) {
   for (int i = 0; i < 3; i++)

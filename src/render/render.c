@@ -171,8 +171,8 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
 
 /* The number of samples of the next pass, at most `most`. Passes have 1, 1, 2, 4, ... samples, so that a first image
  * exists early. The first pass of a call has one sample, since the time of a sample is not known yet. A pass takes at
- * most PASS_SECONDS, since its work is lost when it is abandoned, and at most half of the remaining time. The split into
- * passes does not change the image. */
+ * most PASS_SECONDS, since its work is lost when it is abandoned, and at most half of the remaining time. The split
+ * into passes does not change the image. */
 static uint32_t pass_size(uint32_t done, uint32_t most, double seconds_per_sample, double left) {
   uint32_t size = done == 0 ? 1 : done < MAX_PASS ? done : MAX_PASS;
   double fit = seconds_per_sample > 0 ? fmin(PASS_SECONDS, 0.5 * left) / seconds_per_sample : 1;

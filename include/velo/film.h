@@ -14,7 +14,7 @@ extern "C" {
 
 /** The samples first to end - 1 of a pixel. */
 typedef struct vlSampleRange {
-  uint32_t first, end;
+  uint32_t first, end; /**< index of the first sample; index behind the last */
 } vlSampleRange;
 
 /** How to write a film. */

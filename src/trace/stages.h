@@ -79,6 +79,9 @@ typedef struct vlShade {
   VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
   VL_ROW float wi[3][VL_ROW_SIZE]; /* local; first the light sample's direction, later the BSDF sample's */
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
+  /* Only set if vlWorld.by_channel. tint_rgb: factor of each channel of linear sRGB on light that crosses the surface
+   * (the fourth row is not used). tint: the factor at the path's wavelengths, after all that the path has crossed. */
+  VL_ROW float tint_rgb[4][VL_ROW_SIZE], tint[4][VL_ROW_SIZE];
   VL_ROW float alpha_x[VL_ROW_SIZE], alpha_y[VL_ROW_SIZE], eta_s[VL_ROW_SIZE];
   const vlCoatTable *coat[VL_ROW_SIZE];
   VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* rows that depend on the kind; trace/bsdf/bsdf.h names them */
@@ -115,9 +118,6 @@ enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
  * u for the directions as they were sampled, l as if light sampling had drawn the last direction. */
 typedef struct vlVolumeRows {
   VL_ROW float u[4][VL_ROW_SIZE], l[4][VL_ROW_SIZE];
-  /* Transmittance since the path began through the media that absorb by channel, for each channel of linear sRGB.
-   * vl_channels_at gives the transmittance at a wavelength from these three; beta includes it. */
-  VL_ROW float passed[3][VL_ROW_SIZE];
   VL_ROW uint32_t medium[VL_ROW_SIZE]; /* medium at the ray's origin; VL_NONE: vacuum */
 } vlVolumeRows;
 
@@ -130,7 +130,8 @@ typedef struct vlVolumeScratch {
   /* by shadow ray: densities of the light sample and of the BSDF or phase function */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
-  VL_ROW uint32_t kept[VL_ROW_SIZE]; /* indices of the scattered paths that go on */
+  VL_ROW float shadow_passed[3][VL_ROW_SIZE]; /* vlTraceScratch.passed at the shadow ray's origin */
+  VL_ROW uint32_t kept[VL_ROW_SIZE];          /* indices of the scattered paths that go on */
 } vlVolumeScratch;
 
 /* Working memory for paths through subsurface materials (subsurface.hot.c). It is used only if the world has such
@@ -163,6 +164,10 @@ struct vlTraceScratch {
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* stack of rows for nested textures */
   VL_ROW float time[VL_ROW_SIZE]; /* the world's time of the rays of `a`; only set if something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];
+  /* By lane of the batch, only if vlWorld.by_channel: transmittance of the path so far through all that attenuates by
+   * channel, for each channel of linear sRGB. vl_channels_at gives the transmittance at a wavelength from these three;
+   * beta includes it. */
+  VL_ROW float passed[3][VL_ROW_SIZE];
   VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, only with regularisation: 1 if a non-specular lobe has
                                             scattered the path */
   VL_ROW uint32_t slot[VL_ROW_SIZE]; /* while sorting: where each material's lanes start; later: the lanes that go on */
@@ -212,6 +217,24 @@ void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint3
 void vl_stage_regularize(vlTracing *t, uint32_t n);
 static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize) t->s->scattered[lane] = 1;
+}
+/* Sets vlTraceScratch.passed for paths that begin in lanes 0 to n - 1. */
+static inline void vl_passed_start(const vlTracing *t, uint32_t n) {
+  for (int c = 0; t->world->by_channel && c < 3; c++)
+    for (uint32_t i = 0; i < n; i++) t->s->passed[c][i] = 1.0f;
+}
+/* vlTraceScratch.passed of surface lane i's path if it goes on in direction wi; wi_z is wi's cosine to the normal. Only
+ * for worlds with vlWorld.by_channel. */
+static inline void vl_passed_on(const vlTraceScratch *s, uint32_t i, float wi_z, float passed[3]) {
+  bool crosses = (s->shade.wo[2][i] < 0.0f) != (wi_z < 0.0f);
+  for (int c = 0; c < 3; c++) passed[c] = s->passed[c][s->b.lane[i]] * (crosses ? s->shade.tint_rgb[c][i] : 1.0f);
+}
+/* The path of surface lane i goes on in direction shade.wi. */
+static inline void vl_passed_go_on(const vlTracing *t, uint32_t i) {
+  float passed[3];
+  if (!t->world->by_channel) return;
+  vl_passed_on(t->s, i, t->s->shade.wi[2][i], passed);
+  for (int c = 0; c < 3; c++) t->s->passed[c][t->s->b.lane[i]] = passed[c];
 }
 /* Evaluates the BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
 void vl_stage_light_bsdf(vlTracing *t, uint32_t n);

@@ -94,6 +94,7 @@ typedef struct vlWorldPrincipled {
   bool thin;                /* thin-walled, or nothing is transmitted */
   float cauchy_a, cauchy_b; /* dispersive: index of refraction a + b / lambda^2 */
   bool has_coat, has_sheen, has_film, has_anisotropy, has_transmission;
+  bool by_channel; /* spectral mode: transmitted light has the base colour per channel of linear sRGB */
 } vlWorldPrincipled;
 
 /* Inputs of layered materials that are evaluated by random walks: a coat over metal or over a diffuse base. Numbers of
@@ -240,10 +241,11 @@ struct vlWorld {
   int32_t *texture_memo;         /* used during the build only: maps scene texture and role to the node */
   uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
   bool has_interfaces, has_subsurface; /* a material is an interface; a shape has subsurface scattering */
-  bool absorbs_by_channel;             /* at least one medium has vlWorldMedium.by_channel */
-  uint32_t camera_medium;              /* index into media, VL_NONE: vacuum */
-  bool moves;                          /* something moves; if false, rays need no time */
-  double time_open, time_close;        /* the world's times 0 and 1 in seconds; nothing moves before or after */
+  bool by_channel; /* a medium (vlWorldMedium.by_channel) or a material (vlWorldPrincipled.by_channel) attenuates light
+                      per channel of linear sRGB */
+  uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */
+  bool moves;                   /* something moves; if false, rays need no time */
+  double time_open, time_close; /* the world's times 0 and 1 in seconds; nothing moves before or after */
   vlWorldOrigin *shape_origins, *material_origins, *instance_origins; /* one per shape, material and instance */
   vlSpectral white;                                                   /* radiance that is displayed as white */
   vlLightTree tree;

@@ -75,6 +75,7 @@ enum {
 /* Parameters of a batch, one array of VL_PAD(n) lanes each. A kind reads only the arrays whose comment names it. */
 typedef struct vlBsdfParams {
   float *reflectance[4];    /* diffuse, coated diffuse: albedo of the base, in [0, 1] */
+  const float *tint[4];     /* principled: factor on the light that it transmits; null: the reflectance */
   float *eta[4], *k[4];     /* conductor */
   float *alpha_x, *alpha_y; /* conductor, dielectric, coat */
   float *eta_s;             /* dielectric, thin, coat */

@@ -11,7 +11,7 @@ enum { VL_PRINCIPLED_CHUNK = 64 };
 /* Parameters of a chunk. Each pointer points to the chunk's first lane. */
 typedef struct vlPrincipledSlice {
   const float *row[VL_BSDF_ROWS];
-  const float *base[4], *alpha_x, *alpha_y, *eta;
+  const float *base[4], *tint[4], *alpha_x, *alpha_y, *eta;
   const float *lambda[4];        /* null in RGB mode */
   uint32_t count;                /* a multiple of the vector width */
   bool film, sheen, coat, solid; /* true if some lane has a thin film, sheen, coat, or transmissive solid */

@@ -14,6 +14,7 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
   for (int k = 0; k < VL_BSDF_ROWS; k++) s.row[k] = p->own[k] + first;
   for (int c = 0; c < 4; c++) {
     s.base[c] = p->reflectance[c] + first;
+    s.tint[c] = p->tint[c] ? p->tint[c] + first : s.base[c];
     s.lambda[c] = p->lambda[c] ? p->lambda[c] + first : NULL;
   }
   s.alpha_x = p->alpha_x + first, s.alpha_y = p->alpha_y + first, s.eta = p->eta_s + first;
@@ -159,12 +160,14 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
   const float *metallic = s->row[VL_P_METALLIC], *f90s = s->row[VL_P_F90], *clears = s->row[VL_P_TRANSMISSION];
   const float *thins = s->row[VL_P_THIN], *shares_row = s->row[VL_P_DIFFUSE_TRANSMISSION], *films = s->row[VL_P_FILM];
   uint32_t count = VL_WHOLE(s->count);
-  const float *bases = s->base[c], *normals = s->row[VL_P_F0 + c], *transmissions = s->row[VL_P_THROUGH + c];
+  const float *bases = s->base[c], *tints = s->tint[c], *normals = s->row[VL_P_F0 + c],
+              *transmissions = s->row[VL_P_THROUGH + c];
   const float *sheens = s->row[VL_P_SHEEN + c];
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     float metal = metallic[i], dielectric = 1.0f - metal, clear = clears[i], shares = shares_row[i];
-    float f90 = f90s[i], film = films[i], base = bases[i], f0 = normals[i], again = p->again[i], facet = p->facet[i];
+    float f90 = f90s[i], film = films[i], base = bases[i], tint = tints[i], f0 = normals[i], again = p->again[i],
+          facet = p->facet[i];
     float m0 = f0 + metal * (base - f0), m90 = f90 + metal * (1.0f - f90);
     float f = m0 + (m90 - m0) * p->opaque[i];
     f = f + film * (l->film[c][i] - f);
@@ -181,7 +184,7 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     float body = dielectric * clear,
           body_pass = 1.0f - sheet_mean; /* multiple scattering between microfacets, to both sides */
     float body_up = body * l->again_up[i] * (1.0f - l->again_pass[i] * body_pass);
-    float body_down = body * l->again_down[i] * body_pass * base;
+    float body_down = body * l->again_down[i] * body_pass * tint;
     float bare = 1.0f - l->inside[i];
     float fuzz = sheens[i] * l->sheen_value[i] * bare * over_matt(l->coat_o[i], l->coat_i[i], l->coat_mean[i]);
     float upper = p->hide_mirror[i] * f * facet +
@@ -189,8 +192,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
                                      sheet_again * sheet_mean + body_up) +
                   p->coat[i] + fuzz;
     float lower =
-        p->hide_through[i] * (dielectric * clear * base * (1.0f - fd) * facet + matt * shares * transmissions[i] +
-                              sheet_again * (1.0f - sheet_mean) * base + body_down);
+        p->hide_through[i] * (dielectric * clear * tint * (1.0f - fd) * facet + matt * shares * transmissions[i] +
+                              sheet_again * (1.0f - sheet_mean) * tint + body_down);
     result[i] = upper * p->upper[i] + lower * p->lower[i];
   }
 }

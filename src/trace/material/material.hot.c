@@ -182,6 +182,33 @@ void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
 }
 
+/* The factor on the light that crosses the surface. White light has the colour of passed_i before and of passed_i
+ * tint_i after it, for all that the path has crossed so far. At a wavelength the factor is the ratio of the two, so
+ * that the product over a path is the transmittance of the whole path. */
+static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
+  vlShade *shade = &r->s->shade;
+  if (!m->principled || !m->principled->by_channel) {
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = r->first; i < r->last; i++)
+        shade->tint_rgb[c][i] = 1.0f, shade->tint[c][i] = shade->reflectance[c][i];
+    return;
+  }
+  r->rgb = true;
+  vl_rows_albedo(r, m->reflectance, 1.0f, shade->tint_rgb);
+  r->rgb = false;
+  for (uint32_t i = r->first; i < r->last; i++) {
+    float before[3], after[3];
+    for (int k = 0; k < 3; k++) {
+      before[k] = r->s->passed[k][r->paths->lane[i]];
+      after[k] = before[k] * shade->tint_rgb[k][i];
+    }
+    for (int c = 0; c < 4; c++) {
+      float whole = vl_channels_at(before, r->paths->lambda[c][i]);
+      shade->tint[c][i] = whole > 0.0f ? vl_channels_at(after, r->paths->lambda[c][i]) / whole : 0.0f;
+    }
+  }
+}
+
 #define PARAMETERS(NAME, name) [VL_BSDF_##NAME] = vl_parameters_##name,
 static vlParametersFn *const parameters[] = {VL_BSDF_KINDS(PARAMETERS)};
 
@@ -199,12 +226,13 @@ static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
 
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  vlTextureRun r = {world, s, &s->b, &s->surface, first, last, 0, NULL, NULL, NULL, NULL, NULL};
+  vlTextureRun r = {.world = world, .s = s, .paths = &s->b, .surface = &s->surface, .first = first, .last = last};
   for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.no_cosine[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
   parameters[m->bsdf](&r, m);
+  if (world->by_channel) tints(&r, m);
   if (m->dispersive) follow_hero(&s->b, first, last);
 }
 

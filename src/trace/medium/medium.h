@@ -15,7 +15,7 @@ typedef struct vlFlight {
   int hero, channels;  /* channels: 4 wavelengths, or 3 in RGB mode */
   float first;         /* first random number; -1: it is a hash like the others */
   uint32_t key, count; /* random numbers are hashes of key and count */
-  float passed[3];     /* vlVolumeRows.passed */
+  float passed[3];     /* vlTraceScratch.passed */
   float odds;          /* probability that a flight passes, over that of light sampling; the same for all channels */
 } vlFlight;
 

@@ -45,13 +45,24 @@ static inline vlFlight vl_volume_flight(const vlTracing *t, const vlPaths *p, co
     f.u[c] = v->u[c][i];
     f.l[c] = v->l[c][i];
   }
-  for (int k = 0; k < 3; k++) f.passed[k] = v->passed[k][i];
+  for (int k = 0; k < 3; k++) f.passed[k] = t->s->passed[k][p->lane[i]];
   return f;
+}
+
+/* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or surface lane i in a
+ * direction with cosine wi_z to the normal. */
+static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t k, uint32_t lane) {
+  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->volume.shadow_passed[c][k] = t->s->passed[c][lane];
+}
+static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i, float wi_z) {
+  float passed[3];
+  if (!t->world->by_channel) return;
+  vl_passed_on(t->s, i, wi_z, passed);
+  for (int c = 0; c < 3; c++) t->s->volume.shadow_passed[c][k] = passed[c];
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
   for (int c = 0; c < 4; c++) b->u[c][k] = a->u[c][i], b->l[c][k] = a->l[c][i];
-  for (int c = 0; c < 3; c++) b->passed[c][k] = a->passed[c][i];
   b->medium[k] = a->medium[i];
 }
 

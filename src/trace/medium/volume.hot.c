@@ -19,14 +19,11 @@ static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight
     v->u[c][i] = f->u[c];
     v->l[c][i] = f->l[c];
   }
-  for (int k = 0; k < 3; k++) v->passed[k][i] = f->passed[k];
 }
 
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
-  for (int c = 0; c < 3; c++)
-    for (uint32_t k = 0; k < n; k++) b->passed[c][k] = a->passed[c][order[k]];
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
@@ -77,6 +74,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
     vl_closest_beyond(t, p, h, i, t_min, t_max_row);
   }
   store_flight(p, &v->a, i, &f);
+  for (int c = 0; world->by_channel && c < 3; c++) t->s->passed[c][p->lane[i]] = f.passed[c];
   v->a.medium[i] = medium;
   v->event[i] = (uint8_t)event;
   v->odds[p->lane[i]] = vl_some_odds(f.odds);
@@ -252,8 +250,10 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    uint32_t k = count;
     count = vl_volume_push_shadow(t, p, &s->volume.b, i, o, value, sh->pdf[i],
                                   vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
+    vl_shadow_from_surface(t, k, i, sh->wi[2][i]);
   }
   vl_volume_shadows(t, p, &s->volume.b, count, depth);
 }
@@ -314,7 +314,6 @@ void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
   vlVolumeRows *rows = &t->s->volume.a;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
-    for (int c = 0; c < 3; c++) rows->passed[c][i] = 1.0f;
     rows->medium[i] = medium ? medium[p->lane[i]] : t->world->camera_medium;
     if (vl_volume_rgb(t)) p->beta[3][i] = 0.0f;
   }

@@ -141,6 +141,10 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
 static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float *const out[4]) {
   for (int c = 0; c < 4; c++) {
     const float *lambda = r->paths->lambda[c];
+    if (r->rgb) {
+      fill(r, c < 3 ? s->scale * s->rgb[c] : 0.0f, out[c]);
+      continue;
+    }
     switch (s->kind) {
       case VL_SPECTRAL_SIGMOID:
         VL_SIMD
@@ -164,8 +168,8 @@ typedef struct Upsampling {
 } Upsampling;
 
 static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node) {
-  return (Upsampling){r->world->def.color == VL_COLOR_RGB, node->role == VL_ROLE_ALBEDO, vl_rgb_table(node->space),
-                      node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
+  return (Upsampling){r->rgb || r->world->def.color == VL_COLOR_RGB, node->role == VL_ROLE_ALBEDO,
+                      vl_rgb_table(node->space), node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
 }
 
 static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, uint32_t i, float *const out[4]) {

@@ -16,6 +16,7 @@ typedef struct vlTextureRun {
   uint32_t top; /* first free row */
   const float *shift_u, *shift_v, *shift_x, *shift_y,
       *shift_z; /* offsets added to uv and position, for bump maps; or null */
+  bool rgb;     /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with vl_node_has_rgb_colors */
 } vlTextureRun;
 
 /* Evaluates a texture. Results go to lanes [first, last) of out, whose rows have the size of the whole batch. */

@@ -22,6 +22,7 @@ static vlBsdfParams params_of(vlTracing *t, uint32_t first) {
   vlBsdfParams p;
   for (int c = 0; c < 4; c++) {
     p.reflectance[c] = s->reflectance[c] + first;
+    p.tint[c] = t->world->by_channel ? s->tint[c] + first : NULL;
     p.eta[c] = s->eta[c] + first;
     p.k[c] = s->k[c] + first;
     p.lambda[c] = t->world->def.color == VL_COLOR_RGB ? NULL : t->s->b.lambda[c] + first;
@@ -188,6 +189,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     if (alive[i] && !(sh->flags[i] & VL_SAMPLED_SPECULAR)) vl_note_scattered(t, p->lane[i]);
     if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
   }
+  for (uint32_t k = 0; t->world->by_channel && k < count; k++) vl_passed_go_on(t, s->order[k]);
   vl_permute_paths(p, &s->a, s->order, count);
   return count;
 }

@@ -27,6 +27,7 @@ void vl_trace_random_walk(vlTracing *t) {
     vl_stage_light_bsdf(t, n);
     for (uint32_t i = 0; i < n; i++) {
       float most = 0.0f;
+      vl_passed_go_on(t, i);
       for (int c = 0; c < 4; c++) {
         p->beta[c][i] *= sh->value[c][i] * (4.0f * VL_PI);
         most = vl_max(most, p->beta[c][i]);

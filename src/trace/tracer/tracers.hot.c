@@ -31,6 +31,7 @@ static void start_paths(vlTracing *t) {
     p->lane[i] = i;
     t->s->scattered[i] = 0;
   }
+  vl_passed_start(t, padded);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < padded; i++) {
       p->beta[c][i] = 1.0f;

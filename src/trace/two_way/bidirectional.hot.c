@@ -90,7 +90,9 @@ static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) 
     uint32_t medium =
         vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
                          vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume.b.medium[i]);
-    return vl_volume_push_shadow(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
+    uint32_t next = vl_volume_push_shadow(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
+    vl_shadow_from_surface(t, count, i, sh->wi[2][i]);
+    return next;
   }
   vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
   q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;

@@ -144,7 +144,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->bounce = depth + 1;
     x->id = b->first + lane;
     x->alone = vl_hero_only(p, i);
-    x->passed = t->world->absorbs_by_channel ? vl_pack_passed(&t->s->volume.b, i) : 0;
+    x->passed = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     x->medium = 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
@@ -208,6 +208,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   rest.eyes = batch->eyes;
   for (int c = 0; c < 4; c++) rest.radiance[c] = r->rows[c];
   vlTracing t = {world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), true};
+  vl_passed_start(&t, batch->n);
   uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
   bool media = vl_has_media(&t);
   if (media) vl_volume_start(&t, n, scratch->volume.shadow_medium);

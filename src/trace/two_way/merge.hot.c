@@ -62,14 +62,17 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   return x->alone && vl_hero_only(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
-/* The photon's power for camera path i. With absorption by RGB channel, the transmittance of the whole path is not the
- * product of those of its two parts, so it is computed again. */
-static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float power[4]) {
+/* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of the whole path is not the
+ * product of those of its two parts, so it is computed again. wi_z: cosine of the photon's direction to the normal; not
+ * read in media. */
+static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, float wi_z, float power[4]) {
   for (int c = 0; c < 4; c++) power[c] = x->power[c];
-  if (!t->world->absorbs_by_channel) return;
-  const vlVolumeRows *v = x->medium ? &t->s->volume.c : &t->s->volume.b;
-  const vlPaths *p = x->medium ? &t->s->volume.scattered : &t->s->b;
-  float light[3], eye[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]}, both[3];
+  if (!t->world->by_channel) return;
+  const vlTraceScratch *s = t->s;
+  const vlPaths *p = x->medium ? &s->volume.scattered : &s->b;
+  uint32_t lane = p->lane[i];
+  float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]}, both[3];
+  if (!x->medium) vl_passed_on(s, i, wi_z, eye);
   vl_unpack_passed(x->passed, light);
   for (int k = 0; k < 3; k++) both[k] = light[k] * eye[k];
   for (int c = 0; c < 4; c++) {
@@ -86,7 +89,7 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
   float weight = pair_weight(t, i, x, forth, back) * forth;
   float power[4];
-  joined_power(t, i, x, power);
+  joined_power(t, i, x, zi, power);
   for (int c = 0; c < 4; c++) sum[c] += sh->reflectance[c][i] * power[c] * weight;
 }
 
@@ -119,7 +122,7 @@ static void add_listed(vlTracing *t, uint32_t n) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
       float weight = pair_weight(t, i, x, forth[i], r->rev[i]), power[4];
-      joined_power(t, i, x, power);
+      joined_power(t, i, x, wi[2][i], power);
       for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * value[c][i] * power[c] * weight;
     }
   }
@@ -177,7 +180,7 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
       const vlPhoton *x = &map->photons[j];
       float phase = vl_phase(g, vl_dot(d, vl_vec3(x->w[0], x->w[1], x->w[2])));
       float weight = pair_weight(t, i, x, phase, phase) * phase, power[4];
-      joined_power(t, i, x, power);
+      joined_power(t, i, x, 0.0f, power);
       for (int c = 0; c < 4; c++) sum[c] += power[c] * weight;
     }
     for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];

@@ -68,7 +68,7 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
 }
 
 /* Adds shadow ray `count` of surface lane i, to the point `target` on the lens. */
-static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float end) {
+static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float end, float wi_z) {
   vlTraceScratch *s = t->s;
   const vlSurface *f = &s->surface;
   vlShadowRays *q = &s->shadow;
@@ -83,6 +83,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
     d = vl_normalize(d);
     v->shadow_medium[count] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, d, v->b.medium[i]);
     v->from[count] = i;
+    vl_shadow_from_surface(t, count, i, wi_z);
     for (int c = 0; c < 4; c++) v->density[c][count] = v->b.u[c][i];
   }
   q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
@@ -122,7 +123,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   for (uint32_t i = 0; i < n; i++) {
     float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
     if (!(per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
-    push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i]);
+    push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i], wi[2][i]);
     r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
     r->own[count] = way->paths / per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
     uint32_t lane = p->lane[i];

@@ -144,11 +144,11 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
 bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
                         uint32_t depth, float passes[4], float *scale);
 
-/* Packs vlVolumeRows.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
+/* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
  * counts as 1, and 2 bits give its index. The other two are stored as -512 ln(ratio) in 15 bits each, which is exact
  * to 0.1 % down to e^-64. */
-static inline uint32_t vl_pack_passed(const vlVolumeRows *v, uint32_t i) {
-  const float p[3] = {v->passed[0][i], v->passed[1][i], v->passed[2][i]};
+static inline uint32_t vl_pack_passed(const vlTraceScratch *s, uint32_t lane) {
+  const float p[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
   uint32_t largest = p[0] >= p[1] ? (p[0] >= p[2] ? 0 : 2) : p[1] >= p[2] ? 1 : 2, packed = largest;
   for (uint32_t k = 1; k < 3; k++) {
     float ratio = p[(largest + k) % 3] / vl_max(p[largest], VL_MIN_NORMAL);

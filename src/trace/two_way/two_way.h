@@ -44,7 +44,7 @@ typedef struct vlPhoton {
   uint32_t bounce : 31; /* number of vertices of the light path so far, without the one on the light; from 1 */
   uint32_t alone : 1;   /* only the hero wavelength is left, and carries the weight of all four */
   uint32_t id;          /* unique in a pass, and independent of the order of work */
-  uint32_t passed;      /* vlVolumeRows.passed, packed (stages.h); only with vlWorld.absorbs_by_channel */
+  uint32_t passed;      /* vlTraceScratch.passed, packed (stages.h); only with vlWorld.by_channel */
   uint32_t medium;      /* 1 + the medium of the vertex; power is then divided by sigma_s. 0: on a surface */
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");

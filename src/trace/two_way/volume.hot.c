@@ -137,7 +137,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     x->bounce = depth + 1;
     x->id = b->first + lane;
     x->alone = vl_hero_only(p, i);
-    x->passed = t->world->absorbs_by_channel ? vl_pack_passed(&v->c, i) : 0;
+    x->passed = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     x->medium = 1 + v->c.medium[i];
     count += sum > 0.0f && sum < VL_INFINITY;
   }
@@ -173,6 +173,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     }
     v->shadow_medium[count] = v->c.medium[i];
     v->from[count] = i;
+    vl_shadow_from_medium(t, count, lane);
     r->x[count] = view.x, r->y[count] = view.y;
     count++;
   }

@@ -35,27 +35,13 @@ static bool is_zero(vlFloatInput input) {
 /* An index this near to 1 reflects less than 3e-7 and bends nothing visibly: the surface is a sheet. */
 #define NO_REFRACTION 1e-3f
 
-/* The base colour c of a solid that only transmits. Light crosses its boundary twice, so that white light leaves it as
- * c * c by the RGB law of importers (MTL's Tf, glTF's base colour). The product of two spectra of colour c does not
- * have the colour c * c. The compiled spectrum is therefore the square root of a spectrum of colour c * c. */
-static vlResult glass_color(const vlMaterialBuild *b, vlError *error) {
-  const vlSpectrum *color = &b->def->reflectance.value;
-  float dense[VL_LAMBDA_COUNT], wavelengths[VL_LAMBDA_COUNT];
-  vlSpectrum twice = *color;
-  for (int c = 0; c < 3; c++) twice.rgb[c] = color->rgb[c] * color->scale * color->rgb[c] * color->scale;
-  twice.scale = 1.0f;
-  vlResult r = vl_spectrum_dense(&twice, VL_ROLE_ALBEDO, dense, error);
-  if (r != VL_OK) return r;
-  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    wavelengths[i] = (float)(VL_LAMBDA_MIN + i);
-    dense[i] = sqrtf(fmaxf(dense[i], 0.0f));
-  }
-  vlSpectrumInput once = vl_spectrum_input((vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
-                                                        .scale = 1.0f,
-                                                        .count = VL_LAMBDA_COUNT,
-                                                        .wavelengths = wavelengths,
-                                                        .values = dense});
-  return vl_world_spectrum_node(b->world, b->scene, once, VL_ROLE_ALBEDO, &b->m->reflectance, error);
+/* Whether white light that crosses n surfaces of base colour c leaves them as c^n per channel: the RGB law of importers
+ * (MTL's Tf, glTF's base colour). A base colour that is a spectrum acts per wavelength, and so does a base that also
+ * transmits diffuse light. */
+static void choose_law(vlWorld *world, const vlPrincipledDef *d, const vlWorldMaterial *m, vlWorldPrincipled *p) {
+  p->by_channel = world->def.color == VL_COLOR_SPECTRAL && !is_zero(d->transmission) && !is_one(d->metallic) &&
+                  !p->has_transmission && vl_node_has_rgb_colors(world, m->reflectance);
+  world->by_channel |= p->by_channel;
 }
 
 vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
@@ -93,9 +79,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
                                     {d->sheen_roughness, &p->sheen_roughness},
                                     {d->iridescence, &p->iridescence},
                                     {d->iridescence_thickness, &p->iridescence_thickness}};
-  bool glass = !d->thin_walled && is_one(d->transmission) && is_zero(d->metallic) && !def->reflectance.texture.index &&
-               def->reflectance.value.kind == VL_SPECTRUM_RGB && world->def.color == VL_COLOR_SPECTRAL;
-  vlResult r = glass ? glass_color(b, error) : vl_material_spectrum(b, &def->reflectance, &m->reflectance);
+  vlResult r = vl_material_spectrum(b, &def->reflectance, &m->reflectance);
   if (r == VL_OK) r = vl_material_floats(b, floats, sizeof floats / sizeof *floats);
   if (r == VL_OK) r = vl_material_spectrum(b, &d->specular_color, &p->specular_color);
   if (r == VL_OK) r = vl_material_spectrum(b, &d->diffuse_transmission_color, &p->through);
@@ -110,5 +94,6 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||
                   (sheen->kind == VL_SPECTRUM_RGB && !(sheen->rgb[0] + sheen->rgb[1] + sheen->rgb[2] > 0.0f));
   p->has_sheen = d->sheen_color.texture.index || !no_sheen;
+  if (r == VL_OK) choose_law(world, d, m, p);
   return r;
 }

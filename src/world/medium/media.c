@@ -46,7 +46,7 @@ static vlResult compile_absorption(vlWorld *world, const vlMediumDef *def, vlWor
   vlSpectrum none = vl_spectrum_constant(0.0f);
   vlResult r = vl_spectrum_to_rgb(&def->sigma_a, VL_ROLE_UNBOUNDED, VL_SPACE_SRGB, m->sigma_rgb, error);
   for (int c = 0; c < 3; c++) m->sigma_rgb[c] *= def->scale;
-  m->by_channel = world->absorbs_by_channel = true;
+  m->by_channel = world->by_channel = true;
   return r == VL_OK ? compile_sigma(world, def, &none, &m->sigma_a, error) : r;
 }
 

@@ -19,7 +19,7 @@ typedef struct vlSpectral {
   float scale; /* factor for spectra of all kinds */
   vlSigmoid sigmoid;
   const float *dense; /* VL_LAMBDA_COUNT values, one per wavelength */
-  float rgb[3];
+  float rgb[3];       /* linear sRGB; of the kinds constant, sigmoid and RGB */
 } vlSpectral;
 
 /* Value of the spectrum at one channel. lambda: the channel's wavelength in nm; not read in RGB mode. */
@@ -95,6 +95,8 @@ enum { VL_TEXTURE_NO_MEMORY = -2 };
 /* Compiles a spectrum for its role; errors as for vl_spectrum_dense. */
 vlResult vl_spectral_compile(struct vlWorld *world, const vlSpectrum *spectrum, vlSpectrumRole role, vlSpectral *result,
                              vlError *error);
+/* Whether all colours of a spectrum node are linear sRGB, and at least one of them is not a constant grey. */
+bool vl_node_has_rgb_colors(const struct vlWorld *world, int32_t node);
 /* A point of a triangle, for interpolating vertex attributes. */
 typedef struct vlTextureCorner {
   const struct vlWorldShape *shape;

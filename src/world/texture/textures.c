@@ -29,13 +29,16 @@ vlResult vl_spectral_compile(vlWorld *world, const vlSpectrum *spectrum, vlSpect
   if (role != VL_ROLE_ILLUMINANT && vl_spectrum_is_constant(spectrum, &value)) {
     result->kind = VL_SPECTRAL_CONSTANT;
     result->scale = value;
+    for (int i = 0; i < 3; i++) result->rgb[i] = 1;
     return VL_OK;
   }
   if (spectrum->kind == VL_SPECTRUM_RGB && role == VL_ROLE_ALBEDO) {
     result->kind = VL_SPECTRAL_SIGMOID;
     result->scale = spectrum->scale;
     result->sigmoid = vl_sigmoid_from_rgb(spectrum->space, spectrum->rgb[0], spectrum->rgb[1], spectrum->rgb[2]);
-    return VL_OK;
+    vlSpectrum unscaled = *spectrum;
+    unscaled.scale = 1;
+    return vl_spectrum_to_rgb(&unscaled, role, VL_SPACE_SRGB, result->rgb, error);
   }
   float *dense = vl_world_block(world, VL_LAMBDA_COUNT, sizeof(float));
   if (!dense) return vl_fail_memory(error);
@@ -334,6 +337,31 @@ static vlResult image_spectrum(vlWorld *world, vlTextureNode *node, vlError *err
   node->spectrum.dense = vl_space_illuminant(node->space);
   (void)error;
   return VL_OK;
+}
+
+typedef enum Colors { COLORS_OTHER, COLORS_GREY, COLORS_RGB } Colors;
+
+static Colors colors_of(const vlWorld *world, int32_t index) {
+  const vlTextureNode *node = &world->nodes.items[index];
+  const vlSpectral *s = &node->spectrum;
+  if (gives_rgb[node->kind])
+    return node->space == VL_SPACE_SRGB && node->role == VL_ROLE_ALBEDO ? COLORS_RGB : COLORS_OTHER;
+  if (node->kind == VL_NODE_SPECTRUM && s->kind != VL_SPECTRAL_CONSTANT && s->kind != VL_SPECTRAL_SIGMOID)
+    return COLORS_OTHER;
+  if (node->kind == VL_NODE_SPECTRUM)
+    return s->rgb[0] == s->rgb[1] && s->rgb[0] == s->rgb[2] ? COLORS_GREY : COLORS_RGB;
+  const int32_t input[4] = {node->a, node->b, node->c, node->d};
+  Colors all = COLORS_GREY;
+  for (int i = 0; i < 4; i++) {
+    Colors one = input[i] < 0 ? COLORS_GREY : colors_of(world, input[i]);
+    if (one == COLORS_OTHER) return COLORS_OTHER;
+    all = one > all ? one : all;
+  }
+  return all;
+}
+
+bool vl_node_has_rgb_colors(const vlWorld *world, int32_t node) {
+  return colors_of(world, node) == COLORS_RGB;
 }
 
 /* Parameters of image and vertex-colour textures other than the image. */

@@ -8,6 +8,7 @@
 #include "base/cookie.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "camera/aperture.h"
 #include "camera/parts.h"
 #include "camera_files/files.h"
@@ -186,7 +187,8 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
   if (!context || !text || !receipt)
     return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: context, text or receipt is null");
   json_error_t wrong;
-  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &wrong);
+  json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &wrong);
+  if (!tree && vl_json_lacks_memory(&wrong)) return vl_fail_memory(error);
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
   const json_t *format = json_object_get(tree, "velo_receipt");
   bool later = json_is_integer(format) && json_integer_value(format) > VL_RECEIPT_FORMAT;

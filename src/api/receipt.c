@@ -82,9 +82,9 @@ static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
   /* all numbers real, so that -0 stays what it is; then those that are counts */
-  json_t *tree = text.failed ? NULL
-                             : json_loadb(text.text.items, text.text.count,
-                                          JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, NULL);
+  json_error_t place;
+  const size_t flags = JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES;
+  json_t *tree = text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &place);
   VL_ARRAY_FREE(context, &text.text);
   static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
   bool good = tree != NULL;

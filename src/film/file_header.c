@@ -90,8 +90,10 @@ static json_t *film_tree(const vlFilmShape *shape) {
 
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt) {
   json_t *tree = json_object(), *film = film_tree(shape);
-  bool good = tree && put(tree, "film", film);
-  if (good && receipt) good = put(tree, "receipt", json_loads(receipt, JSON_REJECT_DUPLICATES, NULL));
+  json_error_t place;
+  bool good = put(tree, "film", film);
+  if (good && receipt)
+    good = put(tree, "receipt", vl_json_parse(receipt, strlen(receipt), JSON_REJECT_DUPLICATES, &place));
   char *text = good ? dump(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
   json_decref(tree);
   return text;

@@ -174,6 +174,7 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path, place.line, place.text);
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
   const json_t *held = json_object_get(tree, "receipt");
+  if (result == VL_OK && held && !json_is_object(held)) result = wrong(path, "receipt", error);
   if (result == VL_OK && held) {
     *receipt = dump(context, held, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
     if (!*receipt) result = vl_fail_memory(error);

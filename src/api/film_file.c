@@ -1,6 +1,7 @@
 /* api/film_file.c: the public functions for film files: header, receipt, blocks. */
 #include <string.h>
 
+#include "api/receipt.h"
 #include "base/error.h"
 #include "film/file.h"
 #include "velo/film.h"
@@ -13,6 +14,14 @@ struct vlFilmFile {
   uint32_t capacity;
 };
 
+vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error) {
+  vlError own = {0};
+  vlResult result = vl_receipt_parse(reader->context, reader->receipt, strlen(reader->receipt), receipt, &own);
+  if (result == VL_OK) return VL_OK;
+  if (result == VL_ERROR_MEMORY) return vl_fail_memory(error);
+  return vl_fail(error, result, "%s: film file: %s", reader->path, own.message);
+}
+
 vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **file, vlError *error) {
   vl_error_clear(error);
   if (file) *file = NULL;
@@ -24,8 +33,7 @@ vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **fi
     vl_free(context, made);
     return result;
   }
-  const char *text = made->reader.receipt;
-  if (text) result = vl_receipt_parse(context, text, strlen(text), &made->receipt, error);
+  if (made->reader.receipt) result = vl_film_receipt(&made->reader, &made->receipt, error);
   if (result != VL_OK) {
     vl_film_file_close(made);
     return result;

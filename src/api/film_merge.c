@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "api/receipt.h"
 #include "base/error.h"
 #include "film/file.h"
 #include "velo/film.h"
@@ -63,8 +64,8 @@ static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
     return vl_fail(m->error, VL_ERROR_SCENE, "%s and %s are of different renders: one has no receipt", r->path,
                    first->path);
   if (r->receipt) {
-    result = vl_receipt_parse(m->context, first->receipt, strlen(first->receipt), &then, m->error);
-    if (result == VL_OK) result = vl_receipt_parse(m->context, r->receipt, strlen(r->receipt), &now, m->error);
+    result = vl_film_receipt(first, &then, m->error);
+    if (result == VL_OK) result = vl_film_receipt(r, &now, m->error);
     Difference d = {m->error, r->path, first->path};
     uint32_t parts = VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_CAMERA | VL_RECEIPT_SETTINGS;
     if (result == VL_OK && vl_receipt_compare(then, now, parts, name_difference, &d)) result = VL_ERROR_SCENE;

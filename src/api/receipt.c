@@ -8,6 +8,7 @@
 #include "base/cookie.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "camera/aperture.h"
 #include "camera/parts.h"
 #include "camera_files/files.h"
@@ -82,9 +83,9 @@ static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
   /* reads all numbers as reals, which keeps -0; the counts become integers below */
-  json_t *tree = text.failed ? NULL
-                             : json_loadb(text.text.items, text.text.count,
-                                          JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, NULL);
+  json_error_t place;
+  const size_t flags = JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES;
+  json_t *tree = text.failed ? NULL : vl_json_parse(text.text.items, text.text.count, flags, &place);
   VL_ARRAY_FREE(context, &text.text);
   static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
   bool good = tree != NULL;
@@ -187,7 +188,8 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
   if (!context || !text || !receipt)
     return vl_fail(error, VL_ERROR_ARGUMENT, "receipt: context, text or receipt is null");
   json_error_t wrong;
-  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &wrong);
+  json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &wrong);
+  if (!tree && vl_json_lacks_memory(&wrong)) return vl_fail_memory(error);
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "receipt: line %d: %s", wrong.line, wrong.text);
   const json_t *format = json_object_get(tree, "velo_receipt");
   bool later = json_is_integer(format) && json_integer_value(format) > VL_RECEIPT_FORMAT;

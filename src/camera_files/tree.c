@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "base/text.h"
 #include "camera_files/files.h"
 
@@ -55,8 +56,8 @@ static bool place_json(const vlCameraFile *file, const char *text, size_t size) 
 
 static vlResult parse_json(const vlCameraFile *file, const char *text, size_t size, json_t **tree) {
   json_error_t place;
-  *tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
-  if (!*tree && json_error_code(&place) == json_error_out_of_memory) return vl_fail_memory(file->error);
+  *tree = vl_json_parse(text, size, JSON_DECODE_INT_AS_REAL | JSON_REJECT_DUPLICATES, &place);
+  if (!*tree && vl_json_lacks_memory(&place)) return vl_fail_memory(file->error);
   if (!*tree)
     return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, place.line > 0 ? (uint32_t)place.line : 0,
                       place.column > 0 ? (uint32_t)place.column : 0, "not JSON: %.*s",

@@ -1,10 +1,10 @@
 /* film/file_header.c: the header of a film file as JSON: the film's def and the receipt of its render. */
-#include <jansson.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "film/file.h"
 #include "velo/schema.h"
 
@@ -33,6 +33,15 @@ static const Field fields[] = {FIELD("width", COUNT, width),
 enum { FIELDS = sizeof fields / sizeof *fields };
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 enum { SPACES = sizeof spaces / sizeof *spaces };
+
+/* The text of a tree, and an end. Null: out of memory. */
+static char *dump(vlContext *context, const json_t *tree, size_t flags, const char *end) {
+  size_t size = json_dumpb(tree, NULL, 0, flags);
+  char *text = size ? vl_alloc(context, size + strlen(end) + 1) : NULL;
+  if (!text || json_dumpb(tree, text, size, flags) != size) return vl_free(context, text), NULL;
+  memcpy(text + size, end, strlen(end) + 1);
+  return text;
+}
 
 static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
@@ -74,15 +83,11 @@ static json_t *film_tree(const vlFilmShape *shape) {
 
 char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt) {
   json_t *tree = json_object(), *film = film_tree(shape);
-  bool good = tree && put(tree, "film", film);
-  if (good && receipt) good = put(tree, "receipt", json_loads(receipt, JSON_REJECT_DUPLICATES, NULL));
-  const size_t flags = JSON_INDENT(1) | JSON_PRESERVE_ORDER;
-  size_t size = good ? json_dumpb(tree, NULL, 0, flags) : 0;
-  char *text = size ? vl_alloc(context, size + 2) : NULL;
-  if (text) {
-    json_dumpb(tree, text, size, flags);
-    text[size] = '\n', text[size + 1] = 0;
-  }
+  json_error_t place;
+  bool good = put(tree, "film", film);
+  if (good && receipt)
+    good = put(tree, "receipt", vl_json_parse(receipt, strlen(receipt), JSON_REJECT_DUPLICATES, &place));
+  char *text = good ? dump(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
   json_decref(tree);
   return text;
 }
@@ -157,18 +162,15 @@ vlResult vl_film_header_read(vlContext *context, const char *path, const char *t
                              char **receipt, vlError *error) {
   *receipt = NULL;
   json_error_t place;
-  json_t *tree = json_loadb(text, size, JSON_REJECT_DUPLICATES, &place);
+  json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &place);
+  if (!tree && vl_json_lacks_memory(&place)) return vl_fail_memory(error);
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path, place.line, place.text);
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
   const json_t *held = json_object_get(tree, "receipt");
+  if (result == VL_OK && held && !json_is_object(held)) result = wrong(path, "receipt", error);
   if (result == VL_OK && held) {
-    const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
-    size_t length = json_dumpb(held, NULL, 0, flags);
-    *receipt = vl_alloc(context, length + 1);
-    if (*receipt)
-      json_dumpb(held, *receipt, length, flags), (*receipt)[length] = 0;
-    else
-      result = vl_fail_memory(error);
+    *receipt = dump(context, held, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
+    if (!*receipt) result = vl_fail_memory(error);
   }
   json_decref(tree);
   if (result != VL_OK) return result;

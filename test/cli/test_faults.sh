@@ -15,6 +15,13 @@ rounds few_files 4 files
 rounds limits 4 limit
 rounds vanished_folders 3 folder
 rounds closed_output 4 stdout
+rounds killed_films 2 kill
+films() { check "film_$1" "$VELO_SOURCE_DIR/tools/check_faults" --velo "$VELO" --rounds "$2" --only "$1" --seed 5 --output film; }
+films signal 3
+films space 3
+films call 6
+films memory 10
+films folder 3
 
 # An error that OpenEXR reports while it writes: its lock is held then. Each allocation of the writer fails once.
 if library=$work/interpose.so && cc -shared -fPIC -O1 -o "$library" "$VELO_SOURCE_DIR/tools/faults/interpose.c" -ldl 2>/dev/null; then

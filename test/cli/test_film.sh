@@ -135,5 +135,19 @@ chmod 444 full.film
 ls -A | grep -q '^[.]velo-' && fail "no temporary files are left" || pass "no temporary files are left"
 head -c 3000 f.film >cut.film
 refused "cut" 3 "damaged" "$VELO" film merge cut.film -o none.film
+# The receipt in the header is of a later version, or no receipt, with right CRCs.
+python3 - <<'SCRIPT'
+import struct, zlib
+data = open("f.film", "rb").read()
+size = struct.unpack_from("<I", data, 12)[0]
+header = data[24:24 + size]
+no_receipt = header[:header.index(b'"receipt"')] + b'"receipt": "SCALAR"}'
+for name, text in (("later.film", header.replace(b'"velo_receipt": 1', b'"velo_receipt": 9')), ("scalar.film", no_receipt)):
+    head = data[:12] + struct.pack("<II", len(text), zlib.crc32(text))
+    open(name, "wb").write(head + struct.pack("<I", zlib.crc32(head)) + text + data[24 + size:])
+SCRIPT
+refused "a receipt of a later version" 3 "later.film: film file: receipt" "$VELO" film info later.film
+refused "no receipt" 3 "scalar.film" "$VELO" film info scalar.film
+refused "a receipt of a later version, merged" 3 "later.film: film file: receipt" "$VELO" film merge f.film later.film -o none.film
 [ ! -e none.film ] && pass "no result of a failed merge" || fail "no result of a failed merge"
 finish

@@ -1,4 +1,5 @@
 /* Film files: a film is read as it was written, parts merge to the whole in any order, and all damage is detected. */
+#include <limits.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,11 +9,13 @@
 #include <unistd.h>
 
 #include <cmocka.h>
+#include <jansson.h>
 
 #include "failing_allocator.h"
 #include "film/file.h"
 #include "math/hash.h"
 #include "velo/film.h"
+#include "velo/receipt.h"
 
 enum { WIDTH = 83, HEIGHT = 70, SPP = 24 };
 static char folder[64];
@@ -336,6 +339,64 @@ static void memory_runs_out(void **state) {
   fail_everywhere(whole_life, NULL, 20);
 }
 
+/* The k-th allocation of jansson fails, or that and all later ones. */
+static long json_calls, json_at, json_blocks;
+static bool json_stays;
+
+static void *json_allocate(size_t size) {
+  long n = ++json_calls;
+  if (n == json_at || (json_stays && n > json_at)) return NULL;
+  json_blocks++;
+  return malloc(size);
+}
+
+static void json_release(void *block) {
+  if (block) json_blocks--;
+  free(block);
+}
+
+static vlResult life_with_receipt(void) {
+  static const char text[] = "{\"velo_receipt\": 1, \"command\": [\"velo\", \"render\", \"a.pbrt\"], \"samples\": 1}";
+  const char *paths[2] = {path_of("json.film"), path_of("json.film")};
+  const uint32_t small[4] = {5, 0, 9, 4};
+  vlFilm *film = make_film(context, PLAIN, small, 0, 1), *read = NULL;
+  vlFilmWriteDef def = vl_default_film_write_def();
+  vlReceipt *receipt = NULL;
+  vlError error;
+  vlResult result = vl_receipt_parse(context, text, strlen(text), &receipt, &error);
+  def.receipt = receipt;
+  if (result == VL_OK) result = vl_film_write(film, &def, paths[0], &error);
+  if (result == VL_OK) result = vl_film_merge(context, paths, 2, path_of("json2.film"), &error);
+  if (result == VL_OK) result = vl_film_read(context, path_of("json2.film"), false, &read, &error);
+  if (result != VL_OK && result != VL_ERROR_MEMORY) print_message("%s\n", error.message);
+  vl_receipt_destroy(receipt);
+  vl_film_destroy(film);
+  vl_film_destroy(read);
+  return result;
+}
+
+static void memory_of_json_runs_out(void **state) {
+  (void)state;
+  long total = LONG_MAX;
+  json_set_alloc_funcs(json_allocate, json_release);
+  for (json_at = 0; json_at <= total; json_at++)
+    for (int stays = 0; stays < 2; stays++) {
+      json_calls = 0, json_stays = stays && json_at;
+      vlResult result = life_with_receipt();
+      if (!json_at && !stays) {
+        total = json_calls;
+        assert_int_equal(rename(path_of("json2.film"), path_of("right.film")), 0);
+      }
+      bool good =
+          json_at && json_stays ? result == VL_ERROR_MEMORY : result == VL_OK || (json_at && result == VL_ERROR_MEMORY);
+      if (json_at && result == VL_OK) good = same_bytes(path_of("json2.film"), path_of("right.film"));
+      if (!good) fail_msg("allocation %ld%s: %s", json_at, stays ? " and later" : "", vl_result_name(result));
+    }
+  json_set_alloc_funcs(malloc, free);
+  assert_int_equal(json_blocks, 0);
+  assert_true(total > 100);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
                                      cmocka_unit_test(parts_become_the_whole),
@@ -344,6 +405,7 @@ int main(void) {
                                      cmocka_unit_test(no_damage_goes_unseen),
                                      cmocka_unit_test(impossible_sums_are_refused),
                                      cmocka_unit_test(files_that_cannot_be_written),
-                                     cmocka_unit_test(memory_runs_out)};
+                                     cmocka_unit_test(memory_runs_out),
+                                     cmocka_unit_test(memory_of_json_runs_out)};
   return cmocka_run_group_tests(tests, begin, end);
 }

@@ -301,3 +301,16 @@ def own_images(folder):
     """Images that velo rendered itself (made in the folder before), with all their headers and channels."""
     for name in names(folder, r"\.exr$"):
         yield name, {name: os.path.join(folder, name)}, name, "bytes", name
+
+
+FILMS = {"plain.film": ["--spp", "2"], "errors.film": ["--spp", "2", "--channels", "error"],
+         "spectrum.film": ["--spp", "2", "--spectrum", "3"], "crop.film": ["--spp", "2", "--crop", "3,1,37,32"],
+         "tiles.film": ["--spp", "2", "--shard", "1/2", "--shard-by", "tiles"]}
+FILM_SCENE = (HEAD + 'Shape "sphere"\n').encode()
+
+
+def films(folder):
+    """Films that velo rendered itself (FILMS, made in the folder before), with a right one that belongs to them, and their scene."""
+    for name in FILMS:
+        files = {name: os.path.join(folder, name), "right.film": os.path.join(folder, "right_" + name), "scene.pbrt": FILM_SCENE}
+        yield name, files, name, "film", name

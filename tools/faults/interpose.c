@@ -2,7 +2,8 @@
  *   VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
  *   VELO_FAULT=CALL:K+:ERRNO      that and all later ones
  *   VELO_FAULT_COUNT=FILE         how many calls of that kind there were, at exit
- * CALL: memory (malloc, calloc, realloc, aligned), write (write, pwrite, ftruncate), sync, rename, link, open, thread.
+ * CALL: memory (malloc, calloc, realloc, aligned), read (read, pread), write (write, pwrite, ftruncate),
+ * sync, rename, link, open, thread.
  * Calls on standard input, output and error do not count. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -81,6 +82,15 @@ int posix_memalign(void **block, size_t alignment, size_t size) {
   return 0;
 }
 
+ssize_t read(int file, void *data, size_t size) {
+  return file > 2 && fails("read") ? -1 : NEXT(read, file, data, size);
+}
+ssize_t pread(int file, void *data, size_t size, off_t at) {
+  return file > 2 && fails("read") ? -1 : NEXT(pread, file, data, size, at);
+}
+ssize_t pread64(int file, void *data, size_t size, off64_t at) {
+  return file > 2 && fails("read") ? -1 : NEXT(pread64, file, data, size, at);
+}
 ssize_t write(int file, const void *data, size_t size) {
   return file > 2 && fails("write") ? -1 : NEXT(write, file, data, size);
 }

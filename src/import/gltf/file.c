@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 
@@ -40,9 +41,9 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   while (size && (text[size - 1] == 0 || text[size - 1] == ' ')) size--; /* padding */
   if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) text += 3, size -= 3;
   json_error_t error;
-  g->root = json_loadb(text, size, JSON_REJECT_DUPLICATES & 0, &error);
+  g->root = vl_json_parse(text, size, 0, &error);
   if (!g->root) {
-    if (json_error_code(&error) == json_error_out_of_memory) return vl_gltf_fail_memory(g);
+    if (vl_json_lacks_memory(&error)) return vl_gltf_fail_memory(g);
     uint32_t line = error.line > 0 ? (uint32_t)error.line : 0, column = error.column > 0 ? (uint32_t)error.column : 1;
     vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, line, column}, "broken JSON: %.*s",
                   (int)vl_json_problem_length(error.text), error.text);

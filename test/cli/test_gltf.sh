@@ -47,7 +47,7 @@ check named_scene "$VELO" scene info named.gltf
 expect_text named_info '1    Sheet  (nodes[0].meshes[0].primitives[0])'
 expect_text named_cameras 'cameras     2: 0 near, 1 far'
 check named_scene_json "$VELO" scene info named.gltf --json
-expect_text named_json '"shape":[{"id":1,"name":"Sheet"'
+expect_text named_json '"shape": [{"id": 1, "name": "Sheet"'
 expect_code 3 no_such_camera "$VELO" render square.gltf --camera back
 expect_text no_such_camera_says 'the scene has no camera "back" (2 are there: near, far)'
 expect_code 3 no_such_variant "$VELO" render square.gltf --variant red

@@ -18,6 +18,8 @@
  * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
 
+/* prove.c: renders both files and prints the ratio of their radiance per material. Returns the exit code. */
+int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, const char *to);
 /* info_names.c */
 void info_print_names(const vlScene *scene);
 void info_print_choices(const vlScene *scene);

@@ -116,7 +116,10 @@ VL_API vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera,
 typedef enum vlIdKind { VL_ID_OBJECT, VL_ID_MATERIAL, VL_ID_INSTANCE } vlIdKind;
 /** What an id stands for. Strings live as long as the world. */
 typedef struct vlIdInfo {
-  const char *name;  /**< the material's name in the scene, or the name of the instance's group; may be null */
+  /** Names of the file (vlLabel): of a shape, a material or an instance. Instances without a name have that of their
+   * group. May be null. */
+  const char *name, *path, *place;
+  bool shared_name;  /**< the name is that of the group: other instances have it, too */
   const char *type;  /**< "triangles", "sphere", "diffuse", "instance", ... */
   vlSource source;   /**< place in the scene's file; its `file` is null if not known */
   uint32_t material; /**< the id.material of an object */

@@ -4,6 +4,7 @@
 #ifndef VELO_CHECK_H
 #define VELO_CHECK_H
 
+#include "velo/channels.h"
 #include "velo/scene.h"
 
 #ifdef __cplusplus
@@ -100,6 +101,21 @@ typedef struct vlLightInfo {
 VL_API uint32_t vl_scene_light_count(const vlScene *scene);
 /** Light `index`, from 0. ARGUMENT: no such light. */
 VL_API vlResult vl_scene_light_info(const vlScene *scene, uint32_t index, vlLightInfo *info);
+/** The number of ids of a kind in the world that is built from the scene. */
+VL_API uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind);
+/** As vl_world_id_info, without building a world. Strings live as long as the scene. ARGUMENT: no such id. */
+VL_API vlResult vl_scene_id_info(const vlScene *scene, vlIdKind kind, uint32_t id, vlIdInfo *info);
+/** What a glTF file lets its reader choose by vlLoadDef. */
+typedef enum vlChoiceKind { VL_CHOICE_SCENE, VL_CHOICE_CAMERA, VL_CHOICE_ANIMATION, VL_CHOICE_VARIANT } vlChoiceKind;
+/** One of the choices. */
+typedef struct vlChoiceInfo {
+  const char *name; /**< its name in the file; may be null; lives as long as the scene */
+  double seconds;   /**< of an animation: the time of its last key; else 0 */
+} vlChoiceInfo;
+/** The number of choices of a kind. */
+VL_API uint32_t vl_scene_choice_count(const vlScene *scene, vlChoiceKind kind);
+/** Choice `index`, from 0: the number that vlLoadDef accepts. ARGUMENT: no such choice. */
+VL_API vlResult vl_scene_choice_info(const vlScene *scene, vlChoiceKind kind, uint32_t index, vlChoiceInfo *info);
 /** Bounding box of all shapes in world space, instances included (moving ones at rest). Without shapes: low > high. */
 VL_API void vl_scene_bounds(const vlScene *scene, double low[3], double high[3]);
 

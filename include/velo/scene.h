@@ -52,6 +52,13 @@ typedef struct vlSource {
   uint32_t line, column; /**< from 1; 0: not known */
 } vlSource;
 
+/** What a file calls a shape, a material or an instance, for ids and messages. Every member may be null. */
+typedef struct vlLabel {
+  const char *name;  /**< short; the importers give no two shapes, materials or instances of a file the same */
+  const char *path;  /**< all names that apply, from the root down, with / between: nodes, mesh, material */
+  const char *place; /**< indices in a file without lines: nodes[3].meshes[1].primitives[0] */
+} vlLabel;
+
 /** Colour spaces of RGB values, all linear: sRGB (Rec. 709), DCI-P3, Rec. 2020, ACES 2065-1. */
 typedef enum vlColorSpace { VL_SPACE_SRGB, VL_SPACE_DCI_P3, VL_SPACE_REC2020, VL_SPACE_ACES2065_1 } vlColorSpace;
 
@@ -293,6 +300,7 @@ typedef struct vlSubsurfaceDef {
 typedef struct vlMaterialDef {
   uint32_t cookie;
   const char *name;    /**< for messages and ids; may be null */
+  const char *place;   /**< index in a file without lines: materials[2]; may be null */
   vlSource source;     /**< where the file describes it */
   vlMaterialKind kind; /**< which fields below are read */
   vlSpectrumInput
@@ -488,6 +496,7 @@ typedef enum vlCurveKind {
 typedef struct vlShapeDef {
   uint32_t cookie;
   vlSource source;  /**< where the file describes it */
+  vlLabel label;    /**< what the file calls it; copied */
   vlShapeKind kind; /**< which fields below are read */
   vlGroupId group;  /**< index 0: the shape is in the world; else it is part of this group, which instances place */
   double group_from_shape[16]; /**< shape space to group (or world) space */

@@ -31,6 +31,28 @@ void vl_export_lose(vlExport *x, const char *format, ...) {
   loss->count = 1;
 }
 
+static void lose_many(vlExport *x, uint32_t count, const char *text) {
+  if (!count) return;
+  vl_export_lose(x, "%s", text);
+  for (uint32_t i = 0; i < x->loss_count; i++)
+    if (strcmp(x->losses[i].text, text) == 0) x->losses[i].count += count - 1;
+}
+
+static uint32_t beyond_first(const vlScene *scene, vlChoiceKind kind) {
+  const uint32_t count = vl_scene_choice_count(scene, kind);
+  return count ? count - 1 : 0;
+}
+
+void vl_export_lose_choices(vlExport *x) {
+  const vlScene *s = x->scene;
+  lose_many(x, vl_scene_choice_count(s, VL_CHOICE_ANIMATION), "animations: one moment of them");
+  lose_many(x, vl_scene_choice_count(s, VL_CHOICE_VARIANT), "variants of materials: the chosen one");
+  lose_many(x, beyond_first(s, VL_CHOICE_SCENE), "scenes: the chosen one");
+  lose_many(x, beyond_first(s, VL_CHOICE_CAMERA), "cameras: the chosen one");
+  lose_many(x, s->skinned, "skins: vertices as they pose them");
+  lose_many(x, s->morphed, "morph targets: vertices as they pose them");
+}
+
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
   if (x->result != VL_OK) return false;
   char text[400];

@@ -96,6 +96,9 @@ void vl_export_st_from_uv(const vlTextureDef *t, double m[6]);
 void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]);
 /* Index of refraction at 589 nm. */
 float vl_export_eta(const vlSpectrum *eta);
+/* The mean of the squares of an input: of an image over all its pixels. Principled materials have alpha = roughness^2.
+ */
+float vl_export_mean_square(vlExport *x, const vlFloatInput *input);
 /* GGX alpha from the roughness of a pbrt material. */
 float vl_export_alpha(vlExport *x, const vlMaterialDef *m, const vlFloatInput *roughness);
 
@@ -107,10 +110,15 @@ typedef struct vlExportMesh {
   uint32_t vertices, faces;
   const float *positions, *normals, *tangents, *uvs[4], *colors, *signs;
   const uint32_t *indices;
-  void *own[4];
+  void *own[12];
 } vlExportMesh;
 bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh);
 void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh);
+/* Makes the uv sets 0 to `last` complete, for formats that require them. A mesh without uvs gets those that velo's
+ * surfaces have by themselves, so that its faces no longer share vertices; other missing sets equal set 0. */
+bool vl_export_make_uvs(vlExport *x, const vlShapeDef *d, uint32_t last, vlExportMesh *mesh);
+/* Counts as losses what the file lets one choose and what moves: formats hold the scene as it was loaded. */
+void vl_export_lose_choices(vlExport *x);
 
 /* ---- glTF, pbrt -------------------------------------------------------------------------------------------------- */
 

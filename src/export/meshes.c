@@ -10,7 +10,7 @@
 enum { ALONG = 64, ACROSS = 32 };
 
 void vl_export_free_mesh(vlExport *x, vlExportMesh *mesh) {
-  for (int i = 0; i < 4; i++) vl_free(x->context, mesh->own[i]);
+  for (size_t i = 0; i < sizeof mesh->own / sizeof *mesh->own; i++) vl_free(x->context, mesh->own[i]);
   *mesh = (vlExportMesh){0};
 }
 
@@ -100,4 +100,44 @@ bool vl_export_mesh(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
   vl_export_lose(x, "spheres, disks, cylinders: as triangles");
   vlShapeDef unit = vl_default_shape_def(VL_SHAPE_SPHERE);
   return facets(x, d->centers ? &unit : d, mesh);
+}
+
+/* Copies one array of `per` floats per vertex to three vertices per face; null stays null. */
+static bool unweld(vlExport *x, const vlExportMesh *m, size_t per, const float **values, void **own) {
+  if (!*values) return true;
+  float *to = vl_alloc_array(x->context, 3 * (size_t)m->faces, per * sizeof *to);
+  if (!to) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < 3 * (size_t)m->faces; i++)
+    memcpy(to + per * i, *values + per * m->indices[i], per * sizeof *to);
+  *own = to;
+  *values = to;
+  return true;
+}
+
+/* The uv of the corners of a face: as pbrt's triangles and patches have them. */
+static bool own_uvs(vlExport *x, const vlShapeDef *d, vlExportMesh *m) {
+  static const float triangle[6] = {0, 0, 1, 0, 1, 1}, patch[2][6] = {{0, 0, 1, 0, 1, 1}, {0, 0, 1, 1, 0, 1}};
+  const size_t count = 3 * (size_t)m->faces;
+  if (!unweld(x, m, 3, &m->positions, &m->own[4]) || !unweld(x, m, 3, &m->normals, &m->own[5]) ||
+      !unweld(x, m, 3, &m->tangents, &m->own[6]) || !unweld(x, m, 4, &m->colors, &m->own[7]) ||
+      !unweld(x, m, 1, &m->signs, &m->own[8]))
+    return false;
+  m->uvs[1] = m->uvs[2] = m->uvs[3] = NULL;
+  uint32_t *indices = vl_alloc_array(x->context, count, sizeof *indices);
+  float *uvs = vl_alloc_array(x->context, count, 2 * sizeof *uvs);
+  m->own[9] = indices, m->own[10] = uvs;
+  if (!indices || !uvs) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  for (size_t i = 0; i < count; i++) indices[i] = (uint32_t)i;
+  for (size_t i = 0; i < m->faces; i++)
+    memcpy(uvs + 6 * i, d->kind == VL_SHAPE_BILINEAR ? patch[i % 2] : triangle, sizeof triangle);
+  m->indices = indices, m->uvs[0] = uvs;
+  m->vertices = (uint32_t)count;
+  return true;
+}
+
+bool vl_export_make_uvs(vlExport *x, const vlShapeDef *d, uint32_t last, vlExportMesh *m) {
+  if (!m->uvs[0] && !own_uvs(x, d, m)) return false;
+  for (uint32_t k = 1; k <= last && k < 4; k++)
+    if (!m->uvs[k]) m->uvs[k] = m->uvs[0];
+  return true;
 }

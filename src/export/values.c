@@ -4,6 +4,7 @@
 
 #include "color/color.h"
 #include "export/export.h"
+#include "image/image.h"
 
 static void to_rgb(const vlSpectrum *s, vlSpectrumRole role, float rgb[3]) {
   if (s->kind == VL_SPECTRUM_RGB && s->space == VL_SPACE_SRGB) {
@@ -61,6 +62,29 @@ float vl_export_number(vlExport *x, const vlFloatInput *input) {
     return t->bias + t->scale * t->tint[t->channel < 0 ? 0 : t->channel];
   vl_export_lose(x, "computed texture (checkerboard, mix, noise, ...): its mean stands in");
   return 0.5f;
+}
+
+float vl_export_mean_square(vlExport *x, const vlFloatInput *input) {
+  const vlTextureDef *t = vl_export_texture(x, input->texture);
+  const float value = vl_export_number(x, input);
+  vlImage *image = t && !t->image ? vl_export_decode(x, t) : NULL;
+  const vlImage *from = t && t->image ? t->image : image;
+  if (!from) return value * value;
+  uint32_t channel[4], have = vl_image_color(from, channel);
+  float *row = vl_alloc_array(x->context, from->width, 4 * sizeof *row);
+  double sum = 0;
+  const uint32_t use = t->channel < 0 ? 0 : (uint32_t)t->channel < have ? (uint32_t)t->channel : have - 1;
+  for (uint32_t y = 0; row && y < from->height; y++) {
+    vl_image_row_to_float(from, y, channel, have, row);
+    for (size_t i = 0; i < from->width; i++) {
+      const double v = (double)t->bias + (double)t->scale * (double)t->tint[use] * (double)row[i * have + use];
+      sum += v * v;
+    }
+  }
+  const double mean = row ? sum / ((double)from->width * from->height) : (double)value * (double)value;
+  vl_free(x->context, row);
+  vl_image_destroy(image);
+  return (float)mean;
 }
 
 void vl_export_st_from_uv(const vlTextureDef *t, double m[6]) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "import/import.h"
+#include "import/labels.h"
 #include "import/ply/ply.h"
 
 void vl_import_plain_settings(vlScene *scene) {
@@ -70,7 +71,10 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, 
     return vl_scene_result(scene, error);
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  char name[VL_LABEL_SIZE];
+  vl_label_of_file(path, name);
   def.source.file = path;
+  def.label.name = name;
   def.vertices = mesh.vertices, def.faces = mesh.triangles;
   def.positions = mesh.positions, def.normals = mesh.normals, def.uvs = mesh.uvs, def.colors = mesh.colors;
   def.indices = mesh.triangle_indices;

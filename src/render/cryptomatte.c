@@ -80,7 +80,7 @@ static void make_name(const vlWorld *world, vlIdKind kind, uint32_t id, uint32_t
   char part[NAME_PART + 1];
   vl_world_id_info(world, kind, id, &info);
   clean(info.name ? info.name : info.type ? info.type : "", part);
-  bool own = info.name && kind != VL_ID_INSTANCE; /* instances of a group share its name */
+  bool own = info.name && !info.shared_name;
   uint32_t more = tries - (own && tries ? 1 : 0);
   if (own && tries == 0)
     snprintf(name, NAME_SIZE, "%s", part);

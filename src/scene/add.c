@@ -125,10 +125,11 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def)) return none;
   char what[64];
   snprintf(what, sizeof what, "%s material", row->name);
-  vlMaterialDef d = {.cookie = def->cookie, .kind = def->kind, .name = def->name, .source = def->source};
+  vlMaterialDef d = {
+      .cookie = def->cookie, .kind = def->kind, .name = def->name, .place = def->place, .source = def->source};
   vl_row_copy_members(row, def, &d);
   if (!vl_scene_copy_source(scene, &d.source) || !vl_row_take(scene, row, &d, true, def->source, what) ||
-      !vl_scene_copy_string(scene, &d.name))
+      !vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.place))
     return none;
   if (d.conserve_energy && !vl_coat_in_closed_form(&d))
     return bad(scene, def->source, what,

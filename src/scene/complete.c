@@ -60,9 +60,11 @@ static void grow(void *user, const double p[3]) {
 
 static const Box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 
-/* boxes: bounding boxes of the groups, in group space. */
+/* boxes: bounding boxes of the groups, in group space. A file that moves gives points of all its times instead. */
 static void visit_scene(const vlScene *scene, const Box *boxes, Visit *visit, void *user) {
   vlMat4 identity = vl_mat4_identity();
+  for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3) visit(user, scene->frame_points.items + i);
+  if (scene->frame_points.count) return;
   for (size_t i = 0; i < scene->shapes.count; i++)
     if (!scene->shapes.items[i].group.index) visit_shape(&scene->shapes.items[i], &identity, 20000, visit, user);
   for (size_t i = 0; i < scene->instances.count; i++) {

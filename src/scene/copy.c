@@ -44,6 +44,11 @@ bool vl_scene_copy_string(vlScene *scene, const char **text) {
   return !*text || vl_scene_copy_block(scene, *text, strlen(*text) + 1, 1, text);
 }
 
+bool vl_scene_copy_label(vlScene *scene, vlLabel *label) {
+  return vl_scene_copy_string(scene, &label->name) && vl_scene_copy_string(scene, &label->path) &&
+         vl_scene_copy_string(scene, &label->place);
+}
+
 /* File names repeat, so each is stored once. The search for a stored name starts with the most recent ones. */
 bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
   if (!source->file) return true;

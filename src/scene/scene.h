@@ -22,9 +22,15 @@ typedef struct vlSceneInstance {
   vlGroupId group;
   double world_from_group[16]; /* pose at the first key */
   vlSource source;
+  vlLabel label;
   uint32_t keys; /* number of keys of the motion; 0: no motion */
   const double *times, *poses;
 } vlSceneInstance;
+
+typedef struct vlSceneChoice {
+  vlChoiceKind kind;
+  vlChoiceInfo info;
+} vlSceneChoice;
 
 struct vlScene {
   vlContext *context;
@@ -48,7 +54,12 @@ struct vlScene {
   VL_ARRAY(vlImage *) images;
   /* File names of all vlSource, each stored once. The strings are among the blocks. */
   VL_ARRAY(const char *) files;
-  bool meshes_dropped; /* vl_scene_drop_meshes has freed the arrays of the shapes */
+  VL_ARRAY(vlSceneChoice) choices; /* in the order of the file */
+  /* World points (3 numbers each) that an automatic camera frames in place of the shapes: those of a whole animation.
+   */
+  VL_ARRAY(double) frame_points;
+  uint32_t skinned, morphed; /* numbers of meshes that the importer deformed by a skin, by morph targets */
+  bool meshes_dropped;       /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 
 /* Whether the coat of this material has a closed form. It has one if the base is diffuse, the layer does not scatter,
@@ -63,6 +74,12 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
  * null. On success the scene owns them; on failure they are freed. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
 
+/* Adds a choice of the file; the name is copied and may be null. False if memory is exhausted (reported). */
+bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, double seconds);
+
+/* Gives the instance that was added last a label. */
+void vl_scene_label_instance(vlScene *scene, const vlLabel *label);
+
 /* Frees the arrays of meshes after a world has copied them. Does nothing if memory for its list is exhausted. */
 void vl_scene_drop_meshes(vlScene *scene);
 
@@ -73,6 +90,7 @@ vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
 bool vl_scene_own(vlScene *scene, void *block);
 bool vl_scene_copy_block(vlScene *scene, const void *data, size_t count, size_t size, void *result_pointer);
 bool vl_scene_copy_string(vlScene *scene, const char **text);
+bool vl_scene_copy_label(vlScene *scene, vlLabel *label);
 bool vl_scene_copy_source(vlScene *scene, vlSource *source);
 bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *spectrum, vlSource source, const char *what);
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image);

@@ -197,7 +197,8 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
   }
   vlShapeDef d = *def;
   drop_unused(&d);
-  if (!vl_scene_copy_source(scene, &d.source) || !check_shape(scene, &d)) return none;
+  if (!vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_label(scene, &d.label) || !check_shape(scene, &d))
+    return none;
   size_t v = d.vertices, per = d.kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   size_t normals = d.kind == VL_SHAPE_CURVES ? 2 * (size_t)d.faces : v;
   if (!vl_scene_copy_block(scene, d.positions, v, 3 * sizeof(float), &d.positions) ||
@@ -221,7 +222,7 @@ vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def) {
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def) {
   vlShapeDef d = *def;
   bool fine = scene->error.code == VL_OK && d.cookie == VL_COOKIE_SHAPE && vl_scene_copy_source(scene, &d.source) &&
-              check_shape(scene, &d);
+              vl_scene_copy_label(scene, &d.label) && check_shape(scene, &d);
   enum { BLOCKS = 15 };
   const void *blocks[BLOCKS] = {d.positions,       d.normals,       d.tangents,      d.uvs,     d.indices,
                                 d.positions_close, d.normals_close, d.tangent_signs, d.colors,  d.more_uvs[0],
@@ -281,6 +282,12 @@ static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const dou
 
 void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source) {
   push_instance(scene, group, world_from_group, source);
+}
+
+void vl_scene_label_instance(vlScene *scene, const vlLabel *label) {
+  if (scene->error.code != VL_OK || scene->instances.count == 0) return;
+  vlLabel copy = *label;
+  if (vl_scene_copy_label(scene, &copy)) scene->instances.items[scene->instances.count - 1].label = copy;
 }
 
 static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const double *poses, vlSource source) {

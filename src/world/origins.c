@@ -22,6 +22,14 @@ static const char *copy_text(vlWorld *world, const char *text) {
   return copy;
 }
 
+static bool copy_label(vlWorld *world, const vlLabel *from, vlLabel *to) {
+  const char *const texts[3] = {from->name, from->path, from->place};
+  const char **copies[3] = {&to->name, &to->path, &to->place};
+  for (int k = 0; k < 3; k++)
+    if (texts[k] && texts[k][0] && !(*copies[k] = copy_text(world, texts[k]))) return false;
+  return true;
+}
+
 /* Sources share their file names (scene/scene.h): each name is copied once. */
 typedef struct Files {
   const char **copies; /* one per file in scene->files */
@@ -44,12 +52,13 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
   for (size_t i = 0; i < scene->shapes.count; i++) {
     vlWorldOrigin *o = &world->shape_origins[i];
     copy_source(files, scene, scene->shapes.items[i].source, &o->source);
+    if (!copy_label(world, &scene->shapes.items[i].label, &o->label)) return VL_ERROR_MEMORY;
   }
   for (size_t i = 0; i < scene->materials.count; i++) { /* the world's first material is the default material */
     vlWorldOrigin *o = &world->material_origins[i + 1];
     const vlMaterialDef *def = &scene->materials.items[i];
     copy_source(files, scene, def->source, &o->source);
-    if (def->name && def->name[0] && !(o->name = copy_text(world, def->name))) return VL_ERROR_MEMORY;
+    if (!copy_label(world, &(vlLabel){def->name, NULL, def->place}, &o->label)) return VL_ERROR_MEMORY;
   }
   const char **names = vl_world_block(world, scene->groups.count, sizeof(char *));
   if (!names) return VL_ERROR_MEMORY;
@@ -65,7 +74,10 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     if (world->groups.items[group].count == 0 || next >= world->instances.count) continue;
     vlWorldOrigin *o = &world->instance_origins[next++];
     copy_source(files, scene, instance->source, &o->source);
-    o->name = names[group - 1];
+    if (!copy_label(world, &instance->label, &o->label)) return VL_ERROR_MEMORY;
+    if (o->label.name) continue;
+    o->label.name = names[group - 1];
+    o->shared = true;
   }
   return VL_OK;
 }
@@ -117,7 +129,10 @@ vlResult vl_world_id_info(const vlWorld *world, vlIdKind kind, uint32_t id, vlId
       info->type = "instance";
       break;
   }
-  info->name = o->name;
+  info->name = o->label.name;
+  info->path = o->label.path;
+  info->place = o->label.place;
+  info->shared_name = o->shared;
   info->source = o->source;
   return VL_OK;
 }

@@ -215,7 +215,8 @@ typedef struct vlWorldLight {
 
 /* Name and source location of an object in the scene, for reports (origins.c). */
 typedef struct vlWorldOrigin {
-  const char *name; /* may be null */
+  vlLabel label;
+  bool shared; /* the name is that of a group, which has other instances */
   vlSource source;
 } vlWorldOrigin;
 

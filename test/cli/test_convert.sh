@@ -122,6 +122,82 @@ check kinds_pbrt "$VELO" scene convert kinds.pbrt kinds2.pbrt --strict
 check kinds_a "$VELO" render kinds.pbrt -o kinds_a.exr --quiet
 check kinds_b "$VELO" render kinds2.pbrt -o kinds_b.exr --quiet
 check kinds_same "$VELO" image diff kinds_a.exr kinds_b.exr --threshold differing=0
+# Curves of each type, with and without coverage: the same image, to the bit.
+cat >hair.pbrt <<'END'
+LookAt 0 0 6  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" 48 "integer yresolution" 36 "string filename" "hair.exr"
+Sampler "zsobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "infinite"
+Material "hair"
+Shape "curve" "point3 P" [ -2 -2 0  -1 0 0  1 -1 0  1 2 0  2 2 1  2 3 1  3 3 0 ] "float width0" .3 "float width1" .1
+Shape "curve" "point3 P" [ -2 2 0  -1 1 0  0 1 1  2 -2 1 ] "string type" "cylinder" "integer splitdepth" 2 "float alpha" .5
+Translate -1 0 0
+Shape "curve" "point3 P" [ 0 -2 0  0 -1 0  0 1 1  0 2 1 ] "string type" "ribbon" "normal N" [ 0 0 1  1 0 1 ] "float width" .4
+END
+check hair_pbrt "$VELO" scene convert hair.pbrt hair2.pbrt --strict
+check hair_a "$VELO" render hair.pbrt -o a.exr --quiet
+check hair_b "$VELO" render hair2.pbrt -o b.exr --quiet
+check hair_same "$VELO" image diff a.exr b.exr --threshold differing=0
+# Meshes without uvs that have a texture get those that their faces have by themselves.
+cat >bare.pbrt <<'END'
+LookAt 0 0 4  0 0 0  0 1 0
+Camera "perspective"
+Film "rgb" "integer xresolution" 48 "integer yresolution" 36 "string filename" "bare.exr"
+Sampler "zsobol" "integer pixelsamples" 4
+WorldBegin
+LightSource "distant" "point3 from" [ 0 0 2 ] "point3 to" [ 0 0 0 ]
+Texture "t" "spectrum" "imagemap" "string filename" "card.png"
+Material "diffuse" "texture reflectance" "t"
+Shape "bilinearmesh" "point3 P" [ -1 -1 0  0 -1 0  -1 1 0  0 1 0 ]
+Shape "trianglemesh" "point3 P" [ 0 -1 0  1 -1 0  1 1 0  0 1 0 ] "integer indices" [ 0 1 2  0 2 3 ] "normal N" [ 0 0 1  0 0 1  0 0 1  0 0 1 ]
+END
+"$VELO" render scene.pbrt -o card.png --resolution 16x16 --spp 4 --quiet
+check bare_glb "$VELO" scene convert bare.pbrt bare.glb
+check bare_a "$VELO" render bare.pbrt -o a.exr --quiet
+check bare_b "$VELO" render bare.glb -o b.exr --environment none --resolution 48x36 --spp 4 --quiet
+check bare_same "$VELO" image diff a.exr b.exr --threshold mse=1e-4
+check bare_proved "$VELO" scene convert bare.pbrt bare.gltf --prove
+expect_text bare_ratio '1.000   1.000   1.000  diffuse.2'
+# Rough dielectrics keep their albedo in pbrt, also where an image says how rough (metal and rough are its blue and green).
+python3 - <<'END'
+import base64, json, struct, zlib
+def chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+row = b"\0" + bytes([0, 166, 0]) * 4
+png = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 4, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(row * 4)) + chunk(b"IEND", b"")
+points = struct.pack("<12f", -1, -1, 0, 1, -1, 0, -1, 1, 0, 1, 1, 0) + struct.pack("<8f", 0, 1, 1, 1, 0, 0, 1, 0)
+uri = lambda kind, data: "data:%s;base64,%s" % (kind, base64.b64encode(data).decode())
+mapping = [{"material": 0, "variants": [0]}]
+json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}, {"nodes": [0]}],
+  "nodes": [{"mesh": 0, "weights": [0]}, {"camera": 0, "translation": [0, 0, 4]}],
+  "cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 1, "znear": 0.1}}],
+  "extensionsUsed": ["KHR_materials_variants"], "extensions": {"KHR_materials_variants": {"variants": [{"name": "a"}]}},
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "targets": [{"POSITION": 0}], "mode": 5, "material": 0,
+                              "extensions": {"KHR_materials_variants": {"mappings": mapping}}}]}],
+  "materials": [{"name": "skin", "pbrMetallicRoughness": {"baseColorFactor": [0.05, 0.1, 0.02, 1], "metallicFactor": 0, "metallicRoughnessTexture": {"index": 0}}}],
+  "textures": [{"source": 0}], "images": [{"uri": uri("image/png", png)}],
+  "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 2, "output": 3}]}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]},
+                {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 4, "type": "VEC2"},
+                {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+                {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}],
+  "bufferViews": [{"buffer": 0, "byteLength": len(points)}],
+  "buffers": [{"byteLength": len(points), "uri": uri("application/octet-stream", points)}]}, open("rough.gltf", "w"))
+END
+check rough_proved "$VELO" scene convert rough.gltf rough.pbrt --prove
+check rough_ratio python3 -c '
+import sys
+rows = [line.split() for line in sys.argv[1].splitlines() if line.endswith("skin")]
+assert len(rows) == 1, rows
+assert all(0.9 < float(v) < 1.1 for v in rows[0][1:4]), rows' "$out"
+# What moves and what may be chosen is lost, and said, also from glTF to glTF.
+check rough_glb "$VELO" scene convert rough.gltf rough.glb
+for what in 'animations: one moment of them (1)' 'variants of materials: the chosen one (1)' 'scenes: the chosen one (1)' 'morph targets: vertices as they pose them (1)'; do
+  expect_text "lost_${what%% *}" "$what"
+done
+expect_code 3 rough_strict "$VELO" scene convert rough.gltf strict.glb --strict
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
 expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
 check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb
@@ -150,7 +226,7 @@ check obj_glb "$VELO" scene convert t.obj t.glb
 check obj_g "$VELO" render t.glb --resolution 32x32 --spp 4 -o g.exr --quiet
 check obj_near "$VELO" image diff f.exr g.exr --threshold maxabs=1e-3
 expect_code 2 unknown_kind "$VELO" scene convert t.obj t.stl
-written="scene.gltf scene.glb second.gltf t.glb"
+written="scene.gltf scene.glb second.gltf t.glb bare.glb bare.gltf rough.glb"
 if [ -d "$shared/scenes/gltf" ]; then
   for model in Box BoxTextured SimpleInstancing SpecularTest TextureTransformTest VertexColorTest Duck Cameras; do
     for file in "$shared/scenes/gltf/$model/$model".gl*; do

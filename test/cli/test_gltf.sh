@@ -33,6 +33,21 @@ check near "$VELO" render square.gltf --camera near --spp 2 --environment white 
 check by_number "$VELO" render square.gltf --camera 0 --spp 2 --environment white -o number.exr --quiet
 check by_number_same "$VELO" image diff near.exr number.exr --threshold differing=0
 check far "$VELO" render square.gltf --camera far --resolution 32x32 --spp 2 --environment none -o far.exr --quiet
+# Names of the file reach the ids' description, Cryptomatte and `scene info`.
+sed 's/{"mesh": 0}/{"mesh": 0, "name": "Sheet"}/' square.gltf >named.gltf
+check named "$VELO" render named.gltf --resolution 16x16 --spp 1 --channels id.object,crypto.object -o named.exr --quiet
+check named_ids python3 -c '
+import json
+o = json.load(open("named.exr.ids.json"))["objects"]["1"]
+assert o["name"] == "Sheet" and o["path"] == "Sheet" and o["place"] == "nodes[0].meshes[0].primitives[0]", o
+assert "line" not in o, o'
+check named_matte "$VELO" image info named.exr
+expect_text named_manifest '"Sheet":"'
+check named_scene "$VELO" scene info named.gltf
+expect_text named_info '1    Sheet  (nodes[0].meshes[0].primitives[0])'
+expect_text named_cameras 'cameras     2: 0 near, 1 far'
+check named_scene_json "$VELO" scene info named.gltf --json
+expect_text named_json '"shape": [{"id": 1, "name": "Sheet"'
 expect_code 3 no_such_camera "$VELO" render square.gltf --camera back
 expect_text no_such_camera_says 'the scene has no camera "back" (2 are there: near, far)'
 expect_code 3 no_such_variant "$VELO" render square.gltf --variant red

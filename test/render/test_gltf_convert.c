@@ -53,7 +53,8 @@ static void balls(void **state) {
   (void)state;
   static const struct {
     double base, metal, rough, most;
-  } cases[] = {{0.5, 0, 0.1, 0.03}, {0.8, 0, 0.3, 0.05}, {0.2, 0, 0.2, 0.03}, {0.5, 0, 0.6, 0.03}, {0.7, 1, 0.2, 0.02}};
+  } cases[] = {{0.5, 0, 0.1, 0.03}, {0.8, 0, 0.3, 0.05},  {0.2, 0, 0.2, 0.03},
+               {0.5, 0, 0.6, 0.03}, {0.05, 0, 0.6, 0.03}, {0.7, 1, 0.2, 0.02}};
   Gltf *g = calloc(1, sizeof *g);
   put_ball(g);
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -60,11 +60,13 @@ static void put_id(Json *json, const vlWorld *world, const Channels *c, vlIdKind
   json_begin(json, key, '{');
   json_text(json, "type", info.type);
   if (info.name) json_text(json, "name", info.name);
+  if (info.path) json_text(json, "path", info.path);
+  if (info.place) json_text(json, "place", info.place);
   if (info.material) json_integer(json, "material", info.material);
   if (info.source.file) {
     json_text(json, "file", info.source.file);
-    json_integer(json, "line", info.source.line);
-    json_integer(json, "column", info.source.column);
+    if (info.source.line) json_integer(json, "line", info.source.line);
+    if (info.source.line) json_integer(json, "column", info.source.column);
   }
   if (c->box_list[0] && kind != VL_ID_MATERIAL)
     put_box(json, &c->box_list[kind == VL_ID_INSTANCE][id - 1], kind == VL_ID_INSTANCE);

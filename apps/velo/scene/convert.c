@@ -14,7 +14,9 @@ enum {
   CONVERT_CAMERA,
   CONVERT_VARIANT,
   CONVERT_AT,
+  CONVERT_ANIMATION,
   CONVERT_COMPLETE,
+  CONVERT_PROVE,
   CONVERT_SANDBOX
 };
 
@@ -22,9 +24,15 @@ static const Option convert_options[] = {
     {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL, "what B cannot hold is an error; nothing is written", 0, 0, NULL},
     {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,
      "add the camera and light that A lacks, as velo render does;\nalways, where B is a .pbrt", 0, 0, NULL},
+    {CONVERT_PROVE, 0, "prove", OPTION_FLAG, NULL,
+     "render A and B, 256 pixels wide, and print how much brighter each\nmaterial became: after / before, in red, "
+     "green and blue",
+     0, 0, NULL},
     {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: this camera, by name or number from 0", 0, 0, NULL},
     {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS", "glTF: the moment of its animation; default: as modelled", 0, 1e9,
      NULL},
+    {CONVERT_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
+     "glTF: this animation, by name or number from 0; several with commas; all", 0, 0, NULL},
     {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "what velo does not understand yet is a warning, not an error", 0, 0, NULL},
@@ -58,6 +66,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   load.permissive = v[CONVERT_PERMISSIVE].given;
   if (v[CONVERT_CAMERA].given) load.camera = v[CONVERT_CAMERA].text;
   if (v[CONVERT_VARIANT].given) load.variant = v[CONVERT_VARIANT].text;
+  if (v[CONVERT_ANIMATION].given) load.animation = v[CONVERT_ANIMATION].text;
   if (v[CONVERT_AT].given) load.time = v[CONVERT_AT].number;
   vlSaveDef save = vl_default_save_def();
   save.strict = v[CONVERT_STRICT].given;
@@ -76,6 +85,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, to);
   }
   vl_scene_destroy(scene);
+  if (status == STATUS_OK && v[CONVERT_PROVE].given) status = convert_prove(context, &load, from, to);
   vl_context_destroy(context);
   return status;
 }

@@ -32,7 +32,7 @@ typedef struct Facts {
   vlCheck *check; /* for the unused definitions */
 } Facts;
 
-static void print_plain(const char *text) {
+void info_print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }
 
@@ -58,7 +58,7 @@ static void print_lights(const Facts *f) {
     if (l.faces > 1) printf(" %llu faces", (unsigned long long)l.faces);
     if (l.source.file) {
       printf("  ");
-      print_plain(l.source.file);
+      info_print_plain(l.source.file);
       if (l.source.line) printf(":%u", l.source.line);
     }
     putchar('\n');
@@ -177,14 +177,16 @@ static void print_text(const Facts *f) {
     printf(", of it %u,%u to %u,%u", defs->film.crop[0], defs->film.crop[1], defs->film.crop[2], defs->film.crop[3]);
   putchar('\n');
   print_chosen(defs);
+  info_print_choices(f->scene);
   print_lights(f);
+  info_print_names(f->scene);
   uint32_t unused = 0;
   for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
     const vlFinding *u = vl_check_finding(f->check, i);
     if (u->kind != VL_FINDING_UNUSED) continue;
     if (!unused++) printf("unused\n");
     printf("  ");
-    print_plain(u->message);
+    info_print_plain(u->message);
     if (u->source.line) printf(" (line %u)", u->source.line);
     putchar('\n');
   }
@@ -275,6 +277,8 @@ static void print_json(const Facts *f) {
   json_end(&json, '}');
   json_chosen(&json, defs);
   json_kinds(&json, f);
+  info_json_choices(&json, f->scene);
+  info_json_names(&json, f->scene);
   uint32_t n = vl_scene_light_count(f->scene);
   json_integer(&json, "light_count", n);
   json_begin(&json, "lights", '[');

@@ -3,6 +3,7 @@
 #define APP_SCENE_SCENE_H
 
 #include "cli/options.h"
+#include "cli/report.h"
 #include "velo/velo.h"
 
 /* The option of all scene commands that restricts the location of a scene's files. */
@@ -16,5 +17,15 @@
 /* Creates a context with the options' --sandbox folder and a log callback. Returns -1, or the exit code after reporting
  * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
+
+/* prove.c: renders both files and prints the ratio of their radiance per material. Returns the exit code. */
+int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, const char *to);
+/* info_names.c */
+void info_print_names(const vlScene *scene);
+void info_print_choices(const vlScene *scene);
+void info_json_names(Json *json, const vlScene *scene);
+void info_json_choices(Json *json, const vlScene *scene);
+/* info.c: prints text of a file; control characters become ?. */
+void info_print_plain(const char *text);
 
 #endif

@@ -144,6 +144,24 @@ static bool is_turned(const vlShapeDef *d) {
   return d->reverse_orientation != (quadric && vl_mat4_determinant3(vl_mat4_load(d->group_from_shape)) < 0);
 }
 
+/* The last uv set that the material's textures or the mesh have; -1: none. */
+static int last_uv_set(const json_t *material, const vlExportMesh *mesh) {
+  int last = -1;
+  const char *key;
+  json_t *value;
+  for (int k = 0; k < 4; k++)
+    if (mesh->uvs[k]) last = k;
+  json_object_foreach((json_t *)(uintptr_t)material, key, value) {
+    if (!json_is_object(value)) continue;
+    const size_t n = strlen(key);
+    const bool texture = n > 7 && strcmp(key + n - 7, "Texture") == 0 && json_object_get(value, "index");
+    const int set =
+        texture ? (int)json_integer_value(json_object_get(value, "texCoord")) : last_uv_set(value, &(vlExportMesh){0});
+    if (set > last) last = set;
+  }
+  return last;
+}
+
 /* Adds the shape's mesh. *index -1: the shape is invisible. */
 static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
   vlExportMesh mesh;
@@ -160,12 +178,16 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
     return true;
   }
   json_int_t material = vl_gltf_put_material(x, d, &colors, &tangents);
+  const int last = last_uv_set(json_array_get(json_object_get(x->root, "materials"), (size_t)material), &mesh);
   json_t *attributes = json_object();
-  bool fine = put_attributes(x, &mesh, attributes, turned, colors, tangents);
+  bool fine = (last < 0 || vl_export_make_uvs(x, d, (uint32_t)last, &mesh)) &&
+              put_attributes(x, &mesh, attributes, turned, colors, tangents);
   json_int_t indices = fine ? put_indices(x, &mesh, turned) : -1;
   json_t *primitive = json_pack("{s:o,s:I}", "attributes", attributes, "indices", indices);
   if (material >= 0) json_object_set_new(primitive, "material", json_integer(material));
-  *index = vl_gltf_put(x, "meshes", json_pack("{s:[o]}", "primitives", primitive));
+  json_t *json = json_pack("{s:[o]}", "primitives", primitive);
+  if (d->label.name && d->label.name[0]) json_object_set_new(json, "name", json_string(d->label.name));
+  *index = vl_gltf_put(x, "meshes", json);
   vl_export_free_mesh(x, &mesh);
   return indices >= 0;
 }
@@ -181,6 +203,10 @@ static json_t *node_of(const double m[16]) {
   if (!plain) json_object_set(node, "matrix", matrix);
   json_decref(matrix);
   return node;
+}
+
+static void set_name(json_t *json, const vlLabel *label) {
+  if (label->name && label->name[0]) json_object_set_new(json, "name", json_string(label->name));
 }
 
 static bool is_sheared(const double m[16]) {
@@ -204,6 +230,7 @@ static void put_nodes(vlExport *x, const vlShapeDef *d, json_int_t mesh, json_t 
       m = vl_mat4_multiply(m, vl_mat4_multiply(vl_mat4_translate(c[0], c[1], c[2]), vl_mat4_scale(r, r, r)));
     }
     json_t *node = node_of(m.m);
+    set_name(node, &d->label);
     json_object_set_new(node, "mesh", json_integer(mesh));
     json_array_append_new(list, json_integer(vl_gltf_put(x, "nodes", node)));
   }
@@ -229,6 +256,7 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
   for (size_t i = 0; i < s->instances.count; i++) {
     const vlSceneInstance *instance = &s->instances.items[i];
     json_t *node = node_of(instance->world_from_group), *children = json_array();
+    set_name(node, &instance->label);
     if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");
     if (is_sheared(instance->world_from_group))
       vl_export_lose(x, "transforms that shear: in the file, but not as glTF wants it");
@@ -332,5 +360,6 @@ static bool write_files(vlExport *x) {
 bool vl_export_gltf(vlExport *x) {
   x->root = json_pack("{s:{s:s,s:s}}", "asset", "version", "2.0", "generator", "velo");
   if (!x->root) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  vl_export_lose_choices(x);
   return put_scene(x) && write_files(x);
 }

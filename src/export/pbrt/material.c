@@ -38,6 +38,14 @@ static bool put_normal(vlExport *x, const vlMaterialDef *m) {
   return true;
 }
 
+/* Albedo of the specular lobe of a principled dielectric, averaged over all directions: a fit, within 0.0015, to
+ * renders of black spheres of eta 1.5, whose reflectance at normal incidence is 0.04. */
+static float specular_albedo(vlExport *x, const vlPrincipledDef *p, double eta, float alpha) {
+  const double f0 = (eta - 1) * (eta - 1) / ((eta + 1) * (eta + 1)), a = alpha < 1 ? (double)alpha : 1;
+  const double e = (0.0575 - 0.0555 * a + 0.0147 * a * a) * f0 / 0.04 * (double)vl_export_number(x, &p->specular);
+  return (float)(e > 0 ? e < 1 ? e : 1 : 0);
+}
+
 /* The non-metallic part of the principled material. name: the material's. */
 static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name) {
   const vlPrincipledDef *p = &m->principled;
@@ -47,11 +55,13 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
   vl_export_rgb(x, &m->reflectance, rgb);
   eta = eta > 1 ? eta : 1.5;
   bool clear = transmission >= 0.5f, leaf = is_on(&p->diffuse_transmission);
-  bool bare = (!p->specular.texture.index && p->specular.value == 0) ||
-              (!p->roughness.texture.index && p->roughness.value * p->roughness.value > 0.15f);
+  const float mean_alpha = clear || leaf ? 0 : vl_export_mean_square(x, &p->roughness);
+  bool dull = !p->specular.texture.index && p->specular.value == 0, bare = dull || mean_alpha > 0.15f;
   bool coated = !clear && !leaf && !bare;
-  if (!(coated ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
-               : vl_pbrt_prepare_color(x, &m->reflectance, &color)) ||
+  const float white = bare && !dull && !clear && !leaf ? specular_albedo(x, p, eta, mean_alpha) : 0;
+  if (!(coated      ? vl_pbrt_prepare_under_coat(x, &m->reflectance, eta, &color)
+        : white > 0 ? vl_pbrt_prepare_raised(x, &m->reflectance, white, &color)
+                    : vl_pbrt_prepare_color(x, &m->reflectance, &color)) ||
       !vl_pbrt_prepare_color(x, &p->diffuse_transmission_color, &passed) ||
       !vl_pbrt_prepare_number(x, &p->roughness, true, &alpha))
     return false;
@@ -76,8 +86,7 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
     PUT(" \"float scale\" [0.5]");
   } else if (bare) {
     /* pbrt's rough coats lose energy; diffuse is the closer approximation */
-    if (p->specular.texture.index || p->specular.value != 0)
-      vl_export_lose(x, "rough principled dielectrics: as diffuse");
+    if (!dull) vl_export_lose(x, "rough principled dielectrics: as diffuse of the same albedo");
     PUT("\"diffuse\"");
     vl_pbrt_put_color(x, "reflectance", &color);
   } else {

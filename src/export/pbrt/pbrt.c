@@ -204,6 +204,7 @@ static bool put_groups(vlExport *x) {
 bool vl_export_pbrt(vlExport *x) {
   const vlScene *s = x->scene;
   PUT("# written by velo\n");
+  vl_export_lose_choices(x);
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
     PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);
   for (size_t i = 0; i < s->media.count; i++)

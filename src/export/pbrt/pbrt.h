@@ -40,6 +40,8 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
 /* The colour for a base under a smooth coat of index eta, chosen so that the coated surface reflects as much light as
  * the uncoated one. */
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
+/* The colour mixed with white: c (1 - white) + white. */
+bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);
 /* Prepares the input without changes to its values. depth: nesting of textures. */

@@ -57,6 +57,20 @@ static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   return fine;
 }
 
+/* A directive for each Bezier segment. The importer joins such curves again. */
+static void put_curves(vlExport *x, const vlShapeDef *d, const vlPbrtInput *alpha) {
+  static const char *const kinds[] = {
+      [VL_CURVE_FLAT] = "flat", [VL_CURVE_CYLINDER] = "cylinder", [VL_CURVE_RIBBON] = "ribbon"};
+  for (size_t i = 0; i < d->faces; i++) {
+    PUT("%s  Shape \"curve\" \"string type\" \"%s\"", i ? "\n" : "", kinds[d->curve]);
+    put_floats(x, "point3", "P", d->positions + 12 * i, 12);
+    if (d->normals) put_floats(x, "normal", "N", d->normals + 6 * i, 6);
+    PUT(" \"float width0\" [%.9g] \"float width1\" [%.9g]", (double)d->widths[2 * i], (double)d->widths[2 * i + 1]);
+    if (d->split_depth != 3) PUT(" \"integer splitdepth\" [%u]", d->split_depth);
+    if (alpha->texture[0] || alpha->number != 1) vl_pbrt_put_number(x, "alpha", alpha);
+  }
+}
+
 static bool put_kind(vlExport *x, const vlShapeDef *d, size_t index) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
   if (row->traits & VL_SHAPE_TRAIT_MESH) {
@@ -124,13 +138,10 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
 }
 
 static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
-  if (d->kind == VL_SHAPE_CURVES) {
-    vl_export_lose(x, "shapes of the kind curve: left out");
-    return true;
-  }
   if (d->positions && (!d->faces || !d->vertices)) return true;
   if (d->positions_close) vl_export_lose(x, "meshes that change in time: as they are at first");
   if (d->one_sided) vl_export_lose(x, "surfaces that are seen from one side only: from both");
+  if (d->tangents && d->tangent_signs) vl_export_lose(x, "tangents of normal maps: those of the uvs");
   if (d->colors) vl_export_lose(x, "colours of vertices: left out");
   vlPbrtInput alpha;
   if (!vl_pbrt_prepare_number(x, &d->alpha, false, &alpha)) return false;
@@ -149,10 +160,12 @@ static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
   if (d->emission.index && !move_uvs(x, d, &moved)) return false;
   vlShapeDef here = *d;
   here.uvs = moved ? moved : d->uvs;
-  bool put = put_kind(x, &here, index);
+  const bool curves = d->kind == VL_SHAPE_CURVES;
+  if (curves) put_curves(x, d, &alpha);
+  bool put = curves || put_kind(x, &here, index);
   vl_free(x->context, moved);
   if (!put) return false;
-  if (alpha.texture[0] || alpha.number != 1) vl_pbrt_put_number(x, "alpha", &alpha);
+  if (!curves && (alpha.texture[0] || alpha.number != 1)) vl_pbrt_put_number(x, "alpha", &alpha);
   PUT("\nAttributeEnd\n");
   return true;
 }

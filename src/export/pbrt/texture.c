@@ -57,18 +57,23 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300
 typedef struct Change {
   bool squared;
   float turned_back; /* share of the light that a coat reflects back internally and that is compensated; 0: none */
+  float raised;      /* share of white in the colour */
 } Change;
-static const Change as_is = {false, 0};
+static const Change as_is = {false, 0, 0};
 
-static float under_coat(float value, float turned_back) {
-  return value / (1 - turned_back + value * turned_back);
+static float change_color(float value, Change c) {
+  return c.raised + (1 - c.raised) * value / (1 - c.turned_back + value * c.turned_back);
+}
+
+static bool changes_color(Change c) {
+  return c.turned_back != 0 || c.raised != 0;
 }
 
 /* Changes an image: one channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 2 + (change.squared ? 1u : 0u);
-  const float key[9] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],        t->bias,
-                        t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back};
+  const float key[10] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],         t->bias,
+                         t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back, change.raised};
   for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
   vlExportImage *known = find_image(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
@@ -92,7 +97,7 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                        : have == 2 ? v[1]
                                    : 1.0f};
       if (per == 3) {
-        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = under_coat(rgba[k] * t->tint[k], change.turned_back);
+        for (int k = 0; k < 3; k++) to[3 * i + (uint32_t)k] = change_color(rgba[k] * t->tint[k], change);
         continue;
       }
       float value =
@@ -138,7 +143,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
                                                                                                      "ewa"};
   bool even = t->tint[0] == t->tint[1] && t->tint[1] == t->tint[2];
   bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
-  plain = plain && change.turned_back == 0;
+  plain = plain && !changes_color(change);
   char name[300];
   if (!(plain ? vl_pbrt_image(x, t, false, name) : work(x, t, change, name))) return false;
   if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
@@ -226,7 +231,7 @@ bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, v
 
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result) {
   *result = (vlPbrtInput){0};
-  if (input->texture.index && !put_texture(x, input->texture.index, (Change){squared, 0}, 0, result->texture))
+  if (input->texture.index && !put_texture(x, input->texture.index, (Change){squared, 0, 0}, 0, result->texture))
     return false;
   float v = result->texture[0] ? 0 : vl_export_number(x, input);
   result->number = squared ? v * v : v;
@@ -237,9 +242,9 @@ static bool prepare_color(vlExport *x, const vlSpectrumInput *input, Change chan
   float rgb[3];
   *result = (vlPbrtInput){.spectrum = input->value};
   if (input->texture.index && !put_texture(x, input->texture.index, change, 0, result->texture)) return false;
-  if (result->texture[0] || (!input->texture.index && change.turned_back == 0)) return true;
+  if (result->texture[0] || (!input->texture.index && !changes_color(change))) return true;
   vl_export_rgb(x, input, rgb);
-  for (int i = 0; i < 3; i++) rgb[i] = under_coat(rgb[i], change.turned_back);
+  for (int i = 0; i < 3; i++) rgb[i] = change_color(rgb[i], change);
   result->spectrum = vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]);
   return true;
 }
@@ -258,7 +263,11 @@ bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, doubl
     double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
     f += 2 * c / STEPS * 0.5 * (s * s + p * p);
   }
-  return prepare_color(x, input, (Change){false, (float)(1 - (1 - f) / (eta * eta))}, result);
+  return prepare_color(x, input, (Change){false, (float)(1 - (1 - f) / (eta * eta)), 0}, result);
+}
+
+bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white, vlPbrtInput *result) {
+  return prepare_color(x, input, (Change){false, 0, white}, result);
 }
 
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input) {

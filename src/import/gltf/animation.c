@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
 #include "math/elementary.h"
@@ -174,24 +175,9 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   return ok;
 }
 
-bool vl_gltf_animate(vlGltf *g) {
-  if (!(g->time == g->time) || g->animation_count == 0) return true;
-  size_t chosen = SIZE_MAX;
-  const char *name = g->def->animation;
-  for (size_t i = 0; name && i < g->animation_count; i++) {
-    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (own && strcmp(own, name) == 0 && chosen == SIZE_MAX) chosen = i;
-  }
-  if (name && chosen == SIZE_MAX) {
-    char *end;
-    unsigned long number = strtoul(name, &end, 10);
-    if (*end || end == name || number >= g->animation_count)
-      return vl_gltf_fail(g, NULL, "there is no animation \"%.60s\" (%zu are there)", name, g->animation_count);
-    chosen = number;
-  }
-  if (!name) chosen = 0;
-  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "animations", chosen);
-  const json_t *animation = vl_gltf_item(g, "animations", chosen), *channels, *samplers;
+static bool apply_animation(vlGltf *g, size_t index) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "animations", index);
+  const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
   if (!vl_gltf_array(g, at, animation, "channels", &channels, &count) ||
       !vl_gltf_array(g, at, animation, "samplers", &samplers, &sampler_count))
@@ -199,4 +185,53 @@ bool vl_gltf_animate(vlGltf *g) {
   for (size_t i = 0; i < count; i++)
     if (!apply_channel(g, at, animation, i)) return false;
   return true;
+}
+
+/* Index of the animation of this name or number; SIZE_MAX: none. */
+static size_t find_animation(const vlGltf *g, const char *name) {
+  for (size_t i = 0; i < g->animation_count; i++) {
+    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
+    if (own && strcmp(own, name) == 0) return i;
+  }
+  char *end;
+  unsigned long number = strtoul(name, &end, 10);
+  return *end || end == name || number >= g->animation_count ? SIZE_MAX : number;
+}
+
+static bool fail_animation(vlGltf *g, const char *name) {
+  char names[300] = "";
+  for (size_t i = 0; i < g->animation_count; i++) {
+    const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
+    if (own) vl_list_name(names, sizeof names, vl_short_text(own).text);
+  }
+  return vl_gltf_fail(g, NULL, "there is no animation \"%.60s\" (%zu are there%s)", name, g->animation_count, names);
+}
+
+/* One animation, several in this order with commas between them, or "all". A later one overrides properties that an
+ * earlier one moves, too. */
+bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
+  const char *wanted = g->def->animation;
+  if (g->animation_count == 0) return true;
+  size_t whole = wanted ? find_animation(g, wanted) : 0;
+  if (whole != SIZE_MAX) return visit(g, whole);
+  bool all = strcmp(wanted, "all") == 0;
+  for (size_t i = 0; all && i < g->animation_count; i++)
+    if (!visit(g, i)) return false;
+  for (const char *from = wanted; !all;) {
+    char name[256];
+    size_t n = strcspn(from, ",");
+    if (n >= sizeof name) return fail_animation(g, from);
+    memcpy(name, from, n);
+    name[n] = 0;
+    size_t one = find_animation(g, name);
+    if (one == SIZE_MAX) return fail_animation(g, name);
+    if (!visit(g, one)) return false;
+    if (!from[n]) break;
+    from += n + 1;
+  }
+  return true;
+}
+
+bool vl_gltf_animate(vlGltf *g) {
+  return !(g->time == g->time) || vl_gltf_each_animation(g, apply_animation);
 }

@@ -120,6 +120,7 @@ void vl_gltf_close(vlGltf *g) {
   json_decref(g->root);
   for (size_t i = 0; g->nodes && i < g->node_count; i++)
     vl_free(g->context, g->nodes[i].weights), vl_free(g->context, g->nodes[i].weights_close);
+  vl_gltf_free_labels(g);
   vl_free(g->context, g->buffers);
   vl_free(g->context, g->views);
   vl_free(g->context, g->accessors);

@@ -37,12 +37,14 @@ static void set_defaults(vlScene *scene) {
 
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
   vlLoadDef plain = vl_default_load_def();
-  vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path};
+  vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path, .copy = SIZE_MAX};
   set_defaults(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
   if (ok) vl_gltf_check_names(&g);
-  ok = ok && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) && vl_gltf_pose(&g) &&
-       vl_gltf_draw(&g) && vl_gltf_choose_camera(&g);
+  ok = ok && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) &&
+       vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g) &&
+       vl_gltf_choose_camera(&g);
+  ok = ok && vl_gltf_frame_animation(&g);
   if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
   vl_gltf_close(&g);
   return vl_scene_result(scene, error);

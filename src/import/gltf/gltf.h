@@ -8,6 +8,7 @@
 
 #include <jansson.h>
 
+#include "import/names.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 
@@ -114,16 +115,20 @@ typedef struct vlGltf {
   vlGltfMesh *meshes;
   size_t buffer_count, view_count, accessor_count, node_count, material_count, image_count, texture_count, mesh_count,
       skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
-  const json_t *lights; /* array of KHR_lights_punctual */
-  uint64_t total;       /* size of all buffers in bytes */
-  uint64_t spent;       /* bytes of geometry made so far; see vl_gltf_spend */
-  int64_t variant;      /* index of the material variant; -1: none */
-  double time;          /* time in seconds at which nodes are posed */
-  double open, close;   /* shutter times, seconds */
-  bool moves;           /* close is later than open, and there are animations */
-  bool closing;         /* meshes are currently deformed as at shutter close */
-  vlMat4 *keys;         /* world matrices of all nodes at the key times */
-  uint32_t reported;    /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
+  const json_t *lights;         /* array of KHR_lights_punctual */
+  uint64_t total;               /* size of all buffers in bytes */
+  uint64_t spent;               /* bytes of geometry made so far; see vl_gltf_spend */
+  int64_t variant;              /* index of the material variant; -1: none */
+  double time;                  /* time in seconds at which nodes are posed */
+  double open, close;           /* shutter times, seconds */
+  bool moves;                   /* close is later than open, and there are animations */
+  bool closing;                 /* meshes are currently deformed as at shutter close */
+  vlMat4 *keys;                 /* world matrices of all nodes at the key times */
+  const char **node_labels;     /* of the nodes with a mesh; owned by the scene */
+  const char **material_labels; /* one per material */
+  vlNameTable shape_names, instance_names, material_names;
+  size_t copy;       /* which of EXT_mesh_gpu_instancing's poses is placed; SIZE_MAX: none */
+  uint32_t reported; /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
 } vlGltf;
@@ -211,15 +216,39 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 /* ---- the tree (node.c, animation.c) ------------------------------------------------------------------------------ */
 
 bool vl_gltf_read_nodes(vlGltf *g);
-bool vl_gltf_animate(vlGltf *g);    /* applies the animations at g->time */
+bool vl_gltf_animate(vlGltf *g); /* applies the animations at g->time */
+/* Visits the animations that the def chooses, in order. False after an error, also that there is no such animation. */
+bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index));
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
 /* Poses all nodes at def->time and, for motion blur, at the key times up to def->time_close. */
 bool vl_gltf_pose(vlGltf *g);
 /* Whether the node's world matrix changes between shutter open and shutter close. */
+/* frame.c: gives the scene the points of the whole animation, if there is one, for an automatic camera. The nodes have
+ * other poses afterwards. */
+bool vl_gltf_frame_animation(vlGltf *g);
 bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
+
+/* choices.c: lists the file's scenes, cameras, animations and variants. Call after vl_gltf_draw. */
+bool vl_gltf_list_choices(vlGltf *g);
+double vl_gltf_animation_end(const vlGltf *g, size_t animation);
+
+/* ---- names (label.c) --------------------------------------------------------------------------------------------- */
+
+/* Where the file describes a shape. node is SIZE_MAX for a shape of a group, material -1 for the default one. */
+typedef struct vlGltfShapePlace {
+  size_t node, mesh, primitive;
+  int64_t material;
+} vlGltfShapePlace;
+/* Makes the labels of nodes and materials. */
+bool vl_gltf_make_labels(vlGltf *g);
+void vl_gltf_free_labels(vlGltf *g);
+/* The scene owns the strings of the label. */
+bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label);
+/* Labels the instance that was added last. */
+void vl_gltf_label_instance(vlGltf *g, size_t node);
 
 /* ---- meshes ------------------------------------------------------------------------------------------------------ */
 
@@ -234,8 +263,11 @@ typedef struct vlGltfPrimitive {
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
 
-/* Adds mesh `index` for a node. A null node adds the mesh to a group, in the mesh's own space. */
+/* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a group, in the mesh's own
+ * space. */
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group, vlMat4 pose);
+/* Grows the box by the primitives of the mesh as the node poses it. */
+bool vl_gltf_mesh_box(vlGltf *g, size_t mesh, const vlGltfNode *node, double low[3], double high[3]);
 /* Whether the node deforms its mesh by a skin or morph targets. */
 bool vl_gltf_deforms(const vlGltf *g, const vlGltfNode *node);
 /* topology.c: turns the primitive's indices (0, 1, 2, ... if it has none) into triangles, according to its mode. Points

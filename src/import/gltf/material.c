@@ -1,9 +1,11 @@
 /* import/gltf/material.c: metallic-roughness materials and the KHR_materials extensions become the principled material,
  * its emission and its coverage. */
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "import/gltf/gltf.h"
+#include "import/labels.h"
 
 typedef struct Reader {
   vlGltf *g;
@@ -271,7 +273,6 @@ static bool read_unlit(const Reader *r) {
   const vlGltfPlace *at = VL_GLTF_KEY(r->at, "pbrMetallicRoughness");
   *r->def = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   r->def->source.file = r->g->path;
-  r->def->name = json_string_value(json_object_get(r->json, "name"));
   r->def->reflectance = vl_spectrum_input(vl_spectrum_constant(0.0f));
   return vl_gltf_object(r->g, r->at, r->json, "pbrMetallicRoughness", &json) &&
          read_color(r, at, json, "baseColorFactor", 4, base) && read_alpha(r, at, json, "baseColorTexture", base[3]) &&
@@ -303,10 +304,17 @@ const vlGltfMaterial *vl_gltf_material(vlGltf *g, int64_t index, bool colors) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_PRINCIPLED);
   static const json_t *const nothing = NULL;
   const json_t *json = index < 0 ? nothing : vl_gltf_item(g, "materials", (size_t)index);
+  const char *name = index < 0 ? NULL : g->material_labels[index];
+  const vlGltfMaterial *other = &g->materials[2 * (size_t)(index + 1) + !colors]; /* the same with vertex colours */
+  if (name && other->made && !vl_label_make_unique(g->scene, &g->material_names, name, (size_t)index, &name))
+    return NULL;
+  char place[40];
+  snprintf(place, sizeof place, "materials[%d]", (int)index);
   Reader r = {g, VL_GLTF_ITEM(NULL, "materials", (size_t)(index < 0 ? 0 : index)), json, &def, result, colors};
   def.source.file = g->path;
-  def.name = json_string_value(json_object_get(json, "name"));
   if (!read_material(&r)) return NULL;
+  def.name = name;
+  def.place = index < 0 ? NULL : place;
   result->material = vl_scene_add_material(g->scene, &def);
   result->made = result->material.index != 0;
   return result->made ? result : NULL;

@@ -237,9 +237,19 @@ static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
   return m && finish_primitive(g, at, m, p, group, pose, skinned);
 }
 
+static void count_deformed(vlGltf *g, const json_t *primitive, bool skinned) {
+  g->scene->skinned += skinned;
+  g->scene->morphed += json_object_get(primitive, "targets") != NULL;
+}
+
+static bool label_last(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, size_t node, size_t mesh, size_t i) {
+  vlGltfShapePlace place = {.node = node, .mesh = mesh, .primitive = i};
+  return choose_material(g, at, primitive, &place.material) &&
+         vl_gltf_label_shape(g, &place, &g->scene->shapes.items[g->scene->shapes.count - 1].label);
+}
+
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group,
                       vlMat4 pose) {
-  (void)node_index;
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
   const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
   size_t count;
@@ -249,9 +259,43 @@ bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t no
     const vlGltfPlace *here = VL_GLTF_ITEM(at, "primitives", i);
     if (!json_is_object(primitive)) return vl_gltf_fail(g, here, "must be an object");
     vlGltfPrimitive p = {0};
+    const size_t before = g->scene->shapes.count;
     bool ok = add_primitive(g, here, mesh, primitive, node, group, pose, &p);
     vl_gltf_free_primitive(g->context, &p);
-    if (!ok) return false;
+    if (!ok || (g->scene->shapes.count > before && !label_last(g, here, primitive, node_index, index, i))) return false;
+    count_deformed(g, primitive, node && json_object_get(node->json, "skin"));
   }
+  return true;
+}
+
+/* Grows the box by one primitive's positions, in the node's space; those of a skin are in the world. */
+static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, const json_t *primitive,
+                          const vlGltfNode *node, double low[3], double high[3]) {
+  const json_t *attributes = json_object_get(primitive, "attributes");
+  const bool skinned = json_object_get(node->json, "skin") != NULL;
+  int64_t position;
+  vlGltfPrimitive p = {0};
+  if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position))
+    return false;
+  if (position < 0) return true;
+  bool ok = read_attributes(g, at, primitive, attributes, position, &p) &&
+            vl_gltf_morph(g, at, mesh, primitive, node, &p) && (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
+  for (size_t i = 0; ok && i < p.vertices; i++)
+    for (size_t k = 0; k < 3; k++)
+      low[k] = fmin(low[k], (double)p.positions[3 * i + k]), high[k] = fmax(high[k], (double)p.positions[3 * i + k]);
+  vl_gltf_free_primitive(g->context, &p);
+  return ok;
+}
+
+bool vl_gltf_mesh_box(vlGltf *g, size_t index, const vlGltfNode *node, double low[3], double high[3]) {
+  const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "meshes", index);
+  const json_t *mesh = vl_gltf_item(g, "meshes", index), *primitives;
+  size_t count;
+  const uint64_t spent = g->spent; /* the arrays are freed again */
+  if (!vl_gltf_array(g, at, mesh, "primitives", &primitives, &count)) return false;
+  for (size_t i = 0; i < count; i++)
+    if (!primitive_box(g, VL_GLTF_ITEM(at, "primitives", i), mesh, json_array_get(primitives, i), node, low, high))
+      return false;
+  g->spent = spent;
   return true;
 }

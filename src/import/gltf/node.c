@@ -163,13 +163,13 @@ static bool is_flat(vlMat4 m) {
   return !(fabs(vl_mat4_determinant3(m)) > 1e-12 * l * sqrt(l)) || l == 0;
 }
 
-static bool group_mesh(vlGltf *g, size_t mesh, size_t node_index) {
+static bool group_mesh(vlGltf *g, size_t mesh) {
   vlGltfMesh *m = &g->meshes[mesh];
   if (m->grouped) return true;
   const char *name = json_string_value(json_object_get(vl_gltf_item(g, "meshes", mesh), "name"));
   m->group = vl_scene_add_group(g->scene, name ? name : "");
   m->grouped = true;
-  return vl_gltf_add_mesh(g, mesh, NULL, node_index, m->group, vl_mat4_identity());
+  return vl_gltf_add_mesh(g, mesh, NULL, SIZE_MAX, m->group, vl_mat4_identity());
 }
 
 /* Adds a moving instance. A deforming mesh gets a group of its own. Returns -1 when two successive poses cannot be
@@ -192,10 +192,11 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
     group = vl_scene_add_group(g->scene, "");
     if (!vl_gltf_add_mesh(g, mesh, node, node_index, group, vl_mat4_identity())) return 0;
   } else {
-    if (!group_mesh(g, mesh, node_index)) return 0;
+    if (!group_mesh(g, mesh)) return 0;
     group = g->meshes[mesh].group;
   }
   vl_scene_add_moving_instance(g->scene, group, VL_GLTF_KEYS, times, poses, (vlSource){g->path, 0, 0});
+  vl_gltf_label_instance(g, node_index);
   return g->scene->error.code == VL_OK;
 }
 
@@ -213,8 +214,9 @@ static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t no
   }
   if (deforms || flat || m->emissive || m->uses < 2)
     return vl_gltf_add_mesh(g, mesh, node, node_index, (vlGroupId){0}, pose);
-  if (!group_mesh(g, mesh, node_index)) return false;
+  if (!group_mesh(g, mesh)) return false;
   vl_scene_add_instance(g->scene, m->group, pose.m, (vlSource){g->path, 0, 0});
+  vl_gltf_label_instance(g, node_index);
   return g->scene->error.code == VL_OK;
 }
 
@@ -234,7 +236,8 @@ static bool draw_node(vlGltf *g, size_t i) {
   if (!read_instances(g, at, node->json, &poses, &count)) return false;
   bool ok = true;
   if (!poses) ok = place_mesh(g, (size_t)mesh, node, i, vl_mat4_identity());
-  for (size_t k = 0; ok && k < count; k++) ok = place_mesh(g, (size_t)mesh, node, i, poses[k]);
+  for (g->copy = 0; ok && g->copy < count; g->copy++) ok = place_mesh(g, (size_t)mesh, node, i, poses[g->copy]);
+  g->copy = SIZE_MAX;
   vl_free(g->context, poses);
   return ok;
 }

@@ -225,11 +225,14 @@ static bool open_part(vlObj *obj) {
   obj->part_open = true;
   if (obj->parts.count >= MAX_PARTS && m->part) {
     obj->part = m->part - 1;
+    obj->parts.items[obj->part].object = 0;
     return true;
   }
   vlObjPart *part = VL_PUSH(obj->context, &obj->parts);
   if (!part) return vl_obj_fail_memory(obj);
   part->material = obj->material;
+  part->object = (uint32_t)(obj->objects.count ? obj->objects.count - 1 : 0);
+  part->line = obj->line;
   m->part = (uint32_t)obj->parts.count;
   obj->part = m->part - 1;
   return true;
@@ -330,7 +333,7 @@ static bool read_statement(vlObj *obj) {
       case 'f': return read_face(obj);
       case 's': return use_smoothing(obj);
       case 'g':
-      case 'o': obj->part_open = false; return true;
+      case 'o': return vl_obj_open_object(obj, *word == 'g');
       case 'l':
       case 'p': once(obj, REPORTED_LINES, word, n); return true;
       default: break;
@@ -360,6 +363,7 @@ static void free_all(vlObj *obj) {
   VL_ARRAY_FREE(c, &obj->triangle_part);
   VL_ARRAY_FREE(c, &obj->triangle_smooth);
   VL_ARRAY_FREE(c, &obj->parts);
+  VL_ARRAY_FREE(c, &obj->objects);
   VL_ARRAY_FREE(c, &obj->materials);
   VL_ARRAY_FREE(c, &obj->polygon);
   VL_ARRAY_FREE(c, &obj->ears);

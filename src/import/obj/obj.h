@@ -5,6 +5,7 @@
 #ifndef IMPORT_OBJ_OBJ_H
 #define IMPORT_OBJ_OBJ_H
 
+#include "import/labels.h"
 #include "scene/scene.h"
 
 /* Indices of a corner's position, uv and normal, counted from 1; 0: none. */
@@ -52,9 +53,16 @@ typedef struct vlObjMaterial {
   vlFloatInput alpha;
 } vlObjMaterial;
 
+/* The names that statements o and g gave; owned by the scene, null: none. */
+typedef struct vlObjObject {
+  const char *object, *group;
+} vlObjObject;
+
 /* A run of faces that becomes one shape. */
 typedef struct vlObjPart {
   uint32_t material; /* index */
+  uint32_t object;   /* index of the names of its object and group; 0: none, or more than one */
+  uint32_t line;     /* of its first face */
   uint32_t triangles, first;
   bool normals, uvs; /* whether any corner has normals, uvs */
 } vlObjPart;
@@ -76,6 +84,7 @@ typedef struct vlObj {
   VL_ARRAY(uint32_t) triangle_part;
   VL_ARRAY(uint32_t) triangle_smooth; /* smoothing group; 0: none */
   VL_ARRAY(vlObjPart) parts;
+  VL_ARRAY(vlObjObject) objects;     /* index 0: no name */
   VL_ARRAY(vlObjMaterial) materials; /* index 0 is the default material */
   VL_ARRAY(vlObjCorner) polygon;
   VL_ARRAY(uint32_t) ears; /* scratch of vl_obj_triangulate */
@@ -112,5 +121,9 @@ vlMtl vl_mtl_default(void);
 /* Adds the material to the scene. False after an error. */
 bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material);
 bool vl_obj_add_shapes(vlObj *obj);
+/* obj_label.c: begins an object (statement o) or a group (g). */
+bool vl_obj_open_object(vlObj *obj, bool group);
+/* The label of a part's shape. The scene owns its strings. */
+bool vl_obj_label(vlObj *obj, vlNameTable *names, size_t part, vlLabel *label);
 
 #endif

@@ -157,7 +157,7 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
   return true;
 }
 
-static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order) {
+static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, const vlLabel *label) {
   vlObjMaterial *m = &obj->materials.items[part->material];
   if (!vl_obj_make_material(obj, m)) return false;
   uint32_t *indices = NULL, n = 0;
@@ -188,7 +188,8 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order) {
     return false;
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.source.file = obj->path;
+  def.source = (vlSource){obj->path, part->line, 1};
+  def.label = *label;
   def.material = m->material, def.emission = m->emission, def.alpha = m->alpha;
   def.vertices = n, def.faces = part->triangles;
   def.positions = arrays[0], def.normals = arrays[1], def.uvs = arrays[2], def.colors = arrays[3];
@@ -198,8 +199,12 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order) {
 
 bool vl_obj_add_shapes(vlObj *obj) {
   uint32_t *order = NULL;
+  vlNameTable names = {0};
+  vlLabel label;
   bool fine = make_normals(obj) && sort_by_part(obj, &order);
-  for (size_t i = 0; fine && i < obj->parts.count; i++) fine = add_part(obj, &obj->parts.items[i], order);
+  for (size_t i = 0; fine && i < obj->parts.count; i++)
+    fine = vl_obj_label(obj, &names, i, &label) && add_part(obj, &obj->parts.items[i], order, &label);
+  vl_free(obj->context, names.slots);
   vl_free(obj->context, order);
   return fine;
 }

@@ -4,6 +4,7 @@
 #ifndef IMPORT_PBRT_BUILDER_H
 #define IMPORT_PBRT_BUILDER_H
 
+#include "import/names.h"
 #include "import/pbrt/parse.h"
 #include "math/transform.h"
 #include "scene/scene.h"
@@ -38,23 +39,9 @@ typedef struct vlStackEntry {
   vlGraphicsState state;
 } vlStackEntry;
 
-typedef struct vlNamed {
-  const char *name;
-  uint32_t index;
-} vlNamed;
-
 typedef struct vlTransforms {
   vlMat4 at[2];
 } vlTransforms;
-
-/* Small open-addressing hash table from strings to indices. The strings are not owned. */
-typedef struct vlNameTable {
-  vlNamed *slots;
-  uint32_t capacity, count;
-} vlNameTable;
-bool vl_names_add(vlContext *context, vlNameTable *table, const char *name, uint32_t index); /* false: out of memory */
-bool vl_names_find(const vlNameTable *table, const char *name, uint32_t *index);
-const char *vl_names_nearest(const vlNameTable *table, const char *name);
 
 /* A texture or material that is resolved at the end. */
 typedef enum vlPendingState { VL_PENDING, VL_IN_PROGRESS, VL_DONE } vlPendingState;

@@ -1,9 +1,9 @@
-/* import/pbrt/names.c: a small hash table from names to indices (open addressing, linear probing, at most half full).
- */
+/* import/names.c: see names.h. Linear probing, at most half full. */
+#include "import/names.h"
+
 #include <string.h>
 
 #include "base/text.h"
-#include "import/pbrt/builder.h"
 
 static uint32_t hash(const char *s) { /* FNV-1a */
   uint32_t h = 2166136261u;

@@ -8,6 +8,7 @@
 
 #include <jansson.h>
 
+#include "import/repair.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 
@@ -79,7 +80,7 @@ typedef struct vlGltfMaterial {
 
 /* An encoded image: bytes in memory (owned by the scene) or the path of a file. */
 typedef struct vlGltfImage {
-  bool read;
+  bool read, missing;
   const uint8_t *data;
   size_t size;
   const char *path;
@@ -123,7 +124,8 @@ typedef struct vlGltf {
   bool moves;           /* close is later than open, and there are animations */
   bool closing;         /* meshes are currently deformed as at shutter close */
   vlMat4 *keys;         /* world matrices of all nodes at the key times */
-  uint32_t reported;    /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
+  vlRepairs repairs;
+  uint32_t reported; /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
   size_t shapes_made, lights_made, cameras_seen;
   double bounds_min[3], bounds_max[3];
 } vlGltf;
@@ -182,8 +184,8 @@ bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
-/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path, relative
- * to the folder of the glTF file. */
+/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path: in the
+ * folder of the glTF file, else on the search path. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
                  const char **path);
 

@@ -247,6 +247,15 @@ static bool recover(void *user) {
   return vl_import_recover(user);
 }
 
+/* Permissive: a file beyond the limits is left out. */
+static bool skip_include(void *user, vlSource place) {
+  vlImport *import = user;
+  if (!import->permissive) return false;
+  if (!import->repairs.includes++)
+    vl_import_warn(import, VL_LOG_WARNING, place, "this file and others beyond the limits of Include are left out");
+  return true;
+}
+
 /* ---- a whole file -------------------------------------------------------------------------------------------------
  */
 
@@ -290,15 +299,18 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->scene = scene;
   import->permissive = def && def->permissive;
   import->first = path;
+  import->search_path = def ? def->search_path : NULL;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
   import->times[1] = 1.0;
   import->edge_scale = 1.0;
   import->state.space = VL_SPACE_SRGB;
-  vlParseTarget target = {import, statement, parse_error, recover};
+  vlParseTarget target = {import,      statement, parse_error, recover, import->search_path, vl_import_note_elsewhere,
+                          skip_include};
   bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
                    : vl_parse_file(import->context, path, &target);
   if (fine) vl_import_finish(import);
+  vl_repairs_report(import->context, &import->repairs, path);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);

@@ -1,6 +1,8 @@
 /* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand and which function
  * handles it. Also imports a whole file. */
 #include "import/pbrt/builder.h"
+#include "base/error.h"
+#include "import/pbrt/upgrade/detect.h"
 
 #include <string.h>
 
@@ -290,6 +292,21 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->medium_links);
 }
 
+/* A scene of an older pbrt: its first error becomes one that names the command. */
+static void explain_old(vlImport *import, const char *path) {
+  vlScene *scene = import->scene;
+  bool diagnosing = scene->problem && import->problems;
+  if (!diagnosing && scene->error.code != VL_ERROR_SCENE) return;
+  vlOldScene old = vl_old_scene(import->context, path);
+  if (!old.version) return;
+  vlError error = {0};
+  vl_fail_at(&error, VL_ERROR_SCENE, path, old.line, old.column,
+             "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it", old.version,
+             old.sign, path);
+  if (scene->problem) scene->problem(scene->problem_user, &error);
+  if (scene->error.code == VL_ERROR_SCENE) scene->error = error;
+}
+
 static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,
                     vlError *error) {
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
@@ -311,6 +328,7 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
                    : vl_parse_file(import->context, path, &target);
   if (fine) vl_import_finish(import);
   vl_repairs_report(import->context, &import->repairs, path);
+  if (!data) explain_old(import, path);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);

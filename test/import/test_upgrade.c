@@ -227,7 +227,8 @@ static void settings(void **state) {
       "sigma\" 0.5 \"float yradius\" 2\n"
       "Integrator \"path\" \"integer maxdepth\" 3\nAccelerator \"kdtree\"\nWorldBegin\n");
   assert_int_equal(notes.lost, 1);
-  assert_non_null(strstr(notes.text, "s.pbrt:4: Film: without scale, maxsampleluminance -> maxcomponentvalue"));
+  assert_non_null(strstr(
+      notes.text, "s.pbrt:4: Film: without scale, \"image\" -> \"rgb\", maxsampleluminance -> maxcomponentvalue"));
   write_file("old/s.pbrt", "Camera \"environment\"\nWorldBegin\nShape \"sphere\"\nWorldEnd");
   assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/s.pbrt"),

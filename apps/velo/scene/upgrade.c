@@ -45,7 +45,7 @@ static void print_plain(const char *text) {
 }
 
 static void told(void *user, vlUpgradeNote note, const vlError *place, const char *message) {
-  static const char *const kinds[] = {"", "no counterpart: ", "wrote: "};
+  static const char *const kinds[] = {"", "lost: ", "wrote: "};
   List *list = user;
   if (note == VL_UPGRADE_CHANGED) list->changes++;
   if (note == VL_UPGRADE_LOST) list->lost++;

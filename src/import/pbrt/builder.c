@@ -292,19 +292,15 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->medium_links);
 }
 
-/* A scene of an older pbrt: its first error becomes one that names the command. */
-static void explain_old(vlImport *import, const char *path) {
-  vlScene *scene = import->scene;
-  bool diagnosing = scene->problem && import->problems;
-  if (!diagnosing && scene->error.code != VL_ERROR_SCENE) return;
+/* A scene of an older pbrt: the error names the command. */
+static bool fail_old(vlImport *import, const char *path) {
   vlOldScene old = vl_old_scene(import->context, path);
-  if (!old.version) return;
-  vlError error = {0};
-  vl_fail_at(&error, VL_ERROR_SCENE, path, old.line, old.column,
-             "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it", old.version,
-             old.sign, path);
-  if (scene->problem) scene->problem(scene->problem_user, &error);
-  if (scene->error.code == VL_ERROR_SCENE) scene->error = error;
+  if (!old.version) return false;
+  vl_error_clear(&import->scene->error);
+  vl_import_fail(import, VL_ERROR_SCENE, (vlSource){path, old.line, old.column},
+                 "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it",
+                 old.version, old.sign, path);
+  return true;
 }
 
 static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,
@@ -324,11 +320,13 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->state.space = VL_SPACE_SRGB;
   vlParseTarget target = {import,      statement, parse_error, recover, import->search_path, vl_import_note_elsewhere,
                           skip_include};
-  bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
-                   : vl_parse_file(import->context, path, &target);
+  bool is_old = !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
+  bool fine = is_old ? false
+              : data ? vl_parse_memory(import->context, data, size, path, &target)
+                     : vl_parse_file(import->context, path, &target);
   if (fine) vl_import_finish(import);
   vl_repairs_report(import->context, &import->repairs, path);
-  if (!data) explain_old(import, path);
+  if (!data && scene->error.code == VL_ERROR_SCENE) fail_old(import, path);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);

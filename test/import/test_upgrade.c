@@ -148,12 +148,22 @@ static const struct {
      "0 0 "
      "] \"rgb tex2\" [ 1 1 1 ] \"texture amount\" \"t-float\"\n",
      0},
+    {"Texture \"w\" \"color\" \"windy\"\nTexture \"c\" \"color\" \"checkerboard\"\nTexture \"t\" \"color\" \"scale\" "
+     "\"texture tex1\" \"w\" \"texture tex2\" \"c\"\n",
+     "Texture \"w-float\" \"float\" \"windy\"\nTexture \"w\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" "
+     "[ 1 1 1 ] \"texture amount\" \"w-float\"\nTexture \"c\" \"spectrum\" \"checkerboard\"\nTexture \"t\" "
+     "\"spectrum\" \"scale\" \"texture scale\" \"w-float\" \"texture tex\" \"c\"\n",
+     0},
     {"Texture \"t\" \"float\" \"checkerboard\" \"string aamode\" \"none\" \"float tex1\" .3\n",
      "Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" .3\n", 0},
     {"LightSource \"point\" \"point from\" [ 1 2 3 ] \"color I\" [ 1 2 3 ] \"color scale\" [ 2 2 2 ]\n",
      "LightSource \"point\" \"point3 from\" [ 1 2 3 ] \"rgb I\" [ 1 2 3 ] \"float scale\" 2\n", 0},
     {"LightSource \"distant\" \"rgb L\" [ 1 2 3 ] \"rgb scale\" [ 2 1 .5 ]\n",
      "LightSource \"distant\" \"rgb L\" [ 2 2 1.5 ]\n", 0},
+    {"LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 740 2 900 2 ]\n",
+     "LightSource \"point\" \"spectrum I\" [ 300 2 400 2 500 2 600 2 700 2 710 2 720 2 730 2 740 2 900 2 ] \"float "
+     "scale\" 2\n",
+     0},
     {"LightSource \"infinite\" \"integer nsamples\" 4 \"integer samples\" 4 \"rgb L\" [ 1 1 1 ]\n",
      "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n", 0},
     {"AreaLightSource \"area\" \"rgb L\" [ 1 1 1 ] \"bool twosided\" \"true\" \"integer nsamples\" [ 8 ]\n",

@@ -3,7 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/context.h"
 #include "color/color.h"
+#include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define END \
@@ -49,33 +51,50 @@ static const vlOldRow area[] = {{"L", VL_OLD_KEEP, NULL}, {"twosided", VL_OLD_KE
 
 /* ---- the factor -------------------------------------------------------------------------------------------------- */
 
+/* The pairs of a sampled spectrum; the caller frees both arrays. */
+static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths, float **values) {
+  vlContext *context = file->u->context;
+  const char *at = file->text + p->value.start, *end = file->text + p->value.end;
+  *wavelengths = vl_alloc_array(context, p->count, sizeof **wavelengths);
+  *values = vl_alloc_array(context, p->count, sizeof **values);
+  if (!*wavelengths || !*values) return vl_old_fail_memory(file->u);
+  for (size_t n = 0; at < end && n < p->count;) {
+    double number;
+    if (!vl_number_scan(&at, end, &number)) {
+      at++;
+      continue;
+    }
+    (n % 2 ? *values : *wavelengths)[n / 2] = (float)number;
+    n++;
+  }
+  return true;
+}
+
 /* pbrt-v4 divides a light's spectrum by its luminance, pbrt-v3 does not. 1 for colours. */
 static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, double *factor) {
-  vlSpectrum spectrum, one = vl_spectrum_constant(1.0f);
-  enum { MOST = VL_OLD_FIRST / 2 };
-  float wavelengths[MOST], values[MOST];
+  vlSpectrum one = vl_spectrum_constant(1.0f), spectrum = one;
+  float *wavelengths = NULL, *values = NULL;
+  bool fine = true, sampled = p && strcmp(p->type, "spectrum") == 0;
   vlError error;
   *factor = 1;
-  if (!p || p->count == 0) return true;
-  if (strcmp(p->type, "blackbody") == 0) {
-    if (!(p->number[0] > 0)) return true;
+  if (sampled && p->strings)
+    vl_old_lose(file, line, "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness by \"scale\"",
+                p->name);
+  if (p && strcmp(p->type, "blackbody") == 0 && p->count && p->number[0] > 0) {
     spectrum = vl_spectrum_blackbody((float)p->number[0]);
-  } else if (strcmp(p->type, "spectrum") == 0 && !p->strings && p->count <= VL_OLD_FIRST && p->count % 2 == 0) {
-    spectrum = one;
+  } else if (sampled && !p->strings && p->count && p->count % 2 == 0) {
+    fine = read_pairs(file, p, &wavelengths, &values);
     spectrum.kind = VL_SPECTRUM_SAMPLED;
-    for (size_t i = 0; i < p->count / 2; i++)
-      wavelengths[i] = (float)p->number[2 * i], values[i] = (float)p->number[2 * i + 1];
     spectrum.wavelengths = wavelengths, spectrum.values = values;
     spectrum.count = (uint32_t)(p->count / 2);
   } else {
-    if (strcmp(p->type, "spectrum") == 0)
-      vl_old_lose(file, line,
-                  "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness by \"scale\"", p->name);
     return true;
   }
-  double y = vl_spectrum_photometric(&spectrum, &error), unit = vl_spectrum_photometric(&one, &error);
+  double y = fine ? vl_spectrum_photometric(&spectrum, &error) : 0, unit = vl_spectrum_photometric(&one, &error);
   if (y > 0 && unit > 0) *factor = y / unit;
-  return true;
+  vl_free(file->u->context, wavelengths);
+  vl_free(file->u->context, values);
+  return fine;
 }
 
 static bool set_color(vlOldFile *file, vlOldParam *p, const double rgb[3]) {

@@ -158,13 +158,28 @@ static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
+/* The integrator's name is written already. */
+static bool tell_path(vlOldFile *file, const vlOldStatement *s) {
+  vlUpgrade *u = file->u;
+  if (u->plain_path && !u->subsurface)
+    vl_old_lose(file, s->line,
+                "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as integrator");
+  u->plain_path = false;
+  return true;
+}
+
 /* A name says all; pbrt-v4 wants sigma_a and sigma_s both or neither. */
 static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"), *b = vl_old_find(s, "sigma_s");
   bool named = name && name->strings && name->text[0][0];
   if (named) vl_old_drop(s, a), vl_old_drop(s, b);
+  tell_path(file, s);
   if (named || !a == !b) return true;
   return vl_old_add(file, s, "%s", a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
+}
+
+static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
+  return tell_path(file, s);
 }
 
 static bool none_rule(vlOldFile *file, vlOldStatement *s) {
@@ -185,7 +200,7 @@ static const vlOldKind kinds[] = {
     {"translucent", "diffusetransmission", translucent, vl_old_translucent, NULL},
     {"mix", "mix", mix, vl_old_mix, NULL},
     {"hair", "hair", hair, NULL, NULL},
-    {"kdsubsurface", "subsurface", kdsubsurface, NULL, NULL},
+    {"kdsubsurface", "subsurface", kdsubsurface, kd_rule, NULL},
     {"subsurface", "subsurface", subsurface, subsurface_rule, NULL},
     {"disney", "principled", disney, vl_old_disney,
      "disney has no counterpart in pbrt-v4: velo's own principled is written"},

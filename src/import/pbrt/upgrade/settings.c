@@ -224,6 +224,16 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   bool older = strcmp(s->word->name, "SurfaceIntegrator") == 0;
   if (older) vl_old_note(s, "-> Integrator");
   if (older && !vl_old_edit(file, s->keyword, "Integrator")) return false;
+  /* pbrt-v3's path renders subsurface scattering, pbrt-v4's does not */
+  const vlOldKind *kind = vl_old_kind(integrators, s->name[0]);
+  bool path_tracer = !kind || strcmp(kind->to, "path") == 0;
+  if (path_tracer && file->u->subsurface) {
+    vlOldKind through = kind ? *kind : integrators[0];
+    through.to = "volpath";
+    vlOldKind table[2] = {through, {NULL, NULL, NULL, NULL, NULL}};
+    return rewrite(file, s, table, "volpath");
+  }
+  file->u->plain_path = path_tracer;
   return rewrite(file, s, integrators, "path");
 }
 
@@ -253,7 +263,6 @@ bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   vlUpgrade *u = file->u;
   char text[32];
   double iso = u->iso * u->exposure;
-  u->in_world = true;
   if (!u->filter_given) {
     vl_old_note(s, "PixelFilter \"box\", pbrt-v3's default, before it");
     if (!vl_old_before(file, s, "PixelFilter \"box\"")) return false;

@@ -5,6 +5,17 @@
 #include "base/context.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
+static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
+  for (size_t i = u->textures.count; i > 0; i--)
+    if (strcmp(u->textures.items[i - 1].name, name) == 0) return &u->textures.items[i - 1];
+  return NULL;
+}
+
+static bool is_noise(vlUpgrade *u, const char *name) {
+  const vlOldTexture *t = find_texture(u, name);
+  return t && t->grey;
+}
+
 #define MAPPING                                                                                  \
   {"mapping", VL_OLD_KEEP, NULL}, {"uscale", VL_OLD_KEEP, NULL}, {"vscale", VL_OLD_KEEP, NULL},  \
       {"udelta", VL_OLD_KEEP, NULL}, {"vdelta", VL_OLD_KEEP, NULL}, {"v1", VL_OLD_KEEP, NULL}, { \
@@ -87,11 +98,16 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
   if (b && one_number(b, &value)) {
     set_scale(file, b);
   } else if (b && vl_old_is_texture(b)) {
+    if (a && vl_old_is_texture(a) && is_noise(file->u, a->text[0])) {
+      vlOldParam *t = a;
+      a = b, b = t;
+    }
     const char *copy = vl_old_float_copy(file, s, b->text[0]);
     if (file->u->result != VL_OK) return false;
     if (copy) {
-      vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" becomes one of numbers",
-                  b->text[0]);
+      if (!is_noise(file->u, b->text[0]))
+        vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" becomes one of numbers",
+                    b->text[0]);
       b->new_name = "scale";
       snprintf(b->new_value, sizeof b->new_value, "\"%.150s\"", copy);
     } else {
@@ -146,12 +162,21 @@ static bool uv_rule(vlOldFile *file, vlOldStatement *s) {
   return vl_old_add(file, s, "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb v11\" [ 1 1 0 ]");
 }
 
+/* A noise of colours is one of numbers already. */
+static bool keep_noise(vlUpgrade *u, const char *name, const char *copy) {
+  vlOldTexture *t = VL_PUSH(u->context, &u->textures);
+  if (!t) return vl_old_fail_memory(u);
+  *t = (vlOldTexture){.name = vl_strdup(u->context, name), .copy = vl_strdup(u->context, copy), .grey = true};
+  return (t->name && t->copy) || vl_old_fail_memory(u);
+}
+
 /* pbrt-v4's noise is of numbers: a mix of black and white by it is the colour texture. */
 static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
   if (!is_spectrum(s)) return true;
   char name[300];
   snprintf(name, sizeof name, "%.200s-float", s->name[0]);
   vl_old_note(s, "a mix by the float texture \"%s\"", name);
+  if (!keep_noise(file->u, s->name[0], name)) return false;
   s->name[1] = "float";
   return vl_old_edit(file, s->names[0], "\"%s\"", name) && vl_old_edit(file, s->names[1], "\"float\"") &&
          vl_old_after(file, s,
@@ -184,12 +209,6 @@ static const vlOldKind kinds[] = {
     {NULL, NULL, NULL, NULL, NULL}};
 
 /* ---- float copies ------------------------------------------------------------------------------------------------ */
-
-static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
-  for (size_t i = u->textures.count; i > 0; i--)
-    if (strcmp(u->textures.items[i - 1].name, name) == 0) return &u->textures.items[i - 1];
-  return NULL;
-}
 
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture) {
   vlUpgrade *u = file->u;

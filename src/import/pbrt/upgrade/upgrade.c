@@ -123,6 +123,7 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
   bool fine = file.words || vl_old_fail_memory(u);
   if (fine) {
     memcpy(file.words, data, file.size + 1);
+    if (!u->depth) u->subsurface = strstr(data, "subsurface\"") != NULL;
     fine = read_all(&file);
   }
   *changed = file.edits.count > 0;
@@ -215,7 +216,13 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
   if (def && def->cookie != VL_COOKIE_UPGRADE)
     return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: " VL_BAD_COOKIE);
   if (same_file(from, to)) return vl_fail(error, VL_ERROR_ARGUMENT, "scene upgrade: %s would be overwritten", to);
-  vlUpgrade u = {.context = context, .def = def ? def : &plain, .first = from, .to = to, .exposure = 1, .iso = 100};
+  vlUpgrade u = {.context = context,
+                 .def = def ? def : &plain,
+                 .first = from,
+                 .to = to,
+                 .exposure = 1,
+                 .iso = 100,
+                 .plain_path = true};
   if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
   u.same_folder = folder_of(from, u.from_folder) && strcmp(u.from_folder, u.to_folder) == 0;
   run(&u);

@@ -52,6 +52,7 @@ typedef struct vlOldEdit {
 /* A texture, as it was written to the new file. */
 typedef struct vlOldTexture {
   char *name, *text, *copy; /* copy: name of its float copy; null: none yet */
+  bool grey;                /* the copy says all */
 } vlOldTexture;
 
 /* A file that was included. */
@@ -74,9 +75,10 @@ typedef struct vlUpgrade {
   VL_ARRAY(char *) outputs; /* pairs: path and text of the files to write */
   VL_ARRAY(char *) images;  /* pairs: the old image with its factor, the new one's name */
   uint32_t depth;
-  bool in_world, filter_given;
-  double exposure; /* factor on the film's iso: 1 / the shutter's time */
-  double iso;      /* of the film: 100 * its scale */
+  bool filter_given;
+  bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
+  double exposure;             /* factor on the film's iso: 1 / the shutter's time */
+  double iso;                  /* of the film: 100 * its scale */
   struct vlOldFile *film_file;
   size_t film_end; /* where parameters of the film can be added */
   uint32_t film_line;

@@ -180,6 +180,13 @@ static const struct {
     {"Shape \"nurbs\" \"integer nu\" 4\n", "", 1},
     {"TransformBegin\nTranslate [ 1 2 3 ]\nTransform 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\nTransformEnd\n",
      "AttributeBegin\nTranslate  1 2 3 \nTransform [ 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 ]\nAttributeEnd\n", 0},
+    {"TransformBegin\n  AttributeBegin\n    Material \"mirror\"\n  AttributeEnd\n  Material \"matte\"\n    \"rgb Kd\" "
+     "[ 1 1 1 ]\n"
+     "TransformEnd\nShape \"sphere\"\n",
+     "AttributeBegin\n  AttributeBegin\n    Material \"conductor\" \"rgb reflectance\" [ 0.9 0.9 0.9 ]\n  "
+     "AttributeEnd\n  Material \"diffuse\"\n    \"rgb reflectance\" [ 1 1 1 ]\n"
+     "AttributeEnd\nMaterial \"diffuse\"\n    \"rgb reflectance\" [ 1 1 1 ]\nShape \"sphere\"\n",
+     0},
     {"MakeNamedMedium \"m\" \"string type\" \"heterogeneous\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 "
      "\"float "
      "density\" 1 \"color sigma_a\" [ 1 1 1 ]\n",

@@ -81,7 +81,9 @@ static int run(const Command *command, const Arguments *arguments) {
   print_more(&list);
   if (r == VL_OK && !list.quiet)
     printf("%u statement%s changed, %u without counterpart\n", list.changes, list.changes == 1 ? "" : "s", list.lost);
-  status = r == VL_OK ? STATUS_OK : report_error(&error, r, arguments->operands[0]);
+  status = r == VL_OK               ? STATUS_OK
+           : r == VL_ERROR_ARGUMENT ? report_usage("%s", error.message)
+                                    : report_error(&error, r, arguments->operands[0]);
   if (fflush(stdout) != 0 || ferror(stdout)) status = report_failure(STATUS_IO, "cannot write to stdout");
   for (size_t i = 0; i < list.count; i++) free(list.kinds[i].text);
   free(list.kinds);

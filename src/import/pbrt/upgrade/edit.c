@@ -53,6 +53,9 @@ void vl_old_note(vlOldStatement *s, const char *format, ...) {
   va_end(args);
 }
 
+/* Bit of the order of statements that follow: parameters that are added later still stand before them. */
+static const uint32_t AFTER = 0x80000000u;
+
 /* ---- edits ------------------------------------------------------------------------------------------------------- */
 
 static bool edit_text(vlOldFile *file, vlOldSpan span, const char *text) {
@@ -78,7 +81,6 @@ static char *format_text(vlContext *context, const char *format, va_list args) {
 /* An edit of prefix, text and suffix. Frees text. */
 static bool edit_parts(vlOldFile *file, vlOldSpan span, const char *prefix, int prefix_length, char *text,
                        const char *suffix, int suffix_length) {
-  /* statements that follow stand after added parameters */
   vlContext *context = file->u->context;
   size_t size = text ? strlen(text) + (size_t)prefix_length + (size_t)suffix_length + 1 : 0;
   char *whole = text ? vl_alloc(context, size) : NULL;
@@ -141,7 +143,9 @@ bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, 
   va_end(args);
   char prefix[200];
   snprintf(prefix, sizeof prefix, "\n%.*s", indent, file->text + line);
-  return edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix, (int)strlen(prefix), text, "", 0);
+  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix, (int)strlen(prefix), text, "", 0);
+  if (fine) file->edits.items[file->edits.count - 1].order |= AFTER;
+  return fine;
 }
 
 /* The blanks before the last parameter, which separate an added one, too. */

@@ -27,13 +27,6 @@ static bool lose_it(vlOldFile *file, vlOldStatement *s) {
   return vl_old_remove(file, s);
 }
 
-/* pbrt-v4's TransformBegin is AttributeBegin. */
-static bool rename_block(vlOldFile *file, vlOldStatement *s) {
-  const char *to = strcmp(s->word->name, "TransformBegin") == 0 ? "AttributeBegin" : "AttributeEnd";
-  vl_old_note(s, "-> %s", to);
-  return vl_old_edit(file, s->keyword, "%s", to);
-}
-
 /* Numbers without brackets, those of a matrix in brackets. */
 static bool bracket(vlOldFile *file, vlOldStatement *s) {
   bool has = s->numbers[0].end > s->numbers[0].start, wanted = s->word->form == VL_OLD_MATRIX;
@@ -44,10 +37,10 @@ static bool bracket(vlOldFile *file, vlOldStatement *s) {
   return vl_old_edit(file, s->numbers[0], "%s", "") && vl_old_edit(file, s->numbers[1], "%s", "");
 }
 
-const vlOldWord vl_old_words[] = {{"AttributeBegin", VL_OLD_PLAIN, 0, NULL},
-                                  {"AttributeEnd", VL_OLD_PLAIN, 0, NULL},
-                                  {"TransformBegin", VL_OLD_PLAIN, 0, rename_block},
-                                  {"TransformEnd", VL_OLD_PLAIN, 0, rename_block},
+const vlOldWord vl_old_words[] = {{"AttributeBegin", VL_OLD_PLAIN, 0, vl_old_block},
+                                  {"AttributeEnd", VL_OLD_PLAIN, 0, vl_old_block},
+                                  {"TransformBegin", VL_OLD_PLAIN, 0, vl_old_block},
+                                  {"TransformEnd", VL_OLD_PLAIN, 0, vl_old_block},
                                   {"Identity", VL_OLD_PLAIN, 0, NULL},
                                   {"ReverseOrientation", VL_OLD_PLAIN, 0, NULL},
                                   {"WorldBegin", VL_OLD_PLAIN, 0, vl_old_world},
@@ -103,6 +96,7 @@ static bool read_all(vlOldFile *file) {
       fine = s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s);
       if (fine && s.word->rule) fine = s.word->rule(file, &s);
       fine = fine && vl_old_finish(file, &s);
+      if (fine) vl_old_block_sets(file, &s);
     }
     vl_old_free(file, &s);
     if (!fine) return false;
@@ -130,6 +124,7 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
   if (fine && !(*text = vl_old_render(&file, (vlOldSpan){0, file.size}))) fine = vl_old_fail_memory(u);
   for (size_t i = 0; i < file.edits.count; i++) vl_free(u->context, file.edits.items[i].text);
   VL_ARRAY_FREE(u->context, &file.edits);
+  VL_ARRAY_FREE(u->context, &file.blocks);
   vl_free(u->context, file.words);
   vl_free(u->context, data);
   if (u->film_file == &file) u->film_file = NULL;

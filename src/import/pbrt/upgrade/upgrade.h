@@ -84,12 +84,21 @@ typedef struct vlUpgrade {
   uint32_t film_line;
 } vlUpgrade;
 
+enum { VL_OLD_ATTRIBUTES = 3 };
+/* AttributeBegin or TransformBegin, with the statements in it that set attributes. */
+typedef struct vlOldBlock {
+  bool transform;
+  vlOldSpan set[VL_OLD_ATTRIBUTES]; /* start == end: none */
+  uint32_t line[VL_OLD_ATTRIBUTES];
+} vlOldBlock;
+
 typedef struct vlOldFile {
   vlUpgrade *u;
   const char *path, *text;
   size_t size;
   char *words; /* a copy of the text that the tokenizer changes */
   VL_ARRAY(vlOldEdit) edits;
+  VL_ARRAY(vlOldBlock) blocks;
 } vlOldFile;
 
 /* ---- statements (document.c) --------------------------------------------------------------------------------------
@@ -205,6 +214,9 @@ vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* set
 bool vl_old_finish_settings(vlOldFile *file, vlOldStatement *world);
 /* A float texture with the values of the spectrum texture, written before the statement. Null: there is none. */
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);
+vlOldRule vl_old_block; /* blocks.c */
+/* Remembers a statement that sets an attribute. */
+void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
 /* Shapes that pbrt-v4 does not have, as triangles (quadrics.c). */
 vlOldRule vl_old_mesh_of_shape;
 

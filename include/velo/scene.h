@@ -658,11 +658,17 @@ VL_API void vl_scene_destroy(vlScene *scene);
 /** The scene's first error; VL_OK if there is none. error may be null. */
 VL_API vlResult vl_scene_result(const vlScene *scene, vlError *error);
 
-/** How to read a scene file. Formats other than glTF read only `permissive`. */
+/** How to read a scene file. */
 typedef struct vlLoadDef {
   uint32_t cookie;
-  bool permissive;       /**< true: features that are not supported cause warnings; false: they are errors */
-  double time;           /**< glTF: time of the animations, seconds; unset: the scene without animation */
+  bool permissive;         /**< true: features that are not supported cause warnings, and normals and uvs that are not
+                              finite, normals that are zero and, in pbrt files, missing images are repaired, with a warning
+                              that counts them; false: they are errors (zero normals are not) */
+  bool strict;             /**< glTF, OBJ: true: a missing image is an error; false: a warning, and the material does
+                              without it */
+  const char *search_path; /**< pbrt, glTF, OBJ: further folders, separated by ':', in which files are looked for; null:
+                              none */
+  double time;             /**< glTF: time of the animations, seconds; unset: the scene without animation */
   double time_close;     /**< glTF: time when the shutter closes, seconds, later than `time`; for motion blur; unset: no
                             motion */
   const char *scene;     /**< glTF: name of the scene, or its number from 0; null: the file's default */

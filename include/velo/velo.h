@@ -19,6 +19,7 @@
 #include "velo/render.h"
 #include "velo/scene.h"
 #include "velo/trajectory.h"
+#include "velo/upgrade.h"
 #include "velo/vanishing.h"
 
 #endif

@@ -46,10 +46,11 @@ static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", 
 static const char *const views[] = {"standard", "khronos-neutral", "agx", "raw", NULL};
 static const char *const environments[] = {"auto", "none", "studio", "sky", "white", "file", NULL};
 
-static const Field load_fields[] = {FIELD_BOOL(vlLoadDef, permissive),   FIELD_DOUBLE(vlLoadDef, time),
-                                    FIELD_DOUBLE(vlLoadDef, time_close), FIELD_STRING(vlLoadDef, scene),
-                                    FIELD_STRING(vlLoadDef, animation),  FIELD_STRING(vlLoadDef, variant),
-                                    FIELD_STRING(vlLoadDef, camera),     FIELD_END};
+static const Field load_fields[] = {FIELD_BOOL(vlLoadDef, permissive),    FIELD_DOUBLE(vlLoadDef, time),
+                                    FIELD_DOUBLE(vlLoadDef, time_close),  FIELD_STRING(vlLoadDef, scene),
+                                    FIELD_STRING(vlLoadDef, animation),   FIELD_STRING(vlLoadDef, variant),
+                                    FIELD_STRING(vlLoadDef, camera),      FIELD_BOOL(vlLoadDef, strict),
+                                    FIELD_STRING(vlLoadDef, search_path), FIELD_END};
 static const Field complete_fields[] = {FIELD_CHOICE(vlCompleteDef, environment, environments),
                                         FIELD_DOUBLE(vlCompleteDef, rotation),
                                         FIELD_FLOAT(vlCompleteDef, strength),

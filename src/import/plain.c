@@ -6,6 +6,7 @@
 #include "import/import.h"
 #include "import/labels.h"
 #include "import/ply/ply.h"
+#include "import/repair.h"
 
 void vl_import_plain_settings(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);
@@ -48,12 +49,11 @@ static vlMaterialId add_material(vlScene *scene, bool colors) {
 }
 
 vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
-  (void)load;
   vlContext *context = scene->context;
   vl_import_plain_settings(scene);
   vlPlyMesh mesh = {0};
   vlError inside = {0};
-  vlResult r = vl_ply_read_given(context, path, &mesh, &inside);
+  vlResult r = vl_ply_read_given(context, path, load && load->permissive, &mesh, &inside);
   if (r == VL_OK && !split_quads(context, &mesh)) {
     r = VL_ERROR_MEMORY;
     vl_ply_free(context, &mesh);
@@ -79,6 +79,9 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, 
   def.positions = mesh.positions, def.normals = mesh.normals, def.uvs = mesh.uvs, def.colors = mesh.colors;
   def.indices = mesh.triangle_indices;
   def.material = add_material(scene, mesh.colors != NULL);
+  vlRepairs repairs = {0};
+  if (load && load->permissive) vl_repair_mesh(context, &repairs, &def); /* out of memory: the scene checks it */
+  vl_repairs_report(context, &repairs, path);
   vl_scene_adopt_shape(scene, &def);
   vl_free(context, mesh.quad_indices);
   return vl_scene_result(scene, error);

@@ -160,7 +160,9 @@ static const struct {
     {W "Shape \"curve\" \"float width0\" -1 \"point3 P\" [0 0 0 1 0 0 2 0 0 3 0 0]",
      "t.pbrt:2:1: Shape \"curve\": a width must not be negative"},
     {W "Shape \"spere\"", "t.pbrt:2:1: unknown shape \"spere\" (did you mean \"sphere\"?)"},
-    {W "Texture \"a\" \"spectrum\" \"ptex\"", "t.pbrt:2:1: texture \"ptex\": Ptex files are not supported"},
+    {W "Texture \"a\" \"spectrum\" \"ptex\"",
+     "t.pbrt:2:1: texture \"ptex\": Ptex files are not supported (to convert: bake it into an image over uv, and name "
+     "that by \"imagemap\")"},
     {W "Texture \"a\" \"colour\" \"constant\"",
      "t.pbrt:2:1: Texture \"a\": the type must be \"float\" or \"spectrum\", not \"colour\""},
     {W "Texture \"a\" \"float\" \"constant\"\nTexture \"a\" \"float\" \"constant\"",

@@ -157,17 +157,70 @@ static void circles(void **state) {
     write_file(name, text);
   }
   file_error("deep0.pbrt", VL_ERROR_SCENE, "%/deep64.pbrt:1:9: files include each other more than 64 deep");
-  /* two includes a file, twenty files deep: a million; it ends early */
-  for (int i = 0; i < 20; i++) {
+}
+
+/* Two includes a file: 2^depth of the last file, of this many blanks. */
+static void write_twice(int depth, size_t blanks) {
+  char name[32], text[64], *last = calloc(1, blanks + 1);
+  for (int i = 0; i < depth; i++) {
     snprintf(name, sizeof name, "twice%d.pbrt", i);
     snprintf(text, sizeof text, "Include \"twice%d.pbrt\" Include \"twice%d.pbrt\"", i + 1, i + 1);
     write_file(name, text);
   }
-  write_file("twice20.pbrt", "");
+  snprintf(name, sizeof name, "twice%d.pbrt", depth);
+  memset(last, ' ', blanks);
+  write_file(name, last);
+  free(last);
+  write_file("world.pbrt", "WorldBegin Include \"twice0.pbrt\"");
+}
+
+/* The number of includes is not limited; text that is read again and again is. */
+static void many_includes(void **state) {
+  (void)state;
   Loaded l;
-  load_file(&l, "twice0.pbrt");
+  write_twice(15, 0);
+  load_file(&l, "world.pbrt");
+  assert_int_equal(l.result, VL_OK);
+  end_load(&l);
+  write_twice(12, 1 << 20);
+  load_file(&l, "world.pbrt");
   assert_int_equal(l.result, VL_ERROR_SCENE);
-  assert_string_equal(l.error.message, "more than 20000 files are included");
+  assert_string_equal(l.error.message, "files that are included again and again hold more than 1024 megabytes");
+  end_load(&l);
+  start_load(&l);
+  vlLoadDef def = vl_default_load_def();
+  def.permissive = true;
+  l.result = vl_scene_load(l.scene, in_folder("world.pbrt"), &def, &l.error);
+  assert_int_equal(l.result, VL_OK);
+  assert_non_null(strstr(l.log, "includes beyond the limits left out"));
+  end_load(&l);
+}
+
+/* Folders in which files are looked for: of the naming file, of the scene, of the search path, the current one. */
+static void search(void **state) {
+  (void)state;
+  Loaded l;
+  char folders[600], before[4096];
+  mkdir(in_folder("away"), 0700);
+  mkdir(in_folder("here"), 0700);
+  write_file("away/far.pbrt", "Shape \"sphere\"");
+  write_file("here/near.pbrt", "Shape \"disk\"");
+  write_file("looks.pbrt", "WorldBegin Include \"far.pbrt\" Include \"near.pbrt\"");
+  load_file(&l, "looks.pbrt");
+  assert_int_equal(l.result, VL_ERROR_MISSING);
+  end_load(&l);
+  snprintf(folders, sizeof folders, "/nowhere:%s", in_folder("away"));
+  assert_non_null(getcwd(before, sizeof before));
+  assert_int_equal(chdir(in_folder("here")), 0);
+  start_load(&l);
+  vlLoadDef def = vl_default_load_def();
+  def.search_path = folders;
+  l.result = vl_scene_load(l.scene, in_folder("looks.pbrt"), &def, &l.error);
+  assert_int_equal(chdir(before), 0);
+  assert_int_equal(l.result, VL_OK);
+  assert_int_equal(l.scene->shapes.count, 2);
+  assert_non_null(strstr(l.log, "near.pbrt: taken from the current folder"));
+  assert_null(strstr(l.log, "far.pbrt"));
   end_load(&l);
 }
 
@@ -244,6 +297,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(includes),          cmocka_unit_test(lists_across_files),
       cmocka_unit_test(mistakes_in_parts), cmocka_unit_test(circles),
+      cmocka_unit_test(many_includes),     cmocka_unit_test(search),
       cmocka_unit_test(missing),           cmocka_unit_test(packed),
       cmocka_unit_test(spectra),
   };

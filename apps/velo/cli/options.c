@@ -229,6 +229,14 @@ static int read_value(const Option *option, const char *text, Arguments *argumen
       if (arguments->folder_count == MAX_TEXTS) return report_usage("--%s: at most %d", option->name, MAX_TEXTS);
       arguments->folders[arguments->folder_count++] = text;
       break;
+    case OPTION_SEARCH: {
+      size_t n = strlen(arguments->search);
+      if (!*text) return bad_value(option, text, "must not be empty");
+      if (n + strlen(text) + 2 > sizeof arguments->search) return report_usage("--%s: too long", option->name);
+      snprintf(arguments->search + n, sizeof arguments->search - n, "%s%s", n ? ":" : "", text);
+      value->text = arguments->search;
+      break;
+    }
   }
   value->given = true;
   return -1;

@@ -20,8 +20,9 @@ typedef enum OptionKind {
   OPTION_CHOICE,    /* one of choices */
   OPTION_KIND,      /* one of the kinds of the family that choices names */
   OPTION_TEXT,
-  OPTION_TEXTS,  /* may be repeated; at most one such option per command */
-  OPTION_FOLDERS /* likewise, a separate list */
+  OPTION_TEXTS,   /* may be repeated; at most one such option per command */
+  OPTION_FOLDERS, /* likewise, a separate list */
+  OPTION_SEARCH   /* likewise: folders, joined by ':' */
 } OptionKind;
 
 typedef struct Option {
@@ -35,7 +36,7 @@ typedef struct Option {
   const Choice *choices;
 } Option;
 
-enum { MAX_OPTIONS = 80, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
+enum { MAX_OPTIONS = 88, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
 
 typedef struct OptionValue {
   bool given;
@@ -52,6 +53,7 @@ typedef struct Arguments {
   int text_count;
   const char *folders[MAX_TEXTS];
   int folder_count;
+  char search[4096];                  /* text of the option of kind OPTION_SEARCH: folders joined by ':' */
   const char *operands[MAX_OPERANDS]; /* the first MAX_OPERANDS operands */
   const char *const *all_operands;    /* all operands; points into argv */
   int operand_count;

@@ -100,6 +100,8 @@ static int take_camera(Job *job, vlContext *context, vlScene *scene, const char 
   vlResult result = vl_scene_create(context, &other);
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[RENDER_PERMISSIVE].given;
+  load.strict = arguments->values[RENDER_STRICT].given;
+  if (arguments->values[RENDER_SEARCH].given) load.search_path = arguments->values[RENDER_SEARCH].text;
   if (result == VL_OK) result = vl_scene_load(other, path, &load, &error);
   if (result == VL_OK) {
     job->camera_place = camera_place(vl_scene_defs(other), path);

@@ -208,8 +208,15 @@ const Option render_options[] = {
      "for scenes of strangers: the files that a scene names must lie in\nDIR or beneath it, links followed; several "
      "times for several",
      0, 0, NULL},
-    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn about what is not understood instead of refusing it",
+    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "warn about what is not understood instead of refusing it; repair\nbroken normals, do without missing images, and "
+     "count both",
      0, 0, NULL},
+    {RENDER_STRICT, 0, "strict", OPTION_FLAG, NULL,
+     "a missing image of a glTF or OBJ file is an error (exit code 4);\nwithout, its material does without it", 0, 0,
+     NULL},
+    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
+     "look in DIR, too, for the files that a scene names; several times\nfor several", 0, 0, NULL},
     {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,
      "follow pbrt-v4 where it is known to be off: rough coats come out\n"
      "a few percent too bright",

@@ -78,6 +78,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   load.permissive = v[RENDER_PERMISSIVE].given;
+  load.strict = v[RENDER_STRICT].given;
+  if (v[RENDER_SEARCH].given) load.search_path = v[RENDER_SEARCH].text;
   int status = choose_times(v, &load);
   if (status >= 0) return status;
   if (v[RENDER_SCENE].given) load.scene = v[RENDER_SCENE].text;

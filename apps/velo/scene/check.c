@@ -8,7 +8,7 @@
 #include "cli/report.h"
 #include "scene/scene.h"
 
-enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SANDBOX };
+enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SEARCH, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* findings printed per kind without --all */
 
 /* Copies a finding, so that findings reported while loading are listed with the others. */
@@ -63,6 +63,7 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[CHECK_PERMISSIVE].given;
+  if (arguments->values[CHECK_SEARCH].given) load.search_path = arguments->values[CHECK_SEARCH].text;
   vlResult r = vl_scene_create(context, &scene);
   if (r == VL_OK) r = vl_scene_diagnose(scene, arguments->operands[0], &load, report_message, list, &error);
   bool read = r == VL_OK;
@@ -185,6 +186,7 @@ static const Option options[] = {
      0, NULL},
     {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "what velo does not understand yet is a note, not an error",
      0, 0, NULL},
+    SCENE_SEARCH_OPTION(CHECK_SEARCH),
     SCENE_SANDBOX_OPTION(CHECK_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

@@ -17,7 +17,8 @@ enum {
   CONVERT_ANIMATION,
   CONVERT_COMPLETE,
   CONVERT_PROVE,
-  CONVERT_SANDBOX
+  CONVERT_SANDBOX,
+  CONVERT_SEARCH
 };
 
 static const Option convert_options[] = {
@@ -36,6 +37,7 @@ static const Option convert_options[] = {
     {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "what velo does not understand yet is a warning, not an error", 0, 0, NULL},
+    SCENE_SEARCH_OPTION(CONVERT_SEARCH),
     SCENE_SANDBOX_OPTION(CONVERT_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
@@ -64,6 +66,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status >= 0) return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = v[CONVERT_PERMISSIVE].given;
+  if (v[CONVERT_SEARCH].given) load.search_path = v[CONVERT_SEARCH].text;
   if (v[CONVERT_CAMERA].given) load.camera = v[CONVERT_CAMERA].text;
   if (v[CONVERT_VARIANT].given) load.variant = v[CONVERT_VARIANT].text;
   if (v[CONVERT_ANIMATION].given) load.animation = v[CONVERT_ANIMATION].text;

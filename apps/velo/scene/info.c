@@ -20,7 +20,7 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
   return context_open(&def, context);
 }
 
-enum { INFO_JSON, INFO_PERMISSIVE, INFO_SANDBOX };
+enum { INFO_JSON, INFO_PERMISSIVE, INFO_SEARCH, INFO_SANDBOX };
 enum { LIGHTS = 20, LIGHTS_JSON = 1000 }; /* most lights listed */
 
 typedef struct Facts {
@@ -317,6 +317,7 @@ static int run(const Command *command, const Arguments *arguments) {
   if (status >= 0) return status;
   vlLoadDef load = vl_default_load_def();
   load.permissive = arguments->values[INFO_PERMISSIVE].given;
+  if (arguments->values[INFO_SEARCH].given) load.search_path = arguments->values[INFO_SEARCH].text;
   struct timespec start, end;
   clock_gettime(CLOCK_MONOTONIC, &start);
   vlResult r = vl_scene_create(context, &f.scene);
@@ -348,6 +349,7 @@ static int run(const Command *command, const Arguments *arguments) {
 static const Option options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
     {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "leave out what velo does not understand yet", 0, 0, NULL},
+    SCENE_SEARCH_OPTION(INFO_SEARCH),
     SCENE_SANDBOX_OPTION(INFO_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

@@ -14,6 +14,13 @@
         0, NULL                                                                                                       \
   }
 
+/* The option of all scene commands that adds folders to look in. */
+#define SCENE_SEARCH_OPTION(id)                                                                       \
+  {                                                                                                   \
+    (id), 0, "search-path", OPTION_SEARCH, "DIR",                                                     \
+        "look in DIR, too, for the files that the scene names; several times for several", 0, 0, NULL \
+  }
+
 /* Creates a context with the options' --sandbox folder and a log callback. Returns -1, or the exit code after reporting
  * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/json.h"
 #include "base/text.h"
+#include "import/find.h"
 #include "import/gltf/gltf.h"
 
 enum { MAX_ITEMS = 1 << 24 };
@@ -197,7 +198,8 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
   char name[4096], whole[4096];
   if (strlen(uri) >= sizeof name) return vl_gltf_fail(g, at, "the file name is too long");
   unescape(uri, name);
-  if (!vl_path_join(g->path, name, whole, sizeof whole)) return vl_gltf_fail(g, at, "the file name is too long");
+  vlFound found = vl_find_file(g->path, NULL, g->def->search_path, name, whole, sizeof whole);
+  if (found == VL_FOUND_TOO_LONG) return vl_gltf_fail(g, at, "the file name is too long");
   *path = whole;
   return vl_scene_copy_string(g->scene, path);
 }

@@ -45,6 +45,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, 
        vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g) &&
        vl_gltf_choose_camera(&g);
   ok = ok && vl_gltf_frame_animation(&g);
+  vl_repairs_report(g.context, &g.repairs, path);
   if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
   vl_gltf_close(&g);
   return vl_scene_result(scene, error);

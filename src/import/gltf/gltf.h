@@ -9,6 +9,7 @@
 #include <jansson.h>
 
 #include "import/names.h"
+#include "import/repair.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 
@@ -80,7 +81,7 @@ typedef struct vlGltfMaterial {
 
 /* An encoded image: bytes in memory (owned by the scene) or the path of a file. */
 typedef struct vlGltfImage {
-  bool read;
+  bool read, missing;
   const uint8_t *data;
   size_t size;
   const char *path;
@@ -127,6 +128,7 @@ typedef struct vlGltf {
   const char **node_labels;     /* of the nodes with a mesh; owned by the scene */
   const char **material_labels; /* one per material */
   vlNameTable shape_names, instance_names, material_names;
+  vlRepairs repairs;
   size_t copy;       /* which of EXT_mesh_gpu_instancing's poses is placed; SIZE_MAX: none */
   uint32_t reported; /* bit mask of warnings (VL_GLTF_REPORTED_*) that were given */
   size_t shapes_made, lights_made, cameras_seen;
@@ -186,8 +188,8 @@ bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
-/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path, relative
- * to the folder of the glTF file. */
+/* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path: in the
+ * folder of the glTF file, else on the search path. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
                  const char **path);
 

@@ -16,6 +16,7 @@ typedef struct Cube {
 static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube, int face) {
   if (!vl_gltf_read_image(g, index)) return false;
   const vlGltfImage *file = &g->images[index];
+  if (file->missing) return true; /* reported */
   vlImage *image = NULL;
   vlError error;
   vl_error_clear(&error);
@@ -118,7 +119,9 @@ bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *scen
     if (!ok) vl_gltf_fail(g, VL_GLTF_ITEM(at_images, "[0]", (size_t)k), "there is no such image");
     ok = ok && read_face(g, at_images, (size_t)image, &cube, k);
   }
-  if (ok && intensity > 0) ok = add_cube(g, &cube, rotation, intensity);
+  bool whole = true;
+  for (int k = 0; k < 6; k++) whole = whole && cube.faces[k];
+  if (ok && whole && intensity > 0) ok = add_cube(g, &cube, rotation, intensity);
   for (int k = 0; k < 6; k++) vl_free(g->context, cube.faces[k]);
   return ok;
 }

@@ -148,6 +148,7 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   for (int k = 0; k < 3; k++) def.more_uvs[k] = p->uvs[k + 1];
   def.positions_close = p->positions_close, def.normals_close = p->normals_close;
   def.times[1] = p->positions_close ? g->close - g->open : def.times[1];
+  if (g->def->permissive) vl_repair_mesh(g->context, &g->repairs, &def); /* out of memory: the scene checks it */
   vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
   memset(p, 0, sizeof *p);
   g->shapes_made++;

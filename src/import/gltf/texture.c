@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
 #include "math/elementary.h"
@@ -18,6 +20,22 @@ vlGltfTextureUse vl_gltf_use_channel(int channel, float factor) {
   return use;
 }
 
+static bool is_remote(const char *uri) {
+  return strncmp(uri, "data:", 5) != 0 && strncmp(uri, "file://", 7) != 0 && strstr(uri, "://");
+}
+
+/* Reports a missing image: as an error if strict. */
+static bool report_missing(vlGltf *g, const vlGltfPlace *at, vlGltfImage *image, const char *name, const char *why) {
+  char text[512];
+  snprintf(text, sizeof text, "%.400s", name);
+  vl_make_printable(text);
+  if (g->def->strict || g->scene->problem)
+    return vl_gltf_fail_code(g, VL_ERROR_MISSING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s", text, why);
+  vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at, "uri"), "\"%s\": %s; done without", text, why);
+  g->repairs.images++;
+  return image->read = image->missing = true;
+}
+
 bool vl_gltf_read_image(vlGltf *g, size_t index) {
   vlGltfImage *image = &g->images[index];
   if (image->read) return true;
@@ -28,7 +46,10 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   if (!vl_gltf_text(g, at, json, "uri", &uri) || !vl_gltf_index(g, at, json, "bufferView", g->view_count, &view))
     return false;
   if (uri) {
+    if (is_remote(uri)) return report_missing(g, at, image, uri, "velo fetches nothing from the net");
     if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path)) return false;
+    if (image->path && access(image->path, F_OK) != 0 && !g->scene->problem) /* vl_scene_check reports it itself */
+      return report_missing(g, at, image, image->path, "no such file");
   } else if (view >= 0) {
     if (!g->views[view].data) return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");
     image->data = g->views[view].data;
@@ -125,6 +146,7 @@ bool vl_gltf_texture(vlGltf *g, const vlGltfPlace *up, const json_t *object, con
   if (!choose_image(g, (size_t)texture, &image)) return false;
   if (image < 0) return true;
   if (!vl_gltf_read_image(g, (size_t)image)) return false;
+  if (g->images[image].missing) return true;
   vlTextureDef def = vl_default_texture_def(VL_TEXTURE_IMAGE, use->spectrum);
   char name[64];
   snprintf(name, sizeof name, "images[%d]", (int)image);

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "import/find.h"
 #include "import/obj/obj.h"
 #include "import/pbrt/token.h"
 
@@ -27,8 +28,25 @@ static bool exists(const char *path) {
   return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-/* Finds the image at its path or, since paths are often those of another machine, a file of the same name in the folder
- * of the library. When there is none, the result is null and a warning is given. */
+/* Finds a file at its path or, since paths are often those of another machine, a file of the same name in the folder of
+ * the library or on the search path. */
+static bool find_file(vlObj *obj, const char *name, char *path, size_t size) {
+  const char *slash = strrchr(name, '/');
+  for (int i = 0; i < (slash ? 2 : 1); i++) {
+    vlFound found = vl_find_file(obj->path, NULL, obj->search_path, i ? slash + 1 : name, path, size);
+    if (found == VL_FOUND && exists(path)) return true;
+  }
+  return false;
+}
+
+/* Reports a missing file: as an error if strict. */
+static bool report_missing(vlObj *obj, const char *what, const char *name) {
+  if (!obj->strict) return vl_obj_warn(obj, VL_LOG_WARNING, "%s \"%.200s\"; done without", what, name), true;
+  vl_scene_fail(obj->scene, VL_ERROR_MISSING, (vlSource){obj->path, obj->line, 1}, "%s \"%.200s\"", what, name);
+  return false;
+}
+
+/* Finds an image. When there is none, the result is null and a warning is given. */
 static bool find_image(vlObj *obj, char *name, const char **path) {
   static const char *const known[] = {".png", ".jpg", ".jpeg", ".tga", ".exr", ".hdr", ".pfm",
                                       ".bmp", ".gif", ".ppm",  ".pgm", ".qoi", ".pnm"};
@@ -36,12 +54,9 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
   *path = NULL;
   for (char *p = name; *p; p++)
     if (*p == '\\') *p = '/';
-  const char *slash = strrchr(name, '/');
-  bool found = vl_path_join(obj->path, name, whole, sizeof whole) && exists(whole);
-  if (!found && slash) found = vl_path_join(obj->path, slash + 1, whole, sizeof whole) && exists(whole);
-  if (!found) {
-    vl_obj_warn(obj, VL_LOG_WARNING, "there is no image \"%.200s\"; done without", name);
-    return true;
+  if (!find_file(obj, name, whole, sizeof whole)) {
+    obj->repairs.images++;
+    return report_missing(obj, "there is no image", name);
   }
   bool readable = false;
   for (size_t i = 0; i < sizeof known / sizeof *known; i++) readable |= vl_ends_with(whole, known[i]);
@@ -230,17 +245,12 @@ static bool read_library(vlObj *obj, char *name) {
     return vl_obj_fail(obj, "mtllib: more than %d libraries", VL_OBJ_LIBRARIES);
   for (char *p = name; *p; p++)
     if (*p == '\\') *p = '/';
-  const char *kept = name, *slash = strrchr(name, '/');
+  const char *kept = name;
   const char **slot = VL_PUSH(obj->context, &obj->libraries);
   if (!slot) return vl_obj_fail_memory(obj);
   if (!vl_scene_copy_string(obj->scene, &kept)) return false;
   *slot = kept;
-  bool found = vl_path_join(obj->path, name, path, sizeof path) && exists(path);
-  if (!found && slash) found = vl_path_join(obj->path, slash + 1, path, sizeof path) && exists(path);
-  if (!found) {
-    vl_obj_warn(obj, VL_LOG_WARNING, "mtllib: there is no file \"%.200s\"; done without", name);
-    return true;
-  }
+  if (!find_file(obj, name, path, sizeof path)) return report_missing(obj, "mtllib: there is no file", name);
   vlError error;
   vl_error_clear(&error);
   char *data;

@@ -155,10 +155,25 @@ static bool read_vertex(vlObj *obj) {
   return true;
 }
 
+/* Permissive: a normal or uv of "nan" or "inf" is kept as NaN, to be repaired. */
+static bool is_broken(vlObj *obj, double v[3]) {
+  const char *word;
+  char *at = obj->at;
+  bool broken = false;
+  if (!obj->permissive) return false;
+  for (size_t n = vl_obj_word(obj, &word); n && !broken; n = vl_obj_word(obj, &word)) {
+    size_t sign = word[0] == '-' || word[0] == '+';
+    broken = n >= sign + 3 && (strncasecmp(word + sign, "nan", 3) == 0 || strncasecmp(word + sign, "inf", 3) == 0);
+  }
+  obj->at = at;
+  if (broken) v[0] = v[1] = v[2] = NAN;
+  return broken;
+}
+
 static bool read_uv(vlObj *obj) {
   double v[3] = {0, 0, 0};
   uint32_t count;
-  if (!numbers(obj, "vt", 1, 3, v, &count)) return false;
+  if (!is_broken(obj, v) && !numbers(obj, "vt", 1, 3, v, &count)) return false;
   if (obj->uvs.count / 2 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many uvs");
   if (!VL_RESERVE(obj->context, &obj->uvs, 2)) return vl_obj_fail_memory(obj);
   for (int i = 0; i < 2; i++) obj->uvs.items[obj->uvs.count++] = (float)v[i];
@@ -168,7 +183,7 @@ static bool read_uv(vlObj *obj) {
 static bool read_normal(vlObj *obj) {
   double v[3];
   uint32_t count;
-  if (!numbers(obj, "vn", 3, 3, v, &count)) return false;
+  if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count)) return false;
   if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");
   if (!VL_RESERVE(obj->context, &obj->normals, 3)) return vl_obj_fail_memory(obj);
   for (int i = 0; i < 3; i++) obj->normals.items[obj->normals.count++] = (float)v[i];
@@ -372,7 +387,6 @@ static void free_all(vlObj *obj) {
 }
 
 vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
-  (void)def;
   vl_import_plain_settings(scene);
   char *data;
   size_t size;
@@ -390,6 +404,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     return vl_scene_result(scene, error);
   }
   obj->context = scene->context, obj->scene = scene, obj->path = path;
+  if (def) obj->permissive = def->permissive, obj->strict = def->strict, obj->search_path = def->search_path;
   for (int i = 0; i < 3; i++) obj->low[i] = INFINITY, obj->high[i] = -INFINITY;
   bool fine = vl_obj_material(obj, "") == 0;
   if (fine) obj->materials.items[0].defined = true;
@@ -399,6 +414,7 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     obj->line = 0;
     fine = vl_obj_add_shapes(obj);
   }
+  vl_repairs_report(obj->context, &obj->repairs, path);
   if (fine && obj->parts.count == 0) vl_obj_warn(obj, VL_LOG_WARNING, "draws nothing");
   free_all(obj);
   vl_free(scene->context, data);

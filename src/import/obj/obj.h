@@ -6,6 +6,7 @@
 #define IMPORT_OBJ_OBJ_H
 
 #include "import/labels.h"
+#include "import/repair.h"
 #include "scene/scene.h"
 
 /* Indices of a corner's position, uv and normal, counted from 1; 0: none. */
@@ -73,6 +74,9 @@ typedef struct vlObj {
   vlContext *context;
   vlScene *scene;
   const char *path;
+  bool permissive, strict;
+  const char *search_path; /* further folders, separated by ':'; may be null */
+  vlRepairs repairs;
   uint32_t line, more_lines;     /* first line of the statement, and number of continued lines */
   char nothing[1];               /* target of the pointers of an empty statement */
   char *line_start, *at, *end;   /* start of the line, reading position and end of the current statement */

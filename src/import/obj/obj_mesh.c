@@ -194,6 +194,7 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, c
   def.vertices = n, def.faces = part->triangles;
   def.positions = arrays[0], def.normals = arrays[1], def.uvs = arrays[2], def.colors = arrays[3];
   def.indices = indices;
+  if (obj->permissive) vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */
   return vl_scene_adopt_shape(obj->scene, &def).index != 0;
 }
 

@@ -1,6 +1,8 @@
 /* import/pbrt/builder.c: executes the statements of a pbrt file: where each statement may stand and which function
  * handles it. Also imports a whole file. */
 #include "import/pbrt/builder.h"
+#include "base/error.h"
+#include "import/pbrt/upgrade/detect.h"
 
 #include <string.h>
 
@@ -215,6 +217,15 @@ static bool recover(void *user) {
   return vl_import_recover(user);
 }
 
+/* Permissive: a file beyond the limits is left out. */
+static bool skip_include(void *user, vlSource place) {
+  vlImport *import = user;
+  if (!import->permissive) return false;
+  if (!import->repairs.includes++)
+    vl_import_warn(import, VL_LOG_WARNING, place, "this file and others beyond the limits of Include are left out");
+  return true;
+}
+
 /* ---- a whole file ------------------------------------------------------------------------------------------------ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
@@ -248,6 +259,17 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->medium_links);
 }
 
+/* A scene of an older pbrt: the error names the command. */
+static bool fail_old(vlImport *import, const char *path) {
+  vlOldScene old = vl_old_scene(import->context, path);
+  if (!old.version) return false;
+  vl_error_clear(&import->scene->error);
+  vl_import_fail(import, VL_ERROR_SCENE, (vlSource){path, old.line, old.column},
+                 "this is a pbrt-v%d scene (%s): velo scene upgrade %s NEW.pbrt makes a pbrt-v4 scene of it",
+                 old.version, old.sign, path);
+  return true;
+}
+
 static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,
                     vlError *error) {
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
@@ -257,15 +279,21 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->scene = scene;
   import->permissive = def && def->permissive;
   import->first = path;
+  import->search_path = def ? def->search_path : NULL;
   import->state.ctm[0] = import->state.ctm[1] = vl_mat4_identity();
   import->state.active = 3;
   import->times[1] = 1.0;
   import->edge_scale = 1.0;
   import->state.space = VL_SPACE_SRGB;
-  vlParseTarget target = {import, statement, parse_error, recover};
-  bool fine = data ? vl_parse_memory(import->context, data, size, path, &target)
-                   : vl_parse_file(import->context, path, &target);
+  vlParseTarget target = {import,      statement, parse_error, recover, import->search_path, vl_import_note_elsewhere,
+                          skip_include};
+  bool is_old = !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
+  bool fine = is_old ? false
+              : data ? vl_parse_memory(import->context, data, size, path, &target)
+                     : vl_parse_file(import->context, path, &target);
   if (fine) vl_import_finish(import);
+  vl_repairs_report(import->context, &import->repairs, path);
+  if (!data && scene->error.code == VL_ERROR_SCENE) fail_old(import, path);
   release(import);
   vl_free(scene->context, import);
   return vl_scene_result(scene, error);

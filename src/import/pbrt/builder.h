@@ -4,8 +4,10 @@
 #ifndef IMPORT_PBRT_BUILDER_H
 #define IMPORT_PBRT_BUILDER_H
 
+#include "import/find.h"
 #include "import/names.h"
 #include "import/pbrt/parse.h"
+#include "import/repair.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "scene/schema/schema.h"
@@ -148,7 +150,11 @@ struct vlImport {
   vlContext *context;
   vlScene *scene;
   bool permissive;
-  const char *first; /* path of the first file */
+  bool image_missing;      /* set while a directive is read: its image was reported as missing */
+  const char *first;       /* path of the first file */
+  const char *search_path; /* further folders, separated by ':'; may be null */
+  vlRepairs repairs;
+  uint32_t elsewhere; /* number of files that were found in the current folder only */
   bool in_world;
   vlGraphicsState state;
   VL_ARRAY(vlStackEntry) stack;
@@ -209,9 +215,15 @@ const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end of the import; null when out of memory */
 vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
                       const vlParamList *attributes);
+/* Looks for a file that the file `naming` names (find.h), and notes the first that is in the current folder only. */
+vlFound vl_import_find(vlImport *import, vlSource place, const char *name, char *path, size_t size);
+void vl_import_note_elsewhere(void *user, vlSource place, const char *path);
 /* Writes the path of the file that a string parameter names. Returns false after an error: the file is not readable or
  * the path too long. */
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
+/* Like vl_import_path for an image. When permissive, a missing image is a warning, import->image_missing is set, and
+ * the result is false without an error. */
+bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size);
 bool vl_import_color_space(const char *name, vlColorSpace *space);
 
 /* Appends copies of the parameters, marked optional, to `to`. */

@@ -1,16 +1,11 @@
-/* import/pbrt/directives.c: reads directives and files (parse.h). */
+/* import/pbrt/directives.c: reads directives (parse.h). */
 #include "import/pbrt/parse.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/parser.h"
-
-enum { MAX_DEPTH = 64, MAX_INCLUDES = 20000, MAX_PATH = 4096 };
 
 static bool take_string(vlParserFile *file, const char *directive, const char *what, const char **text) {
   vlToken token = vl_parse_take(file);
@@ -103,8 +98,6 @@ static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   return vl_parse_fail(file, vl_parse_place(file, token), "unknown directive %s", vl_parse_show(token).text);
 }
 
-static bool follow(vlParserFile *file, const vlToken *at, const char *name, bool included);
-
 static bool send(vlParserFile *file, const vlStatement *statement) {
   return file->parser->target->statement(file->parser->target->user, statement);
 }
@@ -182,9 +175,9 @@ static bool read_import(vlParserFile *file, const Keyword *k, const vlToken *at,
   vlToken where = vl_parse_peek(file);
   const char *name;
   if (!take_string(file, k->name, "a file name", &name)) return false;
-  if (k->form == INCLUDE) return follow(file, &where, name, true);
+  if (k->form == INCLUDE) return vl_parse_follow(file, &where, name, true);
   (void)at;
-  if (!send(file, s) || !follow(file, &where, name, false)) return false;
+  if (!send(file, s) || !vl_parse_follow(file, &where, name, false)) return false;
   s->directive = VL_DIR_IMPORT_END;
   return send(file, s);
 }
@@ -225,7 +218,7 @@ static bool read_directive(vlParserFile *file, const vlToken *token) {
   return fine;
 }
 
-/* ---- files ------------------------------------------------------------------------------------------------------ */
+/* ---- a block ----------------------------------------------------------------------------------------------------- */
 
 /* After an error: skips to the next directive when the target wants to continue. Invalid tokens are not skipped. */
 static bool go_on(vlParserFile *file) {
@@ -243,7 +236,7 @@ static bool go_on(vlParserFile *file) {
   return target->recover(target->user);
 }
 
-static bool parse_block(vlParserFile *file, char *data, size_t size) {
+bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
   const unsigned char *b = (const unsigned char *)data;
   vlToken start = {.line = 1, .column = 1};
   if (size >= 2 && ((b[0] == 0xfe && b[1] == 0xff) || (b[0] == 0xff && b[1] == 0xfe)))
@@ -258,78 +251,4 @@ static bool parse_block(vlParserFile *file, char *data, size_t size) {
                            vl_parse_show(&token).text);
     if (!read_directive(file, &token) && !go_on(file)) return false;
   }
-}
-
-static bool exists(const char *path) {
-  struct stat info;
-  return stat(path, &info) == 0;
-}
-
-bool vl_parse_find_file(const char *including, const char *first, const char *name, char *path, size_t size) {
-  if (!vl_path_join(including, name, path, size)) return false;
-  if (exists(path)) return true;
-  char other[MAX_PATH];
-  if (first && vl_path_join(first, name, other, sizeof other) && exists(other)) {
-    size_t length = strlen(other);
-    if (length < size) memcpy(path, other, length + 1);
-  }
-  return true;
-}
-
-/* Parses one file. `at` is the token in `parent` that names the file; null for the first file. */
-static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, const char *path, bool included) {
-  struct stat info;
-  vlParserFile file = {.parser = parser, .parent = parent, .included = included, .path = path};
-  file.depth = parent ? parent->depth + 1 : 0;
-  const vlParseTarget *target = parser->target;
-  if (stat(path, &info) == 0) {
-    file.device = info.st_dev;
-    file.inode = info.st_ino;
-    for (const vlParserFile *f = parent; f; f = f->parent) {
-      if (f->inode != file.inode || f->device != file.device || !f->inode) continue;
-      if (f == parent) return vl_parse_fail(parent, at, "the file includes itself: %s", path);
-      return vl_parse_fail(parent, at, "the file includes itself in a circle: %s is being read already", path);
-    }
-  }
-  if (parent && file.depth > MAX_DEPTH)
-    return vl_parse_fail(parent, at, "files include each other more than %d deep", MAX_DEPTH);
-  if (++parser->includes > MAX_INCLUDES)
-    return vl_parse_fail(parent, at, "more than %d files are included", MAX_INCLUDES);
-  char *data;
-  size_t size;
-  vlError error = {0};
-  vlResult result = parent ? vl_file_read(parser->context, path, true, &data, &size, &error)
-                           : vl_file_read_given(parser->context, path, true, &data, &size, &error);
-  if (result != VL_OK) {
-    target->error(target->user, result, at, error.message);
-    return parent && target->recover && target->recover(target->user);
-  }
-  bool fine = parse_block(&file, data, size);
-  vl_free(parser->context, data);
-  return fine;
-}
-
-static bool follow(vlParserFile *file, const vlToken *at, const char *name, bool included) {
-  vlSource place = vl_parse_place(file, at);
-  char path[MAX_PATH];
-  if (!vl_parse_find_file(file->path, file->parser->first, name, path, sizeof path))
-    return vl_parse_fail(file, place, "file name too long");
-  return parse_path(file->parser, file, place, path, included);
-}
-
-bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target) {
-  vlParser parser = {.context = context, .target = target, .first = path};
-  return parse_path(&parser, NULL, (vlSource){0}, path, false);
-}
-
-bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target) {
-  vlParser parser = {.context = context, .target = target, .first = name};
-  vlParserFile file = {.parser = &parser, .path = name};
-  char *copy = vl_alloc(context, size + 1);
-  if (!copy) return vl_parse_fail_memory(&file);
-  memcpy(copy, data, size);
-  copy[size] = 0;
-  bool fine = parse_block(&file, copy, size);
-  vl_free(context, copy);
-  return fine;
 }

@@ -48,7 +48,7 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
     vl_import_warn(import, VL_LOG_WARNING, dict->place,
                    "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
   if (!vl_dict_done(dict)) return false;
-  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path)
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path && !import->image_missing)
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
   return true;
 }
@@ -79,11 +79,13 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   const vlKindRow *row = vl_kind_row(&vl_light_family, kind);
   vlLightDef def = vl_default_light_def((vlLightKind)kind);
   vlMat4 ctm;
+  import->image_missing = false;
   def.source = s->place;
   def.space = import->state.space;
   if (!vl_import_ctm(import, s->place, &ctm) || !check_source(&dict, row) ||
       !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
     return false;
+  if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def.path) return true; /* permissive: skipped */
   memcpy(def.world_from_light, ctm.m, sizeof def.world_from_light);
   if (def.path)
     def.space = VL_SPACE_SRGB; /* as in pbrt, sRGB for an image without a colour space of its own, whatever the

@@ -38,8 +38,9 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
   const Work *work = user;
   Job *job = &work->jobs[index];
-  job->result = vl_ply_read(work->import->context, work->import->mesh_files.items[work->first + index].path, &job->mesh,
-                            &job->error);
+  const vlImport *import = work->import;
+  job->result = vl_ply_read(import->context, import->mesh_files.items[work->first + index].path, import->permissive,
+                            &job->mesh, &job->error);
 }
 
 /* Splits patches into triangles, since only triangles can be displaced. */
@@ -61,6 +62,14 @@ static bool only_triangles(vlImport *import, vlPlyMesh *mesh) {
   return true;
 }
 
+/* Permissive: repairs the mesh; the first one is reported with the mesh file's name. */
+static bool repair(vlImport *import, const vlMeshFile *file, const vlShapeDef *def) {
+  vlShapeDef named = *def;
+  named.source = (vlSource){file->path, 0, 0};
+  return !import->permissive || vl_repair_mesh(import->context, &import->repairs, &named) ||
+         vl_import_fail_memory(import);
+}
+
 /* A file with triangles and patches becomes two shapes without shared arrays: the patches come first and are copied. */
 static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   vlPlyMesh *mesh = &job->mesh;
@@ -79,6 +88,7 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
     copy.kind = VL_SHAPE_BILINEAR;
     copy.faces = mesh->quads;
     copy.indices = mesh->quad_indices;
+    if (!repair(import, file, &copy)) return false;
     if (!vl_scene_add_shape(import->scene, &copy).index) return false;
     vl_free(import->context, mesh->quad_indices);
     mesh->quad_indices = NULL;
@@ -86,6 +96,7 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   def.kind = mesh->triangles ? VL_SHAPE_TRIANGLES : VL_SHAPE_BILINEAR;
   def.faces = mesh->triangles ? mesh->triangles : mesh->quads;
   def.indices = mesh->triangles ? mesh->triangle_indices : mesh->quad_indices;
+  if (!repair(import, file, &def)) return false;
   *mesh = (vlPlyMesh){0}; /* the arrays have moved, also on failure */
   return vl_scene_adopt_shape(import->scene, &def).index != 0;
 }

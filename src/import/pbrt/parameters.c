@@ -25,7 +25,9 @@ static bool read_string(vlDict *dict, const char *name, const vlParameter *p, co
   if (p->type == VL_PARAMETER_STRING) return vl_dict_string(dict, name, at);
   if (param->strings.items[0][0] == 0 && !(p->flags & VL_PARAMETER_REQUIRED))
     return false; /* an empty file name counts as not given */
-  if (!vl_import_path(dict->import, param, path, sizeof path)) return false;
+  bool found = p->flags & VL_PARAMETER_REQUIRED ? vl_import_path(dict->import, param, path, sizeof path)
+                                                : vl_import_image_path(dict->import, param, path, sizeof path);
+  if (!found) return false;
   *at = vl_import_keep(dict->import, path);
   return *at != NULL;
 }

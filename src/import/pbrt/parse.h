@@ -1,6 +1,6 @@
 /* import/pbrt/parse.h: the grammar of the pbrt language. It turns tokens into directives and passes them to a target of
- * callbacks; it does not depend on scenes. The parser itself reads the files of Include, up to a depth limit. It also
- * reads the files of Import; their directives stand between IMPORT_BEGIN and IMPORT_END. */
+ * callbacks; it does not depend on scenes. The parser itself reads the files of Include, within limits of depth and
+ * size. It also reads the files of Import; their directives stand between IMPORT_BEGIN and IMPORT_END. */
 #ifndef IMPORT_PBRT_PARSE_H
 #define IMPORT_PBRT_PARSE_H
 
@@ -71,11 +71,13 @@ typedef struct vlParseTarget {
   void (*error)(void *user, vlResult code, vlSource place, const char *message);
   /* Called after an error. Returns true to continue after the directive or file. May be null. */
   bool (*recover)(void *user);
+  /* Folders separated by ':' in which included files are looked for, too; null: none. */
+  const char *search_path;
+  /* Called for a file that is found in the current folder only. May be null. */
+  void (*found_elsewhere)(void *user, vlSource place, const char *path);
+  /* Called for a file beyond the limits. Returns true to leave the file out. May be null. */
+  bool (*skip)(void *user, vlSource place);
 } vlParseTarget;
-
-/* Finds the path of an included file: in the folder of the including file, otherwise in the folder of the first
- * file. */
-bool vl_parse_find_file(const char *including, const char *first, const char *name, char *path, size_t size);
 
 /* Both functions return false after an error. vl_parse_memory parses a copy of data and uses name as the file's
  * name. */

@@ -1,5 +1,6 @@
-/* import/pbrt/parser.h: declarations shared by the two files of the parser: the file being read, its next token, errors
- * at a place. parse_params.c reads parameters; directives.c reads directives and files. */
+/* import/pbrt/parser.h: declarations shared by the files of the parser: the file being read, its next token, errors
+ * at a place. parse_params.c reads parameters; directives.c
+ * reads directives, files.c files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
 
@@ -13,7 +14,9 @@ typedef struct vlParser {
   vlContext *context;
   const vlParseTarget *target;
   const char *first; /* path of the first file */
-  uint32_t includes;
+  uint64_t *seen;    /* hash table of the files that were read; 0: empty */
+  uint64_t repeated; /* bytes of the files that were read again */
+  uint32_t seen_capacity, seen_count;
 } vlParser;
 
 typedef struct vlParserFile {
@@ -42,6 +45,10 @@ bool vl_parse_fail_memory(const vlParserFile *file);
 vlToken vl_parse_peek(vlParserFile *file);
 vlToken vl_parse_take(vlParserFile *file); /* does not move past the end of the file */
 bool vl_parse_is_word(const vlToken *token, const char *word);
+/* Reads the directives of a file. data[size] must be a zero byte; the text is modified. */
+bool vl_parse_block(vlParserFile *file, char *data, size_t size);
+/* Reads the file that the token `at` names (files.c). */
+bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bool included);
 /* Reads all parameters that follow a directive. At the end of an included file the list continues after its Include. */
 bool vl_parse_params(vlParserFile *file, vlParamList *params);
 

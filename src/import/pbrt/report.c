@@ -109,13 +109,26 @@ vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColo
   return (vlDict){.import = import, .what = what, .place = place, .space = space, .own = own, .attributes = attributes};
 }
 
+void vl_import_note_elsewhere(void *user, vlSource place, const char *path) {
+  vlImport *import = user;
+  if (!import->elsewhere++)
+    vl_import_warn(import, VL_LOG_INFO, place, "%s: taken from the current folder; it is not beside the scene's files",
+                   path);
+}
+
+vlFound vl_import_find(vlImport *import, vlSource place, const char *name, char *path, size_t size) {
+  vlFound found = vl_find_file(place.file, import->first, import->search_path, name, path, size);
+  if (found == VL_FOUND_CURRENT) vl_import_note_elsewhere(import, place, path);
+  return found;
+}
+
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
   if (param->strings.count != 1)
     return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" takes one file name, found %zu", param->name,
                           param->strings.count);
   if (param->strings.items[0][0] == 0)
     return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" is an empty file name", param->name);
-  if (!vl_parse_find_file(param->place.file, import->first, param->strings.items[0], path, size))
+  if (vl_import_find(import, param->place, param->strings.items[0], path, size) == VL_FOUND_TOO_LONG)
     return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\": file name too long", param->name);
   if (access(path, R_OK) == 0) return true;
   char *data;
@@ -126,6 +139,17 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
   vl_free(import->context, data);
   if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
   return vl_import_fail(import, VL_ERROR_IO, param->place, "cannot read %s", path);
+}
+
+bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size) {
+  const char *name = param->strings.count == 1 ? param->strings.items[0] : "";
+  if (!import->permissive || import->scene->problem || !name[0] ||
+      vl_import_find(import, param->place, name, path, size) != VL_FOUND_NOT)
+    return vl_import_path(import, param, path, size);
+  vl_import_warn(import, VL_LOG_WARNING, param->place, "no such file: %s; done without", path);
+  import->repairs.images++;
+  import->image_missing = true;
+  return false;
 }
 
 bool vl_import_color_space(const char *name, vlColorSpace *space) {

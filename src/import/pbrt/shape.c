@@ -92,6 +92,8 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   if (per == 4)
     vl_dict_find(dict, "emissionfilename",
                  1u << VL_PARAM_STRING); /* accepted and ignored: a hint for pbrt's light sampling */
+  if (import->permissive && !vl_repair_mesh(import->context, &import->repairs, def))
+    return vl_import_fail_memory(import);
   return import->scene->error.code == VL_OK;
 }
 

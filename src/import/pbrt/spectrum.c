@@ -89,7 +89,7 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
   if (strchr(text, '/') || strchr(text, '.')) return read_file(import, param, spectrum);
   const char *near = vl_nearest_name(text, names, count);
   char path[4096];
-  if (!near && vl_parse_find_file(param->place.file, import->first, text, path, sizeof path))
+  if (!near && vl_import_find(import, param->place, text, path, sizeof path) != VL_FOUND_TOO_LONG)
     return read_file(import, param, spectrum);
   return vl_import_fail(import, VL_ERROR_SCENE, param->place, "no spectrum is named \"%s\" (did you mean \"%s\"?)",
                         vl_short_text(text).text, near ? near : "");

@@ -89,6 +89,7 @@ static bool finish_image(const Reading *r, vlTextureDef *def) {
   vl_dict_float(r->dict, "maxanisotropy", &anisotropy); /* accepted and ignored: limit of pbrt's EWA filter */
   if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict))
     return false; /* a misspelt "filename" is reported first */
+  if (r->dict->import->image_missing) return true;
   return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
                                      "%s: \"string filename\" is missing", r->dict->what);
 }
@@ -132,6 +133,15 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
          vl_dict_done(dict);
 }
 
+/* The texture in place of an image that is missing: middle grey, or the number 1. */
+static vlTextureDef stand_in(const vlTextureDef *image) {
+  vlTextureDef def = vl_default_texture_def(VL_TEXTURE_CONSTANT, image->spectrum);
+  def.name = image->name;
+  def.source = image->source;
+  def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));
+  return def;
+}
+
 static bool finish(vlImport *import, uint32_t index) {
   vlPending *pending = &import->textures.items[index]; /* the array no longer grows */
   char what[160];
@@ -146,14 +156,19 @@ static bool finish(vlImport *import, uint32_t index) {
                                            : pending->space; /* images have their own colour space or are sRGB */
   if (kind < 0) {                                            /* permissive: a constant replaces it: middle grey, or 1 */
     if (strcmp(pending->kind, "ptex") == 0) {
-      if (!vl_import_unsupported(import, pending->place, "texture \"ptex\": Ptex files are not supported"))
+      if (!vl_import_unsupported(
+              import, pending->place,
+              "texture \"ptex\": Ptex files are not supported (to convert: bake it into an image over uv, "
+              "and name that by \"imagemap\")"))
         return false;
     } else if (!vl_import_unknown_kind(import, pending->place, &vl_texture_family, pending->kind)) {
       return false;
     }
     def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));
-  } else if (!read_texture(&dict, &def, pending)) {
-    return false;
+  } else {
+    import->image_missing = false;
+    if (!read_texture(&dict, &def, pending)) return false;
+    if (import->image_missing) def = stand_in(&def);
   }
   pending->id = vl_scene_add_texture(import->scene, &def).index;
   return pending->id != 0;

@@ -17,10 +17,11 @@ typedef struct vlPlyMesh {
 } vlPlyMesh;
 
 /* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line number in text files and
- * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours. */
-vlResult vl_ply_read_given(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
+ * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours.
+ * broken: normals and uvs that are not finite are no error (import/repair.h). */
+vlResult vl_ply_read_given(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
 /* Reads a file that a scene names, without colours. */
-vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error);
+vlResult vl_ply_read(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
 /* Reads from memory. name is used in errors. data[size] must be a zero byte; data is not changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
                       vlError *error);

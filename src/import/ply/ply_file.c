@@ -176,13 +176,14 @@ void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
   *mesh = (vlPlyMesh){0};
 }
 
-vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
+static vlResult parse(vlContext *context, const char *name, const char *data, size_t size, bool broken, vlPlyMesh *mesh,
                       vlError *error) {
   vlError local;
   if (!error) error = &local;
   vl_error_clear(error);
   *mesh = (vlPlyMesh){0};
-  vlPlyReader r = {.context = context, .name = name, .at = data, .end = data + size, .mesh = mesh, .error = error};
+  vlPlyReader r = {
+      .context = context, .name = name, .at = data, .end = data + size, .broken = broken, .mesh = mesh, .error = error};
   r.elements = vl_alloc_array(context, VL_PLY_MAX_ELEMENTS, sizeof *r.elements);
   bool fine = r.elements ? true : vl_ply_fail_memory(&r);
   fine = fine && vl_ply_read_header(&r) && read_body(&r) && check(&r) &&
@@ -194,24 +195,30 @@ vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, si
   return fine ? VL_OK : error->code;
 }
 
-static vlResult read_file(vlContext *context, const char *path, bool given, vlPlyMesh *mesh, vlError *error) {
+vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
+                      vlError *error) {
+  return parse(context, name, data, size, false, mesh, error);
+}
+
+static vlResult read_file(vlContext *context, const char *path, bool given, bool broken, vlPlyMesh *mesh,
+                          vlError *error) {
   char *data;
   size_t size;
   *mesh = (vlPlyMesh){0};
   vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
                           : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK) return result;
-  result = vl_ply_parse(context, path, data, size, mesh, error);
+  result = parse(context, path, data, size, broken, mesh, error);
   vl_free(context, data);
   return result;
 }
 
-vlResult vl_ply_read_given(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
-  return read_file(context, path, true, mesh, error);
+vlResult vl_ply_read_given(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
+  return read_file(context, path, true, broken, mesh, error);
 }
 
-vlResult vl_ply_read(vlContext *context, const char *path, vlPlyMesh *mesh, vlError *error) {
-  vlResult result = read_file(context, path, false, mesh, error);
+vlResult vl_ply_read(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
+  vlResult result = read_file(context, path, false, broken, mesh, error);
   vl_free(context, mesh->colors);
   mesh->colors = NULL;
   return result;

@@ -71,6 +71,7 @@ typedef struct vlPlyReader {
   uint32_t element_count;
   vlPlyMesh *mesh;
   bool has_vertices;
+  bool broken;                             /* normals and uvs may be not finite */
   size_t triangle_capacity, quad_capacity; /* in triangles, in patches */
   VL_ARRAY(uint32_t) face;
   vlError *error;

@@ -69,7 +69,8 @@ static bool copy_float_rows(vlPlyReader *r, const vlPlyElement *e) {
     for (int k = 0; m->uvs && k < 2; k++) memcpy(&m->uvs[2 * i + (size_t)k], from + offsets[6 + k], 4);
   }
   size_t n = m->vertices;
-  if (!all_finite(m->positions, 3 * n) || !all_finite(m->normals, 3 * n) || !all_finite(m->uvs, 2 * n)) return false;
+  if (!all_finite(m->positions, 3 * n)) return false;
+  if (!r->broken && (!all_finite(m->normals, 3 * n) || !all_finite(m->uvs, 2 * n))) return false;
   r->at = from;
   return true;
 }
@@ -104,7 +105,8 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
                                          : (colors ? &m->colors[4 * i + (p->role - VL_PLY_RED)] : NULL);
       if (!to) continue;
       *to = p->role >= VL_PLY_RED ? color_value(p->type, p->role == VL_PLY_ALPHA, value) : (float)value;
-      if (!isfinite(*to)) return not_finite(r, i, p->role, value);
+      bool may_break = r->broken && p->role >= VL_PLY_NX && p->role <= VL_PLY_V;
+      if (!isfinite(*to) && !may_break) return not_finite(r, i, p->role, value);
     }
   }
   return true;

@@ -1,0 +1,119 @@
+/* scene/upgrade.c: `velo scene upgrade`: rewrites a pbrt-v3 scene as a pbrt-v4 scene and lists what it changed. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+#include "scene/scene.h"
+#include "velo/upgrade.h"
+
+enum { UPGRADE_STRICT, UPGRADE_ALL, UPGRADE_QUIET, UPGRADE_SEARCH, UPGRADE_SANDBOX };
+enum { SHOWN = 5 }; /* changes with the same text that are printed without --all */
+
+typedef struct Kind {
+  char *text;
+  unsigned count;
+} Kind;
+
+typedef struct List {
+  Kind *kinds;
+  size_t count, capacity;
+  unsigned changes, lost;
+  bool all, quiet;
+} List;
+
+/* Counts a message by its text. An old list that cannot grow counts it as new. */
+static unsigned count_text(List *list, const char *text) {
+  for (size_t i = list->count; i > 0; i--)
+    if (strcmp(list->kinds[i - 1].text, text) == 0) return ++list->kinds[i - 1].count;
+  if (list->count == 1000) return 1;
+  if (list->count == list->capacity) {
+    size_t wanted = list->capacity ? 2 * list->capacity : 64;
+    Kind *grown = realloc(list->kinds, wanted * sizeof *grown);
+    if (!grown) return 1;
+    list->kinds = grown;
+    list->capacity = wanted;
+  }
+  char *copy = strdup(text);
+  if (copy) list->kinds[list->count++] = (Kind){copy, 1};
+  return 1;
+}
+
+static void print_plain(const char *text) {
+  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}
+
+static void told(void *user, vlUpgradeNote note, const vlError *place, const char *message) {
+  static const char *const kinds[] = {"", "lost: ", "wrote: "};
+  List *list = user;
+  if (note == VL_UPGRADE_CHANGED) list->changes++;
+  if (note == VL_UPGRADE_LOST) list->lost++;
+  if (list->quiet && note != VL_UPGRADE_LOST) return;
+  if (note == VL_UPGRADE_CHANGED && count_text(list, message) > SHOWN && !list->all) return;
+  print_plain(place->file);
+  if (place->line) printf(":%u", place->line);
+  printf(": %s", kinds[note]);
+  print_plain(message);
+  putchar('\n');
+}
+
+static void print_more(const List *list) {
+  for (size_t i = 0; i < list->count && !list->all && !list->quiet; i++)
+    if (list->kinds[i].count > SHOWN)
+      printf("%u more: %s (--all shows them)\n", list->kinds[i].count - SHOWN, list->kinds[i].text);
+}
+
+static int run(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  vlContext *context = NULL;
+  vlError error = {0};
+  List list = {.all = v[UPGRADE_ALL].given, .quiet = v[UPGRADE_QUIET].given};
+  int status = scene_context(&context, arguments, report_log, NULL);
+  if (status >= 0) return status;
+  vlUpgradeDef def = vl_default_upgrade_def();
+  def.strict = v[UPGRADE_STRICT].given;
+  def.report = told;
+  def.report_user = &list;
+  if (v[UPGRADE_SEARCH].given) def.search_path = v[UPGRADE_SEARCH].text;
+  vlResult r = vl_scene_upgrade(context, arguments->operands[0], arguments->operands[1], &def, &error);
+  print_more(&list);
+  if (r == VL_OK && !list.quiet)
+    printf("%u statement%s changed, %u without counterpart\n", list.changes, list.changes == 1 ? "" : "s", list.lost);
+  status = r == VL_OK               ? STATUS_OK
+           : r == VL_ERROR_ARGUMENT ? report_usage("%s", error.message)
+                                    : report_error(&error, r, arguments->operands[0]);
+  if (fflush(stdout) != 0 || ferror(stdout)) status = report_failure(STATUS_IO, "cannot write to stdout");
+  for (size_t i = 0; i < list.count; i++) free(list.kinds[i].text);
+  free(list.kinds);
+  vl_context_destroy(context);
+  return status;
+}
+
+static const Option options[] = {
+    {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL, "what has no counterpart is an error; nothing is written", 0, 0,
+     NULL},
+    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL, "every change; without, the first 5 with the same text", 0, 0, NULL},
+    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL, "only what has no counterpart", 0, 0, NULL},
+    SCENE_SEARCH_OPTION(UPGRADE_SEARCH),
+    SCENE_SANDBOX_OPTION(UPGRADE_SANDBOX),
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+const Command scene_upgrade_command = {
+    .name = "scene upgrade",
+    .usage = "OLD NEW [options]",
+    .summary = "rewrite a pbrt-v3 scene as a pbrt-v4 scene",
+    .text =
+        "Reads the pbrt-v3 scene OLD with the files that it includes and writes the pbrt-v4 scene NEW.\n"
+        "Comments, layout and numbers stay. Files that change are written beside NEW; names of files\n"
+        "keep working from there. Maps of infinite lights become equal-area maps (.exr). Prints each\n"
+        "change and whatever has no counterpart, with its place in OLD.",
+    .examples =
+        "velo scene upgrade old/room.pbrt room.pbrt\n"
+        "velo scene upgrade --strict scene.pbrt scene-v4.pbrt",
+    .options = options,
+    .min_operands = 2,
+    .max_operands = 2,
+    .run = run,
+};

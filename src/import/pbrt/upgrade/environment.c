@@ -1,0 +1,145 @@
+/* import/pbrt/upgrade/environment.c: images of lights. pbrt-v3 has maps over longitude and latitude, pbrt-v4 equal-area
+ * maps of the same directions (pbrt book 3.8.3). */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/context.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "image/image.h"
+#include "import/find.h"
+#include "import/pbrt/upgrade/upgrade.h"
+#include "math/approx_double.h"
+#include "math/octahedral.h"
+
+enum { MOST_SIDE = 8192, LEAST_SIDE = 16, LOOKS = 3 };
+
+typedef struct Work {
+  const float *pixels; /* 3 per pixel */
+  uint32_t width, height;
+  const double *factor;
+  vlImage *to;
+} Work;
+
+/* Adds the value at longitude u and latitude v, in pixels, interpolated between four of them. */
+static void look(const Work *w, double u, double v, double sum[3]) {
+  double fu = floor(u), fv = floor(v);
+  for (int c = 0; c < 4; c++) {
+    int64_t i = (int64_t)fu + (c & 1), j = (int64_t)fv + (c >> 1);
+    i = i < 0 ? i + (int64_t)w->width : i >= (int64_t)w->width ? i - (int64_t)w->width : i;
+    j = j < 0 ? 0 : j >= (int64_t)w->height ? (int64_t)w->height - 1 : j;
+    double weight = (c & 1 ? u - fu : 1 - (u - fu)) * (c >> 1 ? v - fv : 1 - (v - fv));
+    const float *p = w->pixels + 3 * ((size_t)j * w->width + (size_t)i);
+    for (int n = 0; n < 3; n++) sum[n] += weight * p[n];
+  }
+}
+
+/* Longitude 0 is the x axis and grows towards y; latitude 0, the first row, is the z axis. */
+static void fill_row(void *user, uint32_t y, uint32_t worker) {
+  (void)worker;
+  const Work *w = user;
+  const double pi = 3.141592653589793;
+  float *row = vl_image_row(w->to, y);
+  double side = w->to->width;
+  for (uint32_t x = 0; x < w->to->width; x++) {
+    double sum[3] = {0, 0, 0};
+    for (int k = 0; k < LOOKS * LOOKS; k++) {
+      vlVec3 d = vl_octahedral_decode((float)((x + (k % LOOKS + 0.5) / LOOKS) / side),
+                                      (float)((y + (k / LOOKS + 0.5) / LOOKS) / side));
+      double phi = vl_atan2_double(d.y, d.x), theta = vl_acos_double(d.z > 1 ? 1 : d.z < -1 ? -1 : (double)d.z);
+      if (phi < 0) phi += 2 * pi;
+      look(w, phi / (2 * pi) * w->width - 0.5, theta / pi * w->height - 0.5, sum);
+    }
+    for (uint32_t n = 0; n < 3; n++) row[3 * x + n] = (float)(sum[n] * w->factor[n] / (LOOKS * LOOKS));
+  }
+}
+
+/* Three channels; those of an image of one are equal. */
+static bool read_pixels(vlOldFile *file, uint32_t line, const vlImage *from, float **pixels) {
+  uint32_t channel[4], count = vl_image_color(from, channel);
+  if (!count) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "the image has no colour");
+  if (count < 3) channel[1] = channel[2] = channel[0];
+  return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(file->u);
+}
+
+static bool convert(vlOldFile *file, uint32_t line, const vlImage *from, const double factor[3], const char *path) {
+  vlUpgrade *u = file->u;
+  double side = sqrt((double)from->width * from->height);
+  uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
+  vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE : even > MOST_SIDE ? MOST_SIDE : even, 0, 3);
+  def.height = def.width;
+  def.type = VL_PIXEL_F32;
+  vlImage *image = NULL;
+  float *pixels = NULL;
+  if (!read_pixels(file, line, from, &pixels)) return false;
+  bool fine = vl_image_create(u->context, &def, &image) == VL_OK || vl_old_fail_memory(u);
+  if (fine) {
+    Work work = {pixels, from->width, from->height, factor, image};
+    vlError error = {0};
+    vl_parallel_for(u->context, def.height, fill_row, &work);
+    vlResult r = vl_image_write(image, path, NULL, &error);
+    fine = r == VL_OK || vl_old_fail(file, r, line, 0, "%s", error.message);
+  }
+  vl_image_destroy(image);
+  vl_free(u->context, pixels);
+  return fine;
+}
+
+/* "sky-equiarea.exr"; a number is added where the name is taken by another image of this scene. */
+static void make_name(vlUpgrade *u, const char *name, char *result, size_t size) {
+  const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name, *dot = strrchr(base, '.');
+  int stem = dot ? (int)(dot - base) : (int)strlen(base);
+  snprintf(result, size, "%.*s-equiarea.exr", stem, base);
+  for (uint32_t k = 2; k < 1000; k++) {
+    bool taken = false;
+    for (size_t i = 1; i < u->images.count; i += 2) taken = taken || strcmp(u->images.items[i], result) == 0;
+    if (!taken) return;
+    snprintf(result, size, "%.*s-equiarea-%u.exr", stem, base, k);
+  }
+}
+
+static bool remember(vlUpgrade *u, const char *key, const char *name) {
+  const char *const texts[2] = {key, name};
+  for (int i = 0; i < 2; i++) {
+    char *copy = vl_strdup(u->context, texts[i]), **slot = copy ? VL_PUSH(u->context, &u->images) : NULL;
+    if (!slot) return vl_free(u->context, copy), vl_old_fail_memory(u);
+    *slot = copy;
+  }
+  return true;
+}
+
+static void tell(const vlUpgrade *u, const char *path) {
+  vlError place = {0};
+  vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
+  if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "the light's image, equal-area");
+}
+
+bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
+                        size_t size) {
+  vlUpgrade *u = file->u;
+  char path[4096], to[8300], key[4400];
+  vlFound found = vl_find_file(file->path, u->first, u->def->search_path, name, path, sizeof path);
+  if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
+  if (found == VL_FOUND_NOT) {
+    vl_old_lose(file, line, "there is no image \"%s\": it must become an equal-area map", name);
+    return snprintf(result, size, "%s", name) > 0;
+  }
+  vlImage *from = NULL;
+  vlError error = {0};
+  snprintf(key, sizeof key, "%s %g %g %g", path, factor[0], factor[1], factor[2]);
+  for (size_t i = 0; i < u->images.count; i += 2)
+    if (strcmp(u->images.items[i], key) == 0) return snprintf(result, size, "%s", u->images.items[i + 1]) > 0;
+  vlResult r = vl_image_read_named(u->context, path, &from, &error);
+  if (r != VL_OK) return vl_old_fail(file, r, line, 0, "%s", error.message);
+  make_name(u, name, result, size);
+  snprintf(to, sizeof to, "%s/%s", u->to_folder, result);
+  bool fine = remember(u, key, result);
+  if (fine && !u->def->strict) {
+    fine = convert(file, line, from, factor, to);
+    if (fine) tell(u, to);
+  }
+  vl_image_destroy(from);
+  return fine;
+}

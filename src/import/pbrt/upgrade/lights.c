@@ -1,0 +1,238 @@
+/* import/pbrt/upgrade/lights.c: LightSource and AreaLightSource. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "color/color.h"
+#include "import/pbrt/token.h"
+#include "import/pbrt/upgrade/upgrade.h"
+
+#define END \
+  { NULL, VL_OLD_KEEP, NULL }
+#define PLACE                    \
+  {"from", VL_OLD_KEEP, NULL}, { \
+    "to", VL_OLD_KEEP, NULL      \
+  }
+#define COMMON                    \
+  {"scale", VL_OLD_KEEP, NULL}, { \
+    "power", VL_OLD_KEEP, NULL    \
+  }
+#define SAMPLES                     \
+  {"samples", VL_OLD_DROP, NULL}, { \
+    "nsamples", VL_OLD_DROP, NULL   \
+  }
+
+static const vlOldRow point[] = {{"I", VL_OLD_KEEP, NULL}, PLACE, COMMON, END};
+static const vlOldRow spot[] = {{"I", VL_OLD_KEEP, NULL},
+                                {"coneangle", VL_OLD_KEEP, NULL},
+                                {"conedeltaangle", VL_OLD_KEEP, NULL},
+                                PLACE,
+                                COMMON,
+                                END};
+static const vlOldRow goniometric[] = {
+    {"I", VL_OLD_KEEP, NULL}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename", VL_OLD_KEEP, NULL}, COMMON, END};
+static const vlOldRow projection[] = {{"mapname", VL_OLD_RENAME, "filename"},
+                                      {"filename", VL_OLD_KEEP, NULL},
+                                      {"fov", VL_OLD_KEEP, NULL},
+                                      {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"},
+                                      COMMON,
+                                      END};
+static const vlOldRow distant[] = {{"L", VL_OLD_KEEP, NULL}, PLACE, COMMON, {"illuminance", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow infinite[] = {{"L", VL_OLD_KEEP, NULL},
+                                    {"mapname", VL_OLD_RENAME, "filename"},
+                                    {"filename", VL_OLD_KEEP, NULL},
+                                    {"portal", VL_OLD_KEEP, NULL},
+                                    {"illuminance", VL_OLD_KEEP, NULL},
+                                    SAMPLES,
+                                    COMMON,
+                                    END};
+static const vlOldRow area[] = {{"L", VL_OLD_KEEP, NULL}, {"twosided", VL_OLD_KEEP, NULL}, SAMPLES, COMMON, END};
+
+/* ---- the factor -------------------------------------------------------------------------------------------------- */
+
+/* The pairs of a sampled spectrum; the caller frees both arrays. */
+static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths, float **values) {
+  vlContext *context = file->u->context;
+  const char *at = file->text + p->value.start, *end = file->text + p->value.end;
+  *wavelengths = vl_alloc_array(context, p->count, sizeof **wavelengths);
+  *values = vl_alloc_array(context, p->count, sizeof **values);
+  if (!*wavelengths || !*values) return vl_old_fail_memory(file->u);
+  for (size_t n = 0; at < end && n < p->count;) {
+    double number;
+    if (!vl_number_scan(&at, end, &number)) {
+      at++;
+      continue;
+    }
+    (n % 2 ? *values : *wavelengths)[n / 2] = (float)number;
+    n++;
+  }
+  return true;
+}
+
+/* pbrt-v4 divides a light's spectrum by its luminance, pbrt-v3 does not. 1 for colours. */
+static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, double *factor) {
+  vlSpectrum one = vl_spectrum_constant(1.0f), spectrum = one;
+  float *wavelengths = NULL, *values = NULL;
+  bool fine = true, sampled = p && strcmp(p->type, "spectrum") == 0;
+  vlError error;
+  *factor = 1;
+  if (sampled && p->strings)
+    vl_old_lose(file, line, "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness by \"scale\"",
+                p->name);
+  if (p && strcmp(p->type, "blackbody") == 0 && p->count && p->number[0] > 0) {
+    spectrum = vl_spectrum_blackbody((float)p->number[0]);
+  } else if (sampled && !p->strings && p->count && p->count % 2 == 0) {
+    fine = read_pairs(file, p, &wavelengths, &values);
+    spectrum.kind = VL_SPECTRUM_SAMPLED;
+    spectrum.wavelengths = wavelengths, spectrum.values = values;
+    spectrum.count = (uint32_t)(p->count / 2);
+  } else {
+    return true;
+  }
+  double y = fine ? vl_spectrum_photometric(&spectrum, &error) : 0, unit = vl_spectrum_photometric(&one, &error);
+  if (y > 0 && unit > 0) *factor = y / unit;
+  vl_free(file->u->context, wavelengths);
+  vl_free(file->u->context, values);
+  return fine;
+}
+
+static bool set_color(vlOldFile *file, vlOldParam *p, const double rgb[3]) {
+  char n[3][32];
+  (void)file;
+  for (int i = 0; i < 3; i++) vl_old_text(rgb[i], n[i]);
+  p->new_type = "rgb";
+  snprintf(p->new_value, sizeof p->new_value, "[ %s %s %s ]", n[0], n[1], n[2]);
+  for (int i = 0; i < 3; i++) p->number[i] = rgb[i];
+  p->count = 3;
+  return true;
+}
+
+/* Makes one number of all factors: "scale", which was a colour, and `more`. tint receives what is not grey. */
+static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, double more, double tint[3]) {
+  vlOldParam *scale = vl_old_find(s, "scale");
+  double value = 1, rgb[3] = {1, 1, 1}, own[3];
+  char text[32];
+  for (int i = 0; i < 3; i++) tint[i] = 1;
+  if (scale && !vl_old_is_grey(scale, &value)) {
+    value = 1;
+    if (!vl_old_is_color(scale, rgb)) {
+      vl_old_lose(file, s->line, "\"scale\": a spectrum has no counterpart: 1 is taken");
+    } else if (color && vl_old_is_color(color, own)) {
+      for (int i = 0; i < 3; i++) own[i] *= rgb[i];
+      set_color(file, color, own);
+      vl_old_note(s, "%s times scale", color->name);
+    } else {
+      memcpy(tint, rgb, sizeof rgb);
+    }
+  }
+  if (scale && value * more == value && strcmp(scale->new_type, "float") == 0) return true;
+  value *= more;
+  bool needed = (float)value != 1.0f;
+  if (scale && needed && scale->count == 3 && more == 1) { /* the number as it is written */
+    scale->new_type = "float";
+    snprintf(scale->new_value, sizeof scale->new_value, "%.*s", (int)(scale->span[0].end - scale->span[0].start),
+             file->text + scale->span[0].start);
+    return true;
+  }
+  if (scale) scale->dropped = true;
+  if (!needed) return true;
+  vl_old_note(s, "scale %s", vl_old_text(value, text));
+  return vl_old_add(file, s, "\"float scale\" %s", vl_old_text(value, text));
+}
+
+/* pbrt-v3's blackbody has a factor as its second number. */
+static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
+  if (!p || strcmp(p->type, "blackbody") != 0 || p->count != 2) return 1;
+  snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
+           file->text + p->span[0].start);
+  return p->number[1];
+}
+
+/* ---- images ------------------------------------------------------------------------------------------------------ */
+
+static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool around, const double factor[3]) {
+  char name[4096];
+  if (!map->strings) return true;
+  if (!(around ? vl_old_environment(file, s->line, map->text[0], factor, name, sizeof name)
+               : vl_old_file_name(file, s->line, map->text[0], name, sizeof name)))
+    return false;
+  if (strcmp(name, map->text[0]) == 0) return true;
+  vl_old_note(s, around ? "an equal-area map \"%s\"" : "filename is \"%s\"", name);
+  return vl_old_edit(file, map->span[0], "\"%s\"", name);
+}
+
+static bool image_light(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
+  bool around = strcmp(s->name[0], "projection") != 0, far = color != NULL;
+  double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
+  if (!map || !map->strings || !map->text[0][0]) return true;
+  if (!color) color = vl_old_find(s, "I");
+  if (color && !vl_old_is_color(color, rgb)) {
+    vl_old_lose(file, s->line, "\"%s\" is a spectrum beside an image: left out", color->name);
+    color->dropped = true;
+  } else if (color && vl_old_is_grey(color, &grey)) {
+    more = grey;
+    for (int i = 0; i < 3; i++) rgb[i] = 1;
+    color->dropped = true;
+    if (grey != 1) vl_old_note(s, "%s in scale", color->name);
+  } else if (color && (far || around)) {
+    color->dropped = true;
+    vl_old_note(s, "%s in the image", color->name);
+  } else if (color) {
+    vl_old_lose(file, s->line, "projection: a colour \"I\" has no counterpart: left out");
+    color->dropped = true;
+  }
+  if (!fold_scale(file, s, NULL, more, tint)) return false;
+  for (int i = 0; i < 3; i++) tint[i] *= rgb[i];
+  if (!around && (tint[0] != tint[1] || tint[1] != tint[2]))
+    vl_old_lose(file, s->line, "projection: a colour \"scale\" has no counterpart: left out");
+  return name_image(file, s, map, around, tint);
+}
+
+static bool plain_light(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
+  double more, factor, tint[3];
+  if (!color) color = vl_old_find(s, "I");
+  if (map && map->strings && map->text[0][0]) return image_light(file, s);
+  if (map) map->dropped = true;
+  more = blackbody_scale(file, color);
+  if (!luminance(file, s->line, color, &factor) || !fold_scale(file, s, color, more * factor, tint)) return false;
+  if (tint[0] == tint[1] && tint[1] == tint[2]) return true;
+  if (!color) {
+    char n[3][32];
+    for (int i = 0; i < 3; i++) vl_old_text(tint[i], n[i]);
+    bool intensity = strcmp(s->name[0], "point") == 0 || strcmp(s->name[0], "spot") == 0;
+    return vl_old_add(file, s, "\"rgb %s\" [ %s %s %s ]", intensity ? "I" : "L", n[0], n[1], n[2]);
+  }
+  vl_old_lose(file, s->line, "a colour \"scale\" of a spectrum has no counterpart: left out");
+  return true;
+}
+
+static const vlOldKind kinds[] = {{"point", "point", point, plain_light, NULL},
+                                  {"spot", "spot", spot, plain_light, NULL},
+                                  {"goniometric", "goniometric", goniometric, plain_light, NULL},
+                                  {"projection", "projection", projection, plain_light, NULL},
+                                  {"distant", "distant", distant, plain_light, NULL},
+                                  {"infinite", "infinite", infinite, plain_light, NULL},
+                                  {"exinfinite", "infinite", infinite, plain_light, NULL},
+                                  {NULL, NULL, NULL, NULL, NULL}};
+
+bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
+  const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
+  if (!kind) {
+    vl_old_lose(file, s->line, "light \"%s\" has no counterpart: left out", s->name[0]);
+    return vl_old_remove(file, s);
+  }
+  return kind->rule(file, s) && vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 0, kind->to);
+}
+
+bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
+  bool diffuse = strcmp(s->name[0], "diffuse") == 0 || strcmp(s->name[0], "area") == 0;
+  if (!s->name[0][0]) return true;
+  if (!diffuse) {
+    vl_old_lose(file, s->line, "area light \"%s\" has no counterpart: left out", s->name[0]);
+    return vl_old_remove(file, s);
+  }
+  return plain_light(file, s) && vl_old_rows(file, s, area, VL_OLD_LOSE) && vl_old_rename(file, s, 0, "diffuse");
+}

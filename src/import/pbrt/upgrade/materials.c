@@ -1,0 +1,274 @@
+/* import/pbrt/upgrade/materials.c: Material and MakeNamedMaterial: the rows of the materials. Defaults that differ are
+ * written out. */
+#include <stdio.h>
+#include <string.h>
+
+#include "import/pbrt/upgrade/upgrade.h"
+
+#define BUMP                                    \
+  {"bumpmap", VL_OLD_RENAME, "displacement"}, { \
+    "displacement", VL_OLD_KEEP, NULL           \
+  }
+#define ROUGHNESSES                                                                                         \
+  {"roughness", VL_OLD_KEEP, NULL}, {"uroughness", VL_OLD_KEEP, NULL}, {"vroughness", VL_OLD_KEEP, NULL}, { \
+    "remaproughness", VL_OLD_KEEP, NULL                                                                     \
+  }
+#define END \
+  { NULL, VL_OLD_KEEP, NULL }
+static const char whole_coat[] = "the coat reflects what its eta says";
+
+static const vlOldRow matte[] = {{"Kd", VL_OLD_RENAME, "reflectance"}, {"sigma", VL_OLD_KEEP, NULL}, BUMP, END};
+static const vlOldRow plastic[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
+                                   {"Ks", VL_OLD_LOSE, whole_coat},
+                                   {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+                                   ROUGHNESSES,
+                                   BUMP,
+                                   END};
+static const vlOldRow substrate[] = {
+    {"Kd", VL_OLD_RENAME, "reflectance"}, {"Ks", VL_OLD_LOSE, whole_coat}, ROUGHNESSES, BUMP, END};
+static const vlOldRow metal[] = {{"eta", VL_OLD_KEEP, NULL}, {"k", VL_OLD_KEEP, NULL}, ROUGHNESSES, BUMP, END};
+static const vlOldRow mirror[] = {{"Kr", VL_OLD_RENAME, "reflectance"},
+                                  {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.9 0.9 0.9 ]"},
+                                  BUMP,
+                                  END};
+static const vlOldRow glass[] = {{"index", VL_OLD_RENAME, "eta"}, {"eta", VL_OLD_KEEP, NULL}, ROUGHNESSES, BUMP, END};
+static const vlOldRow translucent[] = {{"Ks", VL_OLD_LOSE, "only the diffuse part is kept"},
+                                       {"roughness", VL_OLD_DROP, NULL},
+                                       {"remaproughness", VL_OLD_DROP, NULL},
+                                       {"reflect", VL_OLD_DROP, NULL},
+                                       {"transmit", VL_OLD_DROP, NULL},
+                                       {"Kd", VL_OLD_DROP, NULL},
+                                       BUMP,
+                                       END};
+static const vlOldRow hair[] = {
+    {"color", VL_OLD_RENAME, "reflectance"}, {"sigma_a", VL_OLD_KEEP, NULL}, {"eumelanin", VL_OLD_KEEP, NULL},
+    {"pheomelanin", VL_OLD_KEEP, NULL},      {"eta", VL_OLD_KEEP, NULL},     {"beta_m", VL_OLD_KEEP, NULL},
+    {"beta_n", VL_OLD_KEEP, NULL},           {"alpha", VL_OLD_KEEP, NULL},   END};
+static const vlOldRow kdsubsurface[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
+                                        {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]"},
+                                        {"mfp", VL_OLD_KEEP, NULL},
+                                        {"mfp", VL_OLD_DEFAULT, "\"rgb mfp\" [ 1 1 1 ]"},
+                                        {"Kr", VL_OLD_DROP, NULL},
+                                        {"Kt", VL_OLD_DROP, NULL},
+                                        {"index", VL_OLD_RENAME, "eta"},
+                                        {"eta", VL_OLD_DEFAULT, "\"float eta\" 1.3"},
+                                        {"eta", VL_OLD_KEEP, NULL},
+                                        {"g", VL_OLD_KEEP, NULL},
+                                        {"scale", VL_OLD_KEEP, NULL},
+                                        ROUGHNESSES,
+                                        BUMP,
+                                        END};
+static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP, NULL},
+                                      {"Kt", VL_OLD_DROP, NULL},
+                                      {"index", VL_OLD_RENAME, "eta"},
+                                      {"eta", VL_OLD_KEEP, NULL},
+                                      {"name", VL_OLD_KEEP, NULL},
+                                      {"sigma_a", VL_OLD_KEEP, NULL},
+                                      {"sigma_s", VL_OLD_KEEP, NULL},
+                                      {"scale", VL_OLD_KEEP, NULL},
+                                      {"g", VL_OLD_KEEP, NULL},
+                                      ROUGHNESSES,
+                                      BUMP,
+                                      END};
+static const vlOldRow uber[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
+                                {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+                                {"Ks", VL_OLD_LOSE, whole_coat},
+                                {"Kr", VL_OLD_LOSE, "its mirror reflection is that of the coat"},
+                                {"Kt", VL_OLD_LOSE, "nothing is transmitted"},
+                                {"index", VL_OLD_RENAME, "eta"},
+                                {"eta", VL_OLD_KEEP, NULL},
+                                ROUGHNESSES,
+                                BUMP,
+                                END};
+static const vlOldRow none[] = {{"bumpmap", VL_OLD_DROP, NULL}, END};
+static const vlOldRow fourier[] = {{"bsdffile", VL_OLD_DROP, NULL}, BUMP, END};
+static const vlOldRow disney[] = {{"metallic", VL_OLD_KEEP, NULL},
+                                  {"roughness", VL_OLD_KEEP, NULL},
+                                  {"eta", VL_OLD_KEEP, NULL},
+                                  {"clearcoat", VL_OLD_KEEP, NULL},
+                                  BUMP,
+                                  END};
+static const vlOldRow mix[] = {{"materials", VL_OLD_KEEP, NULL}, {"amount", VL_OLD_KEEP, NULL}, END};
+
+/* ---- rules ------------------------------------------------------------------------------------------------------- */
+
+/* Oren and Nayar's roughness; zero has no effect. */
+static bool matte_rule(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *p = vl_old_find(s, "sigma");
+  double value;
+  if (!p) return true;
+  if (!vl_old_is_grey(p, &value) || value != 0)
+    vl_old_lose(file, s->line, "matte's \"sigma\" has no counterpart: the surface is Lambertian");
+  p->dropped = true;
+  return true;
+}
+
+/* A roughness of pbrt-v3's default where none is given. */
+static bool add_roughness(vlOldFile *file, vlOldStatement *s, const char *value) {
+  if (vl_old_find(s, "roughness")) return true;
+  bool u = vl_old_find(s, "uroughness"), v = vl_old_find(s, "vroughness");
+  vl_old_note(s, "with roughness %s", value);
+  if (!u && !v) return vl_old_add(file, s, "\"float roughness\" %s", value);
+  if (u && v) return true;
+  return vl_old_add(file, s, u ? "\"float vroughness\" %s" : "\"float uroughness\" %s", value);
+}
+
+static bool is_black(vlOldStatement *s, const char *name) {
+  double value;
+  vlOldParam *p = vl_old_find(s, name);
+  return p && vl_old_is_grey(p, &value) && value == 0;
+}
+
+/* Without its coat, plastic and substrate are diffuse. */
+static bool coat_rule(vlOldFile *file, vlOldStatement *s) {
+  if (is_black(s, "Ks")) {
+    static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness", "remaproughness"};
+    for (size_t i = 0; i < sizeof coat / sizeof *coat; i++) vl_old_drop(s, vl_old_find(s, coat[i]));
+    return true;
+  }
+  return add_roughness(file, s, "0.1");
+}
+
+static bool substrate_rule(vlOldFile *file, vlOldStatement *s) {
+  if (!coat_rule(file, s) || vl_old_find(s, "Kd")) return true;
+  return vl_old_add(file, s, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]");
+}
+
+static bool metal_rule(vlOldFile *file, vlOldStatement *s) {
+  return add_roughness(file, s, "0.01");
+}
+
+/* pbrt-v4's dielectric is not tinted. */
+static bool glass_rule(vlOldFile *file, vlOldStatement *s) {
+  static const char *const names[] = {"Kr", "Kt"};
+  for (int i = 0; i < 2; i++) {
+    vlOldParam *p = vl_old_find(s, names[i]);
+    double value;
+    if (!p) continue;
+    if (!vl_old_is_grey(p, &value) || value != 1)
+      vl_old_lose(file, s->line, "glass: \"%s\" has no counterpart: clear glass is written", names[i]);
+    vl_old_drop(s, p);
+  }
+  vlOldParam *eta = vl_old_find(s, "eta");
+  if (!eta) eta = vl_old_find(s, "index");
+  if (eta && vl_old_is_texture(eta)) {
+    vl_old_lose(file, s->line, "glass: an \"eta\" of a texture has no counterpart: 1.5 is taken");
+    vl_old_drop(s, eta);
+  }
+  return true;
+}
+
+/* The integrator's name is written already. */
+static bool tell_path(vlOldFile *file, const vlOldStatement *s) {
+  vlUpgrade *u = file->u;
+  if (u->plain_path && !u->subsurface)
+    vl_old_lose(file, s->line,
+                "pbrt-v4's \"path\" does not render subsurface scattering: name \"volpath\" as integrator");
+  u->plain_path = false;
+  return true;
+}
+
+/* A name says all; pbrt-v4 wants sigma_a and sigma_s both or neither. */
+static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"), *b = vl_old_find(s, "sigma_s");
+  bool named = name && name->strings && name->text[0][0];
+  if (named) vl_old_drop(s, a), vl_old_drop(s, b);
+  tell_path(file, s);
+  if (named || !a == !b) return true;
+  return vl_old_add(file, s, "%s", a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");
+}
+
+static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
+  return tell_path(file, s);
+}
+
+static bool none_rule(vlOldFile *file, vlOldStatement *s) {
+  (void)file;
+  for (size_t i = 0; i < s->params.count; i++)
+    if (strcmp(s->params.items[i].name, "type") != 0) vl_old_drop(s, &s->params.items[i]);
+  return true;
+}
+
+static const vlOldKind kinds[] = {
+    {"matte", "diffuse", matte, matte_rule, NULL},
+    {"plastic", "coateddiffuse", plastic, coat_rule, NULL},
+    {"substrate", "coateddiffuse", substrate, substrate_rule, NULL},
+    {"metal", "conductor", metal, metal_rule, NULL},
+    {"mirror", "conductor", mirror, NULL, NULL},
+    {"glass", "dielectric", glass, glass_rule, NULL},
+    {"uber", "coateddiffuse", uber, vl_old_uber, NULL},
+    {"translucent", "diffusetransmission", translucent, vl_old_translucent, NULL},
+    {"mix", "mix", mix, vl_old_mix, NULL},
+    {"hair", "hair", hair, NULL, NULL},
+    {"kdsubsurface", "subsurface", kdsubsurface, kd_rule, NULL},
+    {"subsurface", "subsurface", subsurface, subsurface_rule, NULL},
+    {"disney", "principled", disney, vl_old_disney,
+     "disney has no counterpart in pbrt-v4: velo's own principled is written"},
+    {"fourier", "diffuse", fourier, NULL, "fourier has no counterpart: grey diffuse is written"},
+    {"measured", "diffuse", none, none_rule, "pbrt-v2's measured has no counterpart: grey diffuse is written"},
+    {"shinymetal", "conductor", NULL, none_rule, "pbrt-v2's shinymetal has no counterpart: a conductor is written"},
+    {"none", "interface", none, none_rule, NULL},
+    {"", "interface", none, none_rule, NULL},
+    {NULL, NULL, NULL, NULL, NULL}};
+
+/* Kinds that only pbrt-v4 has stay as they are. */
+static bool is_new(const char *name, vlOldStatement *s) {
+  static const char *const names[] = {"diffuse",         "coateddiffuse", "conductor",
+                                      "coatedconductor", "dielectric",    "diffusetransmission",
+                                      "thindielectric",  "interface",     "principled"};
+  if (strcmp(name, "measured") == 0) return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (strcmp(names[i], name) == 0) return true;
+  return false;
+}
+
+/* A material without a coat: what its reflectance is, is known already. */
+static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
+  bool coated = strcmp(kind->to, "coateddiffuse") == 0;
+  for (size_t i = 0; i < s->params.count && coated; i++) {
+    const vlOldParam *p = &s->params.items[i];
+    double value;
+    if (p->dropped && strcmp(p->name, "Ks") == 0 && vl_old_is_grey(p, &value) && value == 0) return "diffuse";
+  }
+  return kind->to;
+}
+
+static const vlOldKind *find(vlOldFile *file, vlOldStatement *s, const char *name) {
+  const vlOldKind *kind = vl_old_kind(kinds, name);
+  if (is_new(name, s)) return NULL;
+  if (kind) return kind;
+  static const vlOldKind unknown = {"", "diffuse", NULL, none_rule, NULL};
+  vl_old_lose(file, s->line, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written", name);
+  return &unknown;
+}
+
+static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
+  if (kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
+  if (kind->rule && !kind->rule(file, s)) return false;
+  const vlOldRow *rows = kind->rows;
+  static const vlOldRow bare[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
+                                  BUMP,
+                                  {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
+                                  END};
+  if (strcmp(new_kind(s, kind), kind->to) != 0) rows = bare;
+  return vl_old_rows(file, s, rows, VL_OLD_LOSE);
+}
+
+bool vl_old_material(vlOldFile *file, vlOldStatement *s) {
+  const vlOldKind *kind = find(file, s, s->name[0]);
+  if (!kind) return true;
+  if (!rewrite(file, s, kind)) return false;
+  return vl_old_rename(file, s, 0, new_kind(s, kind));
+}
+
+bool vl_old_named_material(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *type = vl_old_find(s, "type");
+  const char *name = type && type->strings ? type->text[0] : "matte"; /* pbrt-v3's default */
+  const vlOldKind *kind = find(file, s, name);
+  if (!kind) return true;
+  if (!rewrite(file, s, kind)) return false;
+  const char *to = new_kind(s, kind);
+  vl_old_note(s, "\"%s\" -> \"%s\"", name, to);
+  if (!type) return vl_old_add(file, s, "\"string type\" \"%s\"", to);
+  return vl_old_edit(file, type->span[0], "\"%s\"", to);
+}

@@ -1,0 +1,243 @@
+/* import/pbrt/upgrade/textures.c: Texture. */
+#include <stdio.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "import/pbrt/upgrade/upgrade.h"
+
+static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
+  for (size_t i = u->textures.count; i > 0; i--)
+    if (strcmp(u->textures.items[i - 1].name, name) == 0) return &u->textures.items[i - 1];
+  return NULL;
+}
+
+static bool is_noise(vlUpgrade *u, const char *name) {
+  const vlOldTexture *t = find_texture(u, name);
+  return t && t->grey;
+}
+
+#define MAPPING                                                                                  \
+  {"mapping", VL_OLD_KEEP, NULL}, {"uscale", VL_OLD_KEEP, NULL}, {"vscale", VL_OLD_KEEP, NULL},  \
+      {"udelta", VL_OLD_KEEP, NULL}, {"vdelta", VL_OLD_KEEP, NULL}, {"v1", VL_OLD_KEEP, NULL}, { \
+    "v2", VL_OLD_KEEP, NULL                                                                      \
+  }
+#define END \
+  { NULL, VL_OLD_KEEP, NULL }
+
+static const vlOldRow constant[] = {{"value", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow scale[] = {{"tex", VL_OLD_KEEP, NULL}, {"scale", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow mix[] = {
+    {"tex1", VL_OLD_KEEP, NULL}, {"tex2", VL_OLD_KEEP, NULL}, {"amount", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow bilerp[] = {{"v00", VL_OLD_KEEP, NULL},
+                                  {"v01", VL_OLD_KEEP, NULL},
+                                  {"v10", VL_OLD_KEEP, NULL},
+                                  {"v11", VL_OLD_KEEP, NULL},
+                                  MAPPING,
+                                  END};
+static const vlOldRow imagemap[] = {{"filename", VL_OLD_KEEP, NULL},
+                                    {"wrap", VL_OLD_KEEP, NULL},
+                                    {"maxanisotropy", VL_OLD_KEEP, NULL},
+                                    {"scale", VL_OLD_KEEP, NULL},
+                                    {"invert", VL_OLD_KEEP, NULL},
+                                    {"encoding", VL_OLD_KEEP, NULL},
+                                    {"filter", VL_OLD_KEEP, NULL},
+                                    MAPPING,
+                                    END};
+static const vlOldRow uv[] = {MAPPING, END};
+static const vlOldRow checkerboard[] = {{"dimension", VL_OLD_KEEP, NULL},
+                                        {"tex1", VL_OLD_KEEP, NULL},
+                                        {"tex2", VL_OLD_KEEP, NULL},
+                                        {"aamode", VL_OLD_DROP, NULL},
+                                        MAPPING,
+                                        END};
+static const vlOldRow dots[] = {{"inside", VL_OLD_KEEP, NULL}, {"outside", VL_OLD_KEEP, NULL}, MAPPING, END};
+static const vlOldRow noise[] = {{"octaves", VL_OLD_KEEP, NULL}, {"roughness", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow marble[] = {{"octaves", VL_OLD_KEEP, NULL},
+                                  {"roughness", VL_OLD_KEEP, NULL},
+                                  {"scale", VL_OLD_KEEP, NULL},
+                                  {"variation", VL_OLD_KEEP, NULL},
+                                  END};
+static const vlOldRow ptex[] = {
+    {"filename", VL_OLD_KEEP, NULL}, {"encoding", VL_OLD_KEEP, NULL}, {"scale", VL_OLD_KEEP, NULL}, END};
+
+static bool is_spectrum(const vlOldStatement *s) {
+  return strcmp(s->name[1], "float") != 0;
+}
+
+/* ---- scale ------------------------------------------------------------------------------------------------------- */
+
+/* Whether the input is a constant of one number; an input that is not given is 1. */
+static bool one_number(const vlOldParam *p, double *value) {
+  *value = 1;
+  return !p || vl_old_is_grey(p, value);
+}
+
+static void set_scale(vlOldFile *file, vlOldParam *p) {
+  p->new_name = "scale";
+  p->new_type = "float";
+  if (p->count != 3) return;
+  snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
+           file->text + p->span[0].start);
+}
+
+/* pbrt-v3 multiplies two textures of one type, pbrt-v4 a texture by numbers. */
+static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *a = vl_old_find(s, "tex1"), *b = vl_old_find(s, "tex2");
+  double value, rgb[3];
+  char text[32];
+  if (!a && !b) return true; /* pbrt-v4's already, or 1 */
+  if (!is_spectrum(s)) {
+    if (a) a->new_name = "tex";
+    if (b) b->new_name = "scale";
+    return true;
+  }
+  if (!one_number(b, &value) && one_number(a, &value)) {
+    vlOldParam *t = a;
+    a = b, b = t;
+  }
+  if (b && one_number(b, &value)) {
+    set_scale(file, b);
+  } else if (b && vl_old_is_texture(b)) {
+    if (a && vl_old_is_texture(a) && is_noise(file->u, a->text[0])) {
+      vlOldParam *t = a;
+      a = b, b = t;
+    }
+    const char *copy = vl_old_float_copy(file, s, b->text[0]);
+    if (file->u->result != VL_OK) return false;
+    if (copy) {
+      if (!is_noise(file->u, b->text[0]))
+        vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" becomes one of numbers",
+                    b->text[0]);
+      b->new_name = "scale";
+      snprintf(b->new_value, sizeof b->new_value, "\"%.150s\"", copy);
+    } else {
+      vl_old_lose(file, s->line, "a product of two colour textures has no counterpart: \"%s\" is left out", b->text[0]);
+      b->dropped = true;
+    }
+  } else if (b && vl_old_is_color(b, rgb)) {
+    vl_old_lose(file, s->line, "a texture times a colour has no counterpart: the colour's mean is taken");
+    set_scale(file, b);
+    snprintf(b->new_value, sizeof b->new_value, "%s", vl_old_text((rgb[0] + rgb[1] + rgb[2]) / 3, text));
+  } else if (b) {
+    vl_old_lose(file, s->line, "a texture times a spectrum has no counterpart: the texture alone is taken");
+    b->dropped = true;
+  }
+  if (a) a->new_name = "tex";
+  return true;
+}
+
+/* ---- others ------------------------------------------------------------------------------------------------------ */
+
+static bool image_rule(vlOldFile *file, vlOldStatement *s) {
+  vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
+             *name = vl_old_find(s, "filename");
+  if (trilinear) {
+    bool on =
+        trilinear->text[0] ? strcmp(trilinear->text[0], "true") == 0 : file->text[trilinear->span[0].start] == 't';
+    vl_old_drop(s, trilinear);
+    if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\"")) return false;
+  }
+  if (gamma && strcmp(gamma->type, "bool") == 0) {
+    bool on = gamma->text[0] ? strcmp(gamma->text[0], "true") == 0 : file->text[gamma->span[0].start] == 't';
+    vl_old_drop(s, gamma);
+    if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear")) return false;
+  } else if (gamma) {
+    char text[32];
+    vl_old_drop(s, gamma);
+    if (!(gamma->number[0] == 1
+              ? vl_old_add(file, s, "\"string encoding\" \"linear\"")
+              : vl_old_add(file, s, "\"string encoding\" \"gamma %s\"", vl_old_text(gamma->number[0], text))))
+      return false;
+  }
+  char path[4096];
+  if (!name || !name->strings) return true;
+  if (!vl_old_file_name(file, s->line, name->text[0], path, sizeof path)) return false;
+  if (strcmp(path, name->text[0]) == 0) return true;
+  vl_old_note(s, "filename is \"%s\"", path);
+  return vl_old_edit(file, name->span[0], "\"%s\"", path);
+}
+
+/* Red is u, green v: the corners of a bilinear interpolation. */
+static bool uv_rule(vlOldFile *file, vlOldStatement *s) {
+  return vl_old_add(file, s, "\"rgb v00\" [ 0 0 0 ] \"rgb v01\" [ 0 1 0 ] \"rgb v10\" [ 1 0 0 ] \"rgb v11\" [ 1 1 0 ]");
+}
+
+/* A noise of colours is one of numbers already. */
+static bool keep_noise(vlUpgrade *u, const char *name, const char *copy) {
+  vlOldTexture *t = VL_PUSH(u->context, &u->textures);
+  if (!t) return vl_old_fail_memory(u);
+  *t = (vlOldTexture){.name = vl_strdup(u->context, name), .copy = vl_strdup(u->context, copy), .grey = true};
+  return (t->name && t->copy) || vl_old_fail_memory(u);
+}
+
+/* pbrt-v4's noise is of numbers: a mix of black and white by it is the colour texture. */
+static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
+  if (!is_spectrum(s)) return true;
+  char name[300];
+  snprintf(name, sizeof name, "%.200s-float", s->name[0]);
+  vl_old_note(s, "a mix by the float texture \"%s\"", name);
+  if (!keep_noise(file->u, s->name[0], name)) return false;
+  s->name[1] = "float";
+  return vl_old_edit(file, s->names[0], "\"%s\"", name) && vl_old_edit(file, s->names[1], "\"float\"") &&
+         vl_old_after(file, s,
+                      "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" [ 1 1 1 ] "
+                      "\"texture amount\" \"%s\"",
+                      s->name[0], name);
+}
+
+/* pbrt-v4's marble is of colours. */
+static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
+  if (!is_spectrum(s)) vl_old_lose(file, s->line, "marble of numbers has no counterpart: pbrt-v4's is of colours");
+  return true;
+}
+
+/* The share of a mix is a number in both; as a texture it is a float texture in both. */
+static const vlOldKind kinds[] = {
+    {"constant", "constant", constant, NULL, NULL},
+    {"scale", "scale", scale, scale_rule, NULL},
+    {"mix", "mix", mix, NULL, NULL},
+    {"bilerp", "bilerp", bilerp, NULL, NULL},
+    {"imagemap", "imagemap", imagemap, image_rule, NULL},
+    {"uv", "bilerp", uv, uv_rule, NULL},
+    {"checkerboard", "checkerboard", checkerboard, NULL, NULL},
+    {"dots", "dots", dots, NULL, NULL},
+    {"fbm", "fbm", noise, noise_rule, NULL},
+    {"wrinkled", "wrinkled", noise, noise_rule, NULL},
+    {"windy", "windy", NULL, noise_rule, NULL},
+    {"marble", "marble", marble, marble_rule, NULL},
+    {"ptex", "ptex", ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
+    {NULL, NULL, NULL, NULL, NULL}};
+
+/* ---- float copies ------------------------------------------------------------------------------------------------ */
+
+const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture) {
+  vlUpgrade *u = file->u;
+  vlOldTexture *t = find_texture(u, texture);
+  if (!t) return NULL;
+  if (t->copy) return t->copy;
+  char name[300];
+  snprintf(name, sizeof name, "%.200s-float", texture);
+  t->copy = vl_strdup(u->context, name);
+  if (!t->copy) return vl_old_fail_memory(u), NULL;
+  return vl_old_before(file, s, "Texture \"%s\" \"float\" %s", name, t->text) ? t->copy : NULL;
+}
+
+/* Keeps what follows name and type of an image texture in the new text. */
+static bool keep(vlOldFile *file, const vlOldStatement *s) {
+  vlUpgrade *u = file->u;
+  if (strcmp(s->name[2], "imagemap") != 0 || !is_spectrum(s)) return true;
+  char *text = vl_old_render(file, (vlOldSpan){s->names[2].start, s->whole.end});
+  vlOldTexture *t = text ? VL_PUSH(u->context, &u->textures) : NULL;
+  if (!t) return vl_free(u->context, text), vl_old_fail_memory(u);
+  *t = (vlOldTexture){.name = vl_strdup(u->context, s->name[0]), .text = text};
+  return t->name || vl_old_fail_memory(u);
+}
+
+bool vl_old_texture(vlOldFile *file, vlOldStatement *s) {
+  const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
+  if (kind && kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
+  if (kind && kind->rule && !kind->rule(file, s)) return false;
+  if (strcmp(s->name[1], "color") == 0 && !vl_old_rename(file, s, 1, "spectrum")) return false;
+  return !kind || (vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 2, kind->to) &&
+                   vl_old_finish(file, s) && keep(file, s));
+}

@@ -1,0 +1,237 @@
+/* import/pbrt/upgrade/upgrade.h: types and functions shared by the files that turn pbrt-v3 text into pbrt-v4 text.
+ * Data flow: document.c cuts a file into statements that keep their places in the text; tables.c and the rules
+ * (materials.c, textures.c, lights.c, shapes.c, settings.c) say what changes; edit.c collects edits and applies them,
+ * so that all other text stays as it is; files.c finds and names files; upgrade.c drives. */
+#ifndef IMPORT_PBRT_UPGRADE_UPGRADE_H
+#define IMPORT_PBRT_UPGRADE_UPGRADE_H
+
+#include "base/array.h"
+#include "velo/scene.h"
+#include "velo/upgrade.h"
+
+/* Part of a file's text: [start, end). */
+typedef struct vlOldSpan {
+  size_t start, end;
+} vlOldSpan;
+
+enum { VL_OLD_FIRST = 16 }; /* values of a parameter that are kept */
+
+typedef struct vlOldParam {
+  const char *type, *name; /* as written */
+  const char *new_type, *new_name;
+  char new_value[200];   /* empty: as written */
+  vlOldSpan decl, value; /* value includes its brackets */
+  size_t count;
+  bool bracket, strings, dropped;
+  vlOldSpan span[VL_OLD_FIRST];
+  const char *text[VL_OLD_FIRST]; /* strings without quotes; null for other values */
+  double number[VL_OLD_FIRST];
+} vlOldParam;
+
+typedef struct vlOldWord vlOldWord;
+
+typedef struct vlOldStatement {
+  const vlOldWord *word;
+  vlOldSpan keyword, whole;
+  uint32_t line, column;
+  size_t name_count;
+  vlOldSpan names[3];
+  const char *name[3];
+  VL_ARRAY(vlOldParam) params;
+  vlOldSpan numbers[2]; /* opening and closing bracket of a list of numbers; start == end: none */
+  char changes[400];    /* what the report says of the statement */
+  bool finished;        /* vl_old_finish has run */
+} vlOldStatement;
+
+typedef struct vlOldEdit {
+  vlOldSpan span;
+  char *text; /* owned */
+  uint32_t order;
+} vlOldEdit;
+
+/* A texture, as it was written to the new file. */
+typedef struct vlOldTexture {
+  char *name, *text, *copy; /* copy: name of its float copy; null: none yet */
+  bool grey;                /* the copy says all */
+} vlOldTexture;
+
+/* A file that was included. */
+typedef struct vlOldInclude {
+  char *path, *name; /* where it was found; what the new Include says */
+} vlOldInclude;
+
+typedef struct vlUpgrade {
+  vlContext *context;
+  const vlUpgradeDef *def;
+  const char *first, *to;                  /* the old scene's first file, and the new one */
+  char from_folder[4096], to_folder[4096]; /* absolute */
+  bool same_folder;
+  vlResult result;
+  vlError error;
+  uint32_t lost, made; /* made: number of names that were made up */
+  bool see_through;    /* the material of that name was written */
+  VL_ARRAY(vlOldTexture) textures;
+  VL_ARRAY(vlOldInclude) includes;
+  VL_ARRAY(char *) outputs; /* pairs: path and text of the files to write */
+  VL_ARRAY(char *) images;  /* pairs: the old image with its factor, the new one's name */
+  uint32_t depth;
+  bool filter_given;
+  bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
+  double exposure;             /* factor on the film's iso: 1 / the shutter's time */
+  double iso;                  /* of the film: 100 * its scale */
+  struct vlOldFile *film_file;
+  size_t film_end; /* where parameters of the film can be added */
+  uint32_t film_line;
+} vlUpgrade;
+
+enum { VL_OLD_ATTRIBUTES = 3 };
+/* AttributeBegin or TransformBegin, with the statements in it that set attributes. */
+typedef struct vlOldBlock {
+  bool transform;
+  vlOldSpan set[VL_OLD_ATTRIBUTES]; /* start == end: none */
+  uint32_t line[VL_OLD_ATTRIBUTES];
+} vlOldBlock;
+
+typedef struct vlOldFile {
+  vlUpgrade *u;
+  const char *path, *text;
+  size_t size;
+  char *words; /* a copy of the text that the tokenizer changes */
+  VL_ARRAY(vlOldEdit) edits;
+  VL_ARRAY(vlOldBlock) blocks;
+} vlOldFile;
+
+/* ---- statements (document.c) --------------------------------------------------------------------------------------
+ */
+
+typedef enum vlOldForm {
+  VL_OLD_PLAIN,   /* names, then no more */
+  VL_OLD_NUMBERS, /* numbers, with or without brackets */
+  VL_OLD_MATRIX,  /* sixteen numbers in brackets */
+  VL_OLD_WORD,    /* one word */
+  VL_OLD_PARAMS   /* names and parameters */
+} vlOldForm;
+
+typedef bool vlOldRule(vlOldFile *file, vlOldStatement *s);
+
+struct vlOldWord {
+  const char *name;
+  vlOldForm form;
+  uint32_t names; /* most strings before the parameters; MediumInterface may have one fewer */
+  vlOldRule *rule;
+};
+extern const vlOldWord vl_old_words[]; /* ends with a null name (upgrade.c) */
+
+typedef struct vlTokenizer vlTokenizer;
+/* Reads the next statement. *end: there is none. False after an error. */
+bool vl_old_read(vlOldFile *file, vlTokenizer *tokens, vlOldStatement *s, bool *end);
+void vl_old_free(vlOldFile *file, vlOldStatement *s);
+
+/* ---- edits and reports (edit.c) ------------------------------------------------------------------------------------
+ */
+
+bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+bool vl_old_fail_memory(vlUpgrade *u);
+/* Reports what has no counterpart. */
+void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Adds to what the report says of the statement's change. */
+void vl_old_note(vlOldStatement *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Replaces part of the text. Insertions have an empty span; those at the same place keep their order. */
+bool vl_old_edit(vlOldFile *file, vlOldSpan span, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Removes a whole statement, with its line where it stands alone. */
+bool vl_old_remove(vlOldFile *file, vlOldStatement *s);
+/* Adds a statement before or after s, on a line of its own with the same indentation. */
+bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Adds a parameter at the end of the statement. */
+bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Replaces name i of the statement and notes the change. */
+bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *name);
+/* Makes the edits of the statement's parameters and reports the change. */
+bool vl_old_finish(vlOldFile *file, vlOldStatement *s);
+/* The new text of a span; the caller frees it. Null: out of memory. */
+char *vl_old_render(vlOldFile *file, vlOldSpan span);
+
+/* ---- parameters (params.c) -----------------------------------------------------------------------------------------
+ */
+
+vlOldParam *vl_old_find(vlOldStatement *s, const char *name); /* the last one that is not dropped; null: none */
+/* Leaves the parameter out. */
+void vl_old_drop(vlOldStatement *s, vlOldParam *p);
+/* Converts type names and values to those of pbrt-v4. */
+bool vl_old_types(vlOldFile *file, vlOldStatement *s);
+/* Whether the parameter is a number, or a colour of three equal numbers. */
+bool vl_old_is_grey(const vlOldParam *p, double *value);
+/* Whether the parameter is a colour; a number counts. */
+bool vl_old_is_color(const vlOldParam *p, double rgb[3]);
+bool vl_old_is_texture(const vlOldParam *p);
+/* The number of a parameter, or `otherwise`. */
+double vl_old_number(vlOldStatement *s, const char *name, double otherwise);
+/* The number as text: the shortest that gives the same float. */
+const char *vl_old_text(double value, char text[32]);
+
+typedef enum vlOldAction {
+  VL_OLD_KEEP,
+  VL_OLD_RENAME,
+  VL_OLD_DROP,   /* has no meaning in pbrt-v4 */
+  VL_OLD_LOSE,   /* has one that pbrt-v4 does not have */
+  VL_OLD_DEFAULT /* `to` is added where it is not given: the default has changed */
+} vlOldAction;
+typedef struct vlOldRow {
+  const char *name;
+  vlOldAction action;
+  const char *to;
+} vlOldRow;
+/* Applies rows, which end with a null name, to the parameters that are not yet renamed or dropped. others: what is done
+ * with parameters that no row names. */
+bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others);
+
+/* A kind of one directive. */
+typedef struct vlOldKind {
+  const char *from, *to;
+  const vlOldRow *rows;
+  vlOldRule *rule;  /* runs before the rows; may be null */
+  const char *lost; /* reported; may be null */
+} vlOldKind;
+/* The row of a kind; null for unknown kinds. The table ends with a null name. */
+const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name);
+
+/* ---- rules ---------------------------------------------------------------------------------------------------------
+ */
+
+vlOldRule vl_old_material, vl_old_named_material;                         /* materials.c */
+vlOldRule vl_old_disney, vl_old_uber, vl_old_translucent, vl_old_mix;     /* materials_more.c */
+vlOldRule vl_old_texture;                                                 /* textures.c */
+vlOldRule vl_old_light, vl_old_area_light;                                /* lights.c */
+vlOldRule vl_old_shape;                                                   /* shapes.c */
+vlOldRule vl_old_camera, vl_old_film, vl_old_sampler, vl_old_integrator;  /* settings.c */
+vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* settings.c */
+/* Adds what only WorldBegin knows: the default filter, the exposure. */
+bool vl_old_finish_settings(vlOldFile *file, vlOldStatement *world);
+/* A float texture with the values of the spectrum texture, written before the statement. Null: there is none. */
+const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);
+vlOldRule vl_old_block; /* blocks.c */
+/* Remembers a statement that sets an attribute. */
+void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
+/* Shapes that pbrt-v4 does not have, as triangles (quadrics.c). */
+vlOldRule vl_old_mesh_of_shape;
+
+/* ---- files (files.c, environment.c) -------------------------------------------------------------------------------
+ */
+
+/* What the new scene says for a file that the old one names. False after an error. */
+bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result, size_t size);
+/* Includes: upgrades the file and names the new one. */
+vlOldRule vl_old_include;
+/* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
+bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
+/* Converts an image over longitude and latitude, times the factor, to an equal-area one beside the new scene, and gives
+ * its name. A square image only gets its name. */
+bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
+                        size_t size);
+
+#endif

@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# velo scene upgrade: the program's output and codes; upgraded scenes render to what the same pbrt-v4 scenes render to.
+. "$(dirname "${BASH_SOURCE[0]}")/../harness.sh"
+cd "$work" || exit 1
+mkdir -p old new
+
+# old FILE MATERIAL-LINES: a pbrt-v3 scene of two spheres over a floor.
+old_scene() {
+  cat >"old/$1" <<SCENE
+LookAt 0 2 6  0 .5 0  0 1 0
+Camera "perspective" "float fov" [ 40 ]
+Film "image" "integer xresolution" [ 48 ] "integer yresolution" [ 32 ] "string filename" "$1.exr"
+Sampler "lowdiscrepancy" "integer pixelsamples" 16
+PixelFilter "box"
+Integrator "path"
+WorldBegin
+  LightSource "infinite" "color L" [ .4 .5 .6 ] "integer nsamples" 4
+  LightSource "distant" "point from" [ 2 5 3 ] "color L" [ 1 1 1 ] "color scale" [ 2 2 2 ]
+  TransformBegin
+    Translate -1 .5 0
+    $2
+    Shape "sphere" "float radius" [ .9 ]
+  TransformEnd
+  Material "matte" "color Kd" [ .5 .5 .5 ]
+  Shape "trianglemesh" "point P" [ -9 -.4 -9  9 -.4 -9  9 -.4 9  -9 -.4 9 ] "integer indices" [ 0 1 2 0 2 3 ]
+    "float uv" [ 0 0 1 0 1 1 0 1 ]
+WorldEnd
+SCENE
+}
+
+# new_scene FILE MATERIAL-LINES: the same by hand.
+new_scene() {
+  cat >"new/$1" <<SCENE
+LookAt 0 2 6  0 .5 0  0 1 0
+Camera "perspective" "float fov" [ 40 ]
+Film "rgb" "integer xresolution" [ 48 ] "integer yresolution" [ 32 ]
+Sampler "paddedsobol" "integer pixelsamples" 16
+PixelFilter "box"
+Integrator "path"
+WorldBegin
+  LightSource "infinite" "rgb L" [ .4 .5 .6 ]
+  LightSource "distant" "point3 from" [ 2 5 3 ] "rgb L" [ 1 1 1 ] "float scale" 2
+  AttributeBegin
+    Translate -1 .5 0
+    $2
+    Shape "sphere" "float radius" [ .9 ]
+  AttributeEnd
+  Material "diffuse" "rgb reflectance" [ .5 .5 .5 ]
+  Shape "trianglemesh" "point3 P" [ -9 -.4 -9  9 -.4 -9  9 -.4 9  -9 -.4 9 ] "integer indices" [ 0 1 2 0 2 3 ]
+    "point2 uv" [ 0 0 1 0 1 1 0 1 ]
+SCENE
+}
+
+# same NAME OLD-MATERIAL NEW-MATERIAL: both scenes give the same bytes.
+same() {
+  old_scene "$1.pbrt" "$2"
+  new_scene "$1-hand.pbrt" "$3"
+  check "$1_upgrades" "$VELO" scene upgrade "old/$1.pbrt" "new/$1.pbrt" --quiet
+  rm -f a.pfm b.pfm
+  "$VELO" render "new/$1.pbrt" -o a.pfm --quiet --threads 1 && "$VELO" render "new/$1-hand.pbrt" -o b.pfm --quiet --threads 1
+  check "$1_same_image" cmp a.pfm b.pfm
+}
+
+same matte 'Material "matte" "color Kd" [ .8 .2 .1 ]' 'Material "diffuse" "rgb reflectance" [ .8 .2 .1 ]'
+same plastic 'Material "plastic" "color Kd" [ .8 .2 .1 ] "float roughness" [ .05 ]' \
+  'Material "coateddiffuse" "rgb reflectance" [ .8 .2 .1 ] "float roughness" [ .05 ]'
+same metal 'Material "metal" "spectrum eta" "spds/Al.eta.spd" "spectrum k" "spds/Al.k.spd"' \
+  'Material "conductor" "spectrum eta" "metal-Al-eta" "spectrum k" "metal-Al-k" "float roughness" .01'
+same glass 'Material "glass" "float index" 1.4' 'Material "dielectric" "float eta" 1.4'
+same mirror 'Material "mirror" "rgb Kr" [ .8 .8 .8 ]' 'Material "conductor" "rgb reflectance" [ .8 .8 .8 ]'
+same opacity 'Material "uber" "rgb Ks" [ 0 0 0 ] "rgb opacity" [ 0 0 0 ]' 'Material "interface"'
+same mix 'MakeNamedMaterial "a" "string type" "matte" "rgb Kd" [ .9 .1 .1 ] MakeNamedMaterial "b" "string type" "matte"
+  "rgb Kd" [ .1 .1 .9 ] Material "mix" "string namedmaterial1" "a" "string namedmaterial2" "b" "rgb amount" [ 1 1 1 ]' \
+  'Material "diffuse" "rgb reflectance" [ .9 .1 .1 ]'
+same translucent 'Material "translucent" "rgb Kd" [ .8 .8 .8 ] "rgb reflect" [ .5 .5 .5 ] "rgb transmit" [ .25 .25 .25 ]' \
+  'Material "diffusetransmission" "rgb reflectance" [ .4 .4 .4 ] "rgb transmittance" [ .2 .2 .2 ]'
+
+# What is printed, and the codes.
+old_scene lost.pbrt 'Material "fourier" "string bsdffile" "a.bsdf"'
+expect_code 3 recognised "$VELO" render old/lost.pbrt
+expect_text recognised_text 'this is a pbrt-v3 scene (Film "image"): velo scene upgrade old/lost.pbrt NEW.pbrt'
+expect_code 3 checked "$VELO" scene check old/lost.pbrt
+expect_text checked_text 'velo scene upgrade'
+check listed "$VELO" scene upgrade old/lost.pbrt new/lost.pbrt
+expect_code 0 listed "$VELO" scene upgrade old/lost.pbrt new/lost.pbrt
+expect_text listed_change 'old/lost.pbrt:3: Film: "image" -> "rgb"'
+expect_text listed_loss 'old/lost.pbrt:12: lost: fourier has no counterpart'
+expect_text listed_sum ', 1 without counterpart'
+rm new/lost.pbrt
+expect_code 3 strict "$VELO" scene upgrade --strict old/lost.pbrt new/lost.pbrt
+check strict_writes_nothing test ! -e new/lost.pbrt
+expect_code 2 not_itself "$VELO" scene upgrade old/lost.pbrt old/lost.pbrt
+expect_code 4 missing "$VELO" scene upgrade old/none.pbrt new/none.pbrt
+expect_code 5 no_folder "$VELO" scene upgrade old/lost.pbrt nowhere/none.pbrt
+
+# Missing images of other formats; files elsewhere.
+printf 'newmtl a\nmap_Kd gone.png\n' >t.mtl
+printf 'mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n' >t.obj
+check done_without "$VELO" render t.obj --spp 1 --resolution 8x8 -o t.exr --quiet
+expect_code 4 missing_strict "$VELO" render t.obj --strict --spp 1 --resolution 8x8 -o t.exr
+mkdir -p lib
+printf 'Shape "sphere"\n' >lib/ball.pbrt
+printf 'WorldBegin\nInclude "ball.pbrt"\nLightSource "infinite"\n' >old/search.pbrt
+expect_code 4 not_found "$VELO" render old/search.pbrt --spp 1 --resolution 8x8 -o s.exr
+check search_path "$VELO" render old/search.pbrt --search-path nowhere --search-path lib --spp 1 --resolution 8x8 -o s.exr --quiet
+check search_again "$VELO" render --again s.exr -o again.exr --quiet
+check search_same cmp s.exr again.exr
+finish

@@ -178,6 +178,9 @@ typedef struct vlRenderDef {
    * pixel, of the lens and of the exposure. same_wavelengths: all paths have the same wavelengths. sharp_textures:
    * textures are not filtered by the footprint. */
   bool centred, same_wavelengths, sharp_textures;
+  /** Samples whose camera ray meets nothing, or a backdrop, have no radiance: the image is premultiplied by its alpha.
+   * Light paths that connect to the camera are not affected. Default false. */
+  bool transparent;
   /** Tracers with light paths (docs/tracers.md): the radius within which paths are merged in the first pass, in scene
    * units, above 0. VL_UNSET: the radius spans two pixels. */
   double merge_radius;

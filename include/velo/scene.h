@@ -524,6 +524,8 @@ typedef struct vlShapeDef {
   const float *more_uvs[3];   /**< triangles: uv sets 1 to 3, 2 per vertex; may be null */
   const float *colors;        /**< triangles: vertex colours, 4 per vertex: linear R G B and coverage; may be null */
   bool one_sided;             /**< triangles: rays that meet a back face pass through it */
+  /** The shape is a part of the background: it is rendered, but alpha is 0 where camera rays meet it first. */
+  bool backdrop;
   /** Moving triangles: positions and normals at times[1]; `positions` and `normals` are those at times[0]. Between
    * these times they are interpolated linearly; before and after them the mesh is at rest. May be null. A moving mesh
    * cannot emit light. */
@@ -685,13 +687,20 @@ VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef 
 
 /** The environment (light from all directions) that vl_scene_complete adds. */
 typedef enum vlEnvironmentKind {
-  VL_ENVIRONMENT_AUTO,   /**< STUDIO if vlSceneDefs.light_missing, dimmed if the scene has other lights; else none */
+  VL_ENVIRONMENT_AUTO,   /**< STUDIO if vlSceneDefs.light_missing, else none. If the scene has other lights, its
+                            strength is such that a surface gets 0.3 times as much light from it as from them */
   VL_ENVIRONMENT_NONE,   /**< none is added */
   VL_ENVIRONMENT_STUDIO, /**< neutral: soft lights above and in front in a grey room */
   VL_ENVIRONMENT_SKY,    /**< a clear sky and the sun */
   VL_ENVIRONMENT_WHITE,  /**< radiance 1 from all directions */
   VL_ENVIRONMENT_FILE    /**< the image at `path` */
 } vlEnvironmentKind;
+/** From where the added camera looks. */
+typedef enum vlFraming {
+  VL_FRAMING_AUTO,   /**< CORNER; flat models nearly along their normal; the middle of a shell that contains nothing */
+  VL_FRAMING_CORNER, /**< from the front, slightly from the right and from above */
+  VL_FRAMING_FRONT   /**< straight from the front */
+} vlFraming;
 /** What to add to a scene that lacks a camera, a light or a ground. */
 typedef struct vlCompleteDef {
   uint32_t cookie;
@@ -704,12 +713,20 @@ typedef struct vlCompleteDef {
   double up[3], front[3]; /**< directions in world space; default +y and +z, as in glTF */
   bool ground;            /**< adds a wide grey disk under everything */
   bool reframe;           /**< replaces the file's camera by one that frames the scene */
+  vlFraming framing;      /**< where the added camera stands */
+  /** With the added camera and the studio: a ground of the studio's colour under the model, which catches its shadows
+   * and becomes transparent away from it. It is a backdrop (vlShapeDef.backdrop). Default false. */
+  bool backdrop;
+  /** With the added camera: of a closed model (a room whose walls hide it, a dome around it) the faces between the
+   * camera and the middle are left out; a note gives their number. The camera of a dome frames what the dome contains.
+   * Default false. */
+  bool open_walls;
 } vlCompleteDef;
 /** The default def. */
 VL_API vlCompleteDef vl_default_complete_def(void);
 /** Adds what is missing (vlSceneDefs.camera_missing, light_missing) or requested. The new camera looks at the whole
- * scene from the front, slightly from the right and from above. def may be null. Errors: as vl_scene_result; MISSING,
- * IO (path). */
+ * scene (vlFraming). What is chosen is logged (VL_LOG_DEBUG). def may be null. Errors: as vl_scene_result; MISSING, IO
+ * (path). */
 VL_API vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *def, vlError *error);
 
 /** The size of a scene. */

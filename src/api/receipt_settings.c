@@ -45,6 +45,7 @@ static const char *const bits[] = {"portable", "fast", NULL};
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1", NULL};
 static const char *const views[] = {"standard", "khronos-neutral", "agx", "raw", NULL};
 static const char *const environments[] = {"auto", "none", "studio", "sky", "white", "file", NULL};
+static const char *const framings[] = {"auto", "corner", "front", NULL};
 
 static const Field load_fields[] = {FIELD_BOOL(vlLoadDef, permissive),    FIELD_DOUBLE(vlLoadDef, time),
                                     FIELD_DOUBLE(vlLoadDef, time_close),  FIELD_STRING(vlLoadDef, scene),
@@ -58,6 +59,9 @@ static const Field complete_fields[] = {FIELD_CHOICE(vlCompleteDef, environment,
                                         FIELD_DOUBLE(vlCompleteDef, front),
                                         FIELD_BOOL(vlCompleteDef, ground),
                                         FIELD_BOOL(vlCompleteDef, reframe),
+                                        FIELD_CHOICE(vlCompleteDef, framing, framings),
+                                        FIELD_BOOL(vlCompleteDef, backdrop),
+                                        FIELD_BOOL(vlCompleteDef, open_walls),
                                         FIELD_END};
 static const Field film_fields[] = {FIELD_COUNT(vlFilmDef, width),
                                     FIELD_COUNT(vlFilmDef, height),
@@ -94,6 +98,7 @@ static const Field render_fields[] = {FIELD_FAMILY(vlRenderDef, tracer, "tracers
                                       FIELD_BOOL(vlRenderDef, centred),
                                       FIELD_BOOL(vlRenderDef, same_wavelengths),
                                       FIELD_BOOL(vlRenderDef, sharp_textures),
+                                      FIELD_BOOL(vlRenderDef, transparent),
                                       FIELD_DOUBLE(vlRenderDef, merge_radius),
                                       FIELD_COUNT(vlRenderDef, light_paths),
                                       FIELD_END};

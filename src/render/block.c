@@ -76,6 +76,12 @@ static void weigh(uint32_t n, const float *weight, const float *valid, float *al
   }
 }
 
+/* Removes the background. */
+static void clear_background(uint32_t n, const float *alpha, float *const radiance[4]) {
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = 0; i < n; i++) radiance[c][i] = alpha[i] > 0.0f ? radiance[c][i] : 0.0f;
+}
+
 static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   const vlCameraCompiled *camera = &r->film_rays.camera;
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
@@ -106,6 +112,7 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
     batch.eyes = vl_two_way_cameras(r->two_way, (uint32_t)(w - r->workers), n, rows.time, NULL);
   }
   r->trace_kernels->trace(r->world, &r->trace, w->scratch, &batch);
+  if (r->def->transparent) clear_background(n, batch.alpha, batch.radiance);
   if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
   if (!camera->plain) clear_invalid(n, rays.valid, batch.alpha, batch.radiance);
   if (vl_film_def(r->film)->buckets) {

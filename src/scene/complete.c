@@ -5,89 +5,13 @@
 #include "base/cookie.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "scene/closed.h"
 #include "scene/environment.h"
+#include "scene/lamps.h"
 #include "scene/schema/schema.h"
 
 vlCompleteDef vl_default_complete_def(void) {
   return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};
-}
-
-/* ---- where everything is ----------------------------------------------------------------------------------------- */
-
-/* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the corners of the boxes of other
- * shapes. */
-typedef void Visit(void *user, const double p[3]);
-
-static void visit_box(const vlMat4 *m, const double low[3], const double high[3], Visit *visit, void *user) {
-  for (int k = 0; k < 8; k++) {
-    double corner[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1], k & 4 ? low[2] : high[2]}, p[3];
-    vl_mat4_point(m, corner, p);
-    visit(user, p);
-  }
-}
-
-static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, size_t most, Visit *visit, void *user) {
-  vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
-  for (size_t i = 0; d->centers && i < d->faces; i += d->faces / most + 1) {
-    const double *c = d->centers + 3 * i;
-    double r = d->radii[i], low[3] = {c[0] - r, c[1] - r, c[2] - r}, high[3] = {c[0] + r, c[1] + r, c[2] + r};
-    visit_box(&m, low, high, visit, user);
-  }
-  if (d->centers) return;
-  if (!d->positions) {
-    double low[3], high[3];
-    vl_shape_own_box(d, low, high);
-    if (low[0] > high[0]) return;
-    visit_box(&m, low, high, visit, user);
-    return;
-  }
-  size_t step = d->vertices / most + 1;
-  for (size_t i = 0; i < d->vertices; i += step) {
-    double v[3] = {d->positions[3 * i], d->positions[3 * i + 1], d->positions[3 * i + 2]}, p[3];
-    vl_mat4_point(&m, v, p);
-    visit(user, p);
-  }
-}
-
-typedef struct Box {
-  double low[3], high[3];
-} Box;
-
-static void grow(void *user, const double p[3]) {
-  Box *b = user;
-  for (int i = 0; i < 3; i++) b->low[i] = fmin(b->low[i], p[i]), b->high[i] = fmax(b->high[i], p[i]);
-}
-
-static const Box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-
-/* boxes: bounding boxes of the groups, in group space. A file that moves gives points of all its times instead. */
-static void visit_scene(const vlScene *scene, const Box *boxes, Visit *visit, void *user) {
-  vlMat4 identity = vl_mat4_identity();
-  for (size_t i = 0; i + 2 < scene->frame_points.count; i += 3) visit(user, scene->frame_points.items + i);
-  if (scene->frame_points.count) return;
-  for (size_t i = 0; i < scene->shapes.count; i++)
-    if (!scene->shapes.items[i].group.index) visit_shape(&scene->shapes.items[i], &identity, 20000, visit, user);
-  for (size_t i = 0; i < scene->instances.count; i++) {
-    const vlSceneInstance *instance = &scene->instances.items[i];
-    const Box *b = &boxes[instance->group.index - 1];
-    vlMat4 m = vl_mat4_load(instance->world_from_group);
-    if (b->low[0] <= b->high[0]) visit_box(&m, b->low, b->high, visit, user);
-  }
-}
-
-static bool group_boxes(vlScene *scene, Box **boxes) {
-  *boxes = vl_alloc_array(scene->context, scene->groups.count + 1, sizeof **boxes);
-  if (!*boxes) {
-    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-    return false;
-  }
-  vlMat4 identity = vl_mat4_identity();
-  for (size_t i = 0; i < scene->groups.count; i++) (*boxes)[i] = nothing;
-  for (size_t i = 0; i < scene->shapes.count; i++) {
-    const vlShapeDef *d = &scene->shapes.items[i];
-    if (d->group.index) visit_shape(d, &identity, SIZE_MAX, grow, &(*boxes)[d->group.index - 1]);
-  }
-  return true;
 }
 
 /* ---- the camera -------------------------------------------------------------------------------------------------- */
@@ -112,54 +36,179 @@ static void widen(void *user, const double p[3]) {
   f->sides[2] = fmax(f->sides[2], y - f->tan_y * z), f->sides[3] = fmax(f->sides[3], -y - f->tan_y * z);
 }
 
-static bool frame_camera(vlScene *scene, const vlCompleteDef *def, const Box *box, const Box *boxes) {
-  const double azimuth = 0.45, elevation = 0.3, fov = 0.6, margin = 0.9;
+/* Directions of the scene, and from where the camera looks. */
+typedef struct View {
   double right[3], up[3], front[3];
-  vlSceneDefs *s = &scene->defs;
-  if (!vl_scene_axes(def, right, up, front)) {
-    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
-    return false;
+  double azimuth, elevation; /* radians: from the front to the right, above the horizon */
+} View;
+
+static double extent_along(const vlExtent *box, const double axis[3]) {
+  double sum = 0;
+  for (int i = 0; i < 3; i++) sum += fabs(axis[i]) * (box->high[i] - box->low[i]);
+  return sum;
+}
+
+/* Sum of the faces' normals, weighted by area. */
+static void mean_normal(const vlScene *scene, double n[3]) {
+  n[0] = n[1] = n[2] = 0;
+  for (size_t k = 0; k < scene->shapes.count; k++) {
+    const vlShapeDef *d = &scene->shapes.items[k];
+    vlMat4 m = vl_mat4_load(d->group_from_shape);
+    for (size_t face = 0; d->kind == VL_SHAPE_TRIANGLES && !d->group.index && face < d->faces; face++) {
+      double p[3][3];
+      for (int c = 0; c < 3; c++) {
+        const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)c];
+        const double q[3] = {v[0], v[1], v[2]};
+        vl_mat4_point(&m, q, p[c]);
+      }
+      for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, l = (i + 2) % 3;
+        double x = (p[1][j] - p[0][j]) * (p[2][l] - p[0][l]) - (p[1][l] - p[0][l]) * (p[2][j] - p[0][j]);
+        n[i] += d->reverse_orientation ? -x : x;
+      }
+    }
   }
-  double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height;
+}
+
+/* Flat models are seen nearly along their normal, from the side of their faces' fronts. */
+static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, const vlExtent *box, View *v) {
+  v->azimuth = 0.45, v->elevation = 0.3;
+  if (def->framing == VL_FRAMING_FRONT) v->azimuth = v->elevation = 0;
+  if (def->framing == VL_FRAMING_FRONT) return "from the front, as asked";
+  double x = extent_along(box, v->right), y = extent_along(box, v->up), z = extent_along(box, v->front), n[3];
+  if (def->framing == VL_FRAMING_CORNER || !(x + y + z > 0)) return "from the front, a little from the right and above";
+  const double flat = 0.2, half_turn = 3.14159265358979323846;
+  mean_normal(scene, n);
+  if (y <= flat * fmin(x, z)) {
+    bool below = dot(n, v->up) < -0.1 * sqrt(dot(n, n));
+    v->elevation = below ? -0.9 : 0.9, v->azimuth = 0.25;
+    return below ? "flat: from below" : "flat: from above";
+  }
+  if (z <= flat * fmin(x, y)) {
+    bool behind = dot(n, v->front) < -0.1 * sqrt(dot(n, n));
+    v->azimuth = (behind ? half_turn : 0) + 0.25, v->elevation = 0.15;
+    return behind ? "flat: from behind" : "flat: from the front";
+  }
+  if (x <= flat * fmin(y, z)) {
+    bool left = dot(n, v->right) < -0.1 * sqrt(dot(n, n));
+    v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25, v->elevation = 0.15;
+    return left ? "flat: from the left" : "flat: from the right";
+  }
+  return "from the front, a little from the right and above";
+}
+
+static void set_camera(vlScene *scene, const double up[3], double fov, const double eye[3], const double lookat[3]) {
+  vlSceneDefs *s = &scene->defs;
+  vlCameraDef camera = vl_default_camera_def(s->film.width, s->film.height);
+  camera.shutter_open = s->camera.shutter_open, camera.shutter_close = s->camera.shutter_close;
+  camera.fov = fov;
+  camera.fov_axis = VL_FOV_SMALLER;
+  for (int i = 0; i < 3; i++) camera.lookat[i] = lookat[i], camera.eye[i] = eye[i], camera.up[i] = up[i];
+  s->camera = camera;
+  s->camera_source = (vlSource){0};
+  s->camera_missing = false;
+}
+
+/* without: shapes that need not be in the image; may be null. */
+static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, const vlExtent *boxes,
+                         const bool *without) {
+  const double fov = 0.6, margin = 0.9;
+  const vlSceneDefs *s = &scene->defs;
+  double half = vl_precise_tan(0.5 * fov), aspect = (double)s->film.width / s->film.height, lookat[3], eye[3];
+  double ca = vl_precise_cos(v->azimuth), sa = vl_precise_sin(v->azimuth), ce = vl_precise_cos(v->elevation),
+         se = vl_precise_sin(v->elevation);
   Frame f = {.tan_x = margin * half * (aspect > 1 ? aspect : 1),
              .tan_y = margin * half * (aspect > 1 ? 1 : 1 / aspect)};
   for (int i = 0; i < 3; i++) {
     f.center[i] = box->low[i] <= box->high[i] ? 0.5 * (box->low[i] + box->high[i]) : 0;
-    f.ahead[i] =
-        -(vl_precise_cos(elevation) * (vl_precise_cos(azimuth) * front[i] + vl_precise_sin(azimuth) * right[i]) +
-          vl_precise_sin(elevation) * up[i]);
-    f.right[i] = vl_precise_cos(azimuth) * right[i] - vl_precise_sin(azimuth) * front[i];
+    f.ahead[i] = -(ce * (ca * v->front[i] + sa * v->right[i]) + se * v->up[i]);
+    f.right[i] = ca * v->right[i] - sa * v->front[i];
   }
   for (int i = 0; i < 3; i++)
     f.up[i] = f.right[(i + 1) % 3] * f.ahead[(i + 2) % 3] - f.right[(i + 2) % 3] * f.ahead[(i + 1) % 3];
   for (int i = 0; i < 4; i++) f.sides[i] = -INFINITY;
-  visit_scene(scene, boxes, widen, &f);
+  vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
     x = 0.5 * (f.sides[0] - f.sides[1]), y = 0.5 * (f.sides[2] - f.sides[3]);
     d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x), (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
   }
   if (!(d > 0) || !isfinite(d)) d = 1;
-  vlCameraDef camera = vl_default_camera_def(s->film.width, s->film.height);
-  camera.shutter_open = s->camera.shutter_open, camera.shutter_close = s->camera.shutter_close;
-  camera.fov = fov;
-  camera.fov_axis = VL_FOV_SMALLER;
   for (int i = 0; i < 3; i++) {
-    camera.lookat[i] = f.center[i] + x * f.right[i] + y * f.up[i];
-    camera.eye[i] = camera.lookat[i] - d * f.ahead[i];
-    camera.up[i] = up[i];
+    lookat[i] = f.center[i] + x * f.right[i] + y * f.up[i];
+    eye[i] = lookat[i] - d * f.ahead[i];
   }
-  s->camera = camera;
-  s->camera_source = (vlSource){0};
-  s->camera_missing = false;
+  set_camera(scene, v->up, fov, eye, lookat);
+}
+
+/* ---- closed models ----------------------------------------------------------------------------------------------- */
+
+/* Lets camera and light into a closed model. */
+static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box, const vlExtent *boxes) {
+  double eye[3], size = 0;
+  uint64_t count = 0;
+  for (int i = 0; i < 3; i++) eye[i] = scene->defs.camera.eye[i], size += box->high[i] - box->low[i];
+  if (closed->kind == VL_CLOSED_DOME) {
+    vlExtent inner = vl_extent_nothing;
+    vl_extent_visit(scene, boxes, closed->shell, vl_extent_grow, &inner);
+    *box = inner;
+    frame_camera(scene, v, box, boxes, closed->shell);
+  }
+  if (closed->kind == VL_CLOSED_EMPTY) {
+    double ahead[3];
+    for (int i = 0; i < 3; i++) ahead[i] = closed->middle[i] - v->front[i];
+    set_camera(scene, v->up, 1.2, closed->middle, ahead);
+  }
+  bool inside = closed->kind != VL_CLOSED_ROOM;
+  if (inside && closed->emits) {
+    vl_log(scene->context, VL_LOG_INFO, NULL, "the model is closed and emits light: the camera is inside");
+    return true;
+  }
+  for (int i = 0; inside && i < 3; i++) { /* the half on the camera's side: light comes from there */
+    double away = closed->kind == VL_CLOSED_EMPTY ? v->front[i] : scene->defs.camera.eye[i] - closed->middle[i];
+    eye[i] = closed->middle[i] + 1e4 * size * away / (closed->kind == VL_CLOSED_EMPTY ? 1 : size);
+  }
+  if (!vl_closed_open(scene, closed, eye, &count)) return false;
+  vl_log(scene->context, VL_LOG_INFO, NULL,
+         "the model is closed: %s%llu of its faces, on the camera's side, are hidden",
+         inside ? "the camera is inside, and " : "", (unsigned long long)count);
   return true;
+}
+
+static void tell_camera(const vlScene *scene, const char *view, const vlExtent *box) {
+  vl_log(scene->context, VL_LOG_DEBUG, NULL, "camera: %s; the model is %.4g x %.4g x %.4g", view,
+         box->high[0] - box->low[0], box->high[1] - box->low[1], box->high[2] - box->low[2]);
 }
 
 /* ---- the ground -------------------------------------------------------------------------------------------------- */
 
-static bool add_ground(vlScene *scene, const vlCompleteDef *def, const Box *box) {
-  double right[3], up[3], front[3], center[3], size = 0;
-  if (!vl_scene_axes(def, right, up, front)) return false;
+/* Opacity over v of a disk, which is 1 in the middle: opaque around the model, transparent at the rim. */
+static bool fade_texture(vlScene *scene, vlTextureId *id) {
+  enum { ROWS = 128 };
+  vlImageDef def = vl_default_image_def(1, ROWS, 1);
+  def.type = VL_PIXEL_F32;
+  vlImage *image = NULL;
+  if (vl_image_create(scene->context, &def, &image) != VL_OK) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return false;
+  }
+  float *pixels = vl_image_pixels(image);
+  for (int y = 0; y < ROWS; y++) {
+    float v = 1 - ((float)y + 0.5f) / ROWS, t = v / 0.7f; /* rows from the top, where v is 1 */
+    t = t < 1 ? t : 1;
+    pixels[y] = t * t * (3 - 2 * t);
+  }
+  vlTextureDef texture = vl_default_texture_def(VL_TEXTURE_IMAGE, false);
+  texture.image = image;
+  texture.wrap = VL_WRAP_CLAMP;
+  *id = vl_scene_add_texture(scene, &texture);
+  vl_image_destroy(image);
+  return id->index != 0;
+}
+
+/* A disk under everything. fades: with the radiance of the studio's floor, into which it fades. */
+static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool fades) {
+  double center[3], size = 0;
   for (int i = 0; i < 3; i++) {
     bool some = box->low[i] <= box->high[i];
     center[i] = some ? 0.5 * (box->low[i] + box->high[i]) : 0;
@@ -172,21 +221,66 @@ static bool add_ground(vlScene *scene, const vlCompleteDef *def, const Box *box)
     double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
                         k & 4 ? box->low[2] : box->high[2]};
     for (int i = 0; i < 3; i++) corner[i] -= center[i];
-    lowest = fmin(lowest, dot(corner, up));
+    lowest = fmin(lowest, dot(corner, v->up));
   }
   if (!isfinite(lowest)) lowest = 0;
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   material.name = "ground";
   vlShapeDef disk = vl_default_shape_def(VL_SHAPE_DISK);
-  disk.radius = (float)(40 * size);
+  disk.radius = (float)((fades ? 2.5 : 40) * size);
+  disk.backdrop = fades;
+  if (fades && !fade_texture(scene, &disk.alpha.texture)) return false;
+  if (fades)
+    material.reflectance = vl_spectrum_input(vl_spectrum_rgb(VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO, VL_FLOOR_ALBEDO));
   disk.material = vl_scene_add_material(scene, &material);
   for (int i = 0; i < 3; i++) {
-    disk.group_from_shape[4 * i] = right[i];
-    disk.group_from_shape[4 * i + 1] = -front[i];
-    disk.group_from_shape[4 * i + 2] = up[i];
-    disk.group_from_shape[4 * i + 3] = center[i] + (lowest - 1e-4 * size) * up[i];
+    disk.group_from_shape[4 * i] = v->right[i];
+    disk.group_from_shape[4 * i + 1] = -v->front[i];
+    disk.group_from_shape[4 * i + 2] = v->up[i];
+    disk.group_from_shape[4 * i + 3] = center[i] + (lowest - 1e-4 * size) * v->up[i];
   }
   return vl_scene_add_shape(scene, &disk).index != 0;
+}
+
+/* ---- the steps --------------------------------------------------------------------------------------------------- */
+
+/* The studio is the fill light of the scene's own lamps: 0.3 times their light. */
+static void fit_studio(const vlScene *scene, const vlExtent *boxes, vlCompleteDef *def) {
+  double lux = vl_lamp_illuminance(scene, boxes), pi = 3.14159265358979323846;
+  if (lux > 0) def->strength *= (float)(0.3 * lux / pi);
+  if (lux > 0)
+    vl_log(scene->context, VL_LOG_DEBUG, NULL, "light: the file's lamps give %.3g lux; the studio adds 0.3 times that",
+           lux);
+  else
+    vl_log(scene->context, VL_LOG_DEBUG, NULL, "light: the studio");
+}
+
+/* Camera, opening and ground. *studio: the studio will be added. */
+static bool complete_geometry(vlScene *scene, vlCompleteDef *def, const View *axes, bool camera, bool studio,
+                              const vlExtent *boxes) {
+  vlExtent box = vl_extent_nothing;
+  View view = *axes;
+  vlClosed closed = {.kind = VL_CLOSED_NOT};
+  bool ok = true;
+  vl_extent_visit(scene, boxes, NULL, vl_extent_grow, &box);
+  if (camera) {
+    const char *from = choose_view(scene, def, &box, &view);
+    tell_camera(scene, from, &box);
+    frame_camera(scene, &view, &box, boxes, NULL);
+    if (studio) def->rotation += view.azimuth - 0.45; /* the key light stays to the camera's left */
+  }
+  if (camera && def->open_walls) {
+    double eye[3];
+    memcpy(eye, scene->defs.camera.eye, sizeof eye);
+    ok = vl_closed_find(scene, &box, boxes, eye, &closed);
+    if (ok && closed.kind != VL_CLOSED_NOT) ok = open_model(scene, &view, &closed, &box, boxes);
+    vl_free(scene->context, closed.shell);
+  }
+  bool inside = closed.kind == VL_CLOSED_DOME || closed.kind == VL_CLOSED_EMPTY;
+  bool fades = camera && studio && def->backdrop && !inside && view.elevation >= 0;
+  if (ok && (def->ground || fades)) ok = add_ground(scene, &view, &box, fades && !def->ground);
+  if (ok && fades && !def->ground) vl_log(scene->context, VL_LOG_DEBUG, NULL, "ground: under the model, fading");
+  return ok;
 }
 
 vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *error) {
@@ -202,20 +296,21 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
     s->film.width = def.width, s->film.height = def.height;
     memcpy(s->film.crop, whole, sizeof whole);
   }
-  Box *boxes = NULL, box = nothing;
-  bool ok = true;
-  if (camera || def.ground) {
-    ok = group_boxes(scene, &boxes);
-    if (ok) visit_scene(scene, boxes, grow, &box);
-  }
-  if (ok && camera) ok = frame_camera(scene, &def, &box, boxes);
-  if (ok && def.ground) ok = add_ground(scene, &def, &box);
-  vl_free(scene->context, boxes);
   vlEnvironmentKind kind = def.environment;
-  /* The studio is dimmed in a scene that has lights. It is added because surfaces without direct light would be
-   * black. */
-  if (kind == VL_ENVIRONMENT_AUTO && scene->lights.count > 0) def.strength *= 0.3f;
   if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
+  bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
+  View axes;
+  if (!vl_scene_axes(&def, axes.right, axes.up, axes.front)) {
+    vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
+    return vl_scene_result(scene, error);
+  }
+  vlExtent *boxes = NULL;
+  bool ok = true;
+  if (camera || def.ground || fits) ok = vl_extent_groups(scene, &boxes);
+  if (ok && fits) fit_studio(scene, boxes, &def);
+  if (ok && (camera || def.ground))
+    ok = complete_geometry(scene, &def, &axes, camera, kind == VL_ENVIRONMENT_STUDIO, boxes);
+  vl_free(scene->context, boxes);
   if (ok && kind != VL_ENVIRONMENT_NONE && vl_scene_add_environment(scene, &def, kind)) s->light_missing = false;
   return vl_scene_result(scene, error);
 }

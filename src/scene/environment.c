@@ -42,16 +42,20 @@ static float soft_box(float azimuth, float elevation, float at, float height, fl
 
 static float studio(vlVec3 d) {
   float azimuth = vl_atan2(d.x, d.y) * 57.29578f, elevation = 90.0f - vl_acos(vl_clamp(d.z, -1, 1)) * 57.29578f;
-  /* A grey room: a floor, and walls that become brighter upwards. */
-  float floor = 0.14f + 0.08f * ramp(elevation, -90, 0), wall = 0.28f + 0.15f * ramp(elevation, 0, 90);
-  float y = floor + (wall - floor) * ramp(elevation, -1.5f, 1.5f);
-  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right, two lights behind the
-   * subject, one above. A white diffuse surface that faces the viewer has radiance 0.7, a horizontal one 1.1. */
-  y += 4.2f * soft_box(azimuth, elevation, -135, 42, 32, 24, 6);
-  y += 1.2f * soft_box(azimuth, elevation, 105, 22, 16, 34, 6);
-  y += 2.2f * soft_box(azimuth, elevation, 38, 38, 16, 16, 5);
-  y += 1.3f * soft_box(azimuth, elevation, -52, 42, 12, 24, 5);
-  y += 1.2f * ramp(elevation, 66, 76);
+  /* A grey room without edges: the floor goes over into walls that become brighter upwards and towards the back, and
+   * darker on the viewer's side. */
+  float back = 0.5f + 0.5f * d.y, floor = 0.17f + 0.05f * ramp(elevation, -80, -20);
+  float wall = (0.20f + 0.12f * back) + 0.22f * ramp(elevation, 5, 90);
+  float y = floor + (wall - floor) * ramp(elevation, -12, 24);
+  /* The viewer is at azimuth 180: key light over the left shoulder, fill light on the right, two rim lights behind the
+   * subject, one above; each is brighter towards its top. A white diffuse surface that faces the viewer has radiance
+   * 0.7, a horizontal one 1.1. */
+  float above = ramp(elevation, 0, 90);
+  y += (3.0f + 3.0f * above) * soft_box(azimuth, elevation, -135, 44, 32, 26, 12);
+  y += (0.8f + 1.2f * above) * soft_box(azimuth, elevation, 105, 24, 15, 34, 10);
+  y += 2.6f * soft_box(azimuth, elevation, 38, 40, 16, 16, 8);
+  y += 1.7f * soft_box(azimuth, elevation, -52, 42, 12, 24, 8);
+  y += 1.2f * ramp(elevation, 64, 80);
   return y;
 }
 

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "color/color.h"
 #include "math/elementary.h"
+#include "scene/lamps.h"
 #include "scene/schema/schema.h"
 #include "scene/solid.h"
 #include "velo/check.h"
@@ -76,9 +77,7 @@ static double shape_area(const vlShapeDef *d) {
 
 /* ---- lights ------------------------------------------------------------------------------------------------------ */
 
-/* Luminance after pbrt's normalisation: emission divided by the spectrum's luminance (for RGB: by that of the colour
- * space's white). */
-static double luminance(const vlSpectrum *s) {
+double vl_light_def_luminance(const vlSpectrum *s) {
   float dense[VL_LAMBDA_COUNT];
   const float *y = vl_cie_y();
   double sum = 0, own = vl_spectrum_photometric(s, NULL);
@@ -98,7 +97,8 @@ static vlLightInfo shape_light(const vlScene *s, const vlShapeDef *d) {
   info.image = e->image || e->texture.index;
   info.power = given(e->power) ? e->power * (double)info.faces
                : info.image    ? NAN
-                            : pi * shape_area(d) * luminance(&e->radiance) * (double)e->scale * (e->two_sided ? 2 : 1);
+                               : pi * shape_area(d) * vl_light_def_luminance(&e->radiance) * (double)e->scale *
+                                  (e->two_sided ? 2 : 1);
   return info;
 }
 
@@ -108,7 +108,7 @@ static vlLightInfo light(const vlScene *s, const vlLightDef *l) {
   info.image = l->path || l->image;
   vl_scene_bounds(s, low, high);
   for (int k = 0; k < 3; k++) radius2 += high[k] > low[k] ? 0.25 * (high[k] - low[k]) * (high[k] - low[k]) : 0;
-  info.power = vl_light_power(l, luminance(&l->color) * (double)l->scale, sqrt(radius2));
+  info.power = vl_light_power(l, vl_light_def_luminance(&l->color) * (double)l->scale, sqrt(radius2));
   return info;
 }
 

@@ -43,6 +43,7 @@ typedef struct vlWorldShape {
   float *tangent_signs, *more_uvs[3], *colors, *emission_uvs;
   uint32_t *light_of; /* light index per prim, VL_NONE: no light; null: prim i is light first_light + i */
   bool one_sided;     /* rays that come from behind pass through */
+  bool backdrop;      /* alpha is 0 where camera rays meet it first */
   uint32_t steps;     /* number of sets of positions and normals, at equal time steps; 1: at rest */
   /* For spheres, disks and cylinders: the parameters of vlShapeDef. All shapes but meshes have the two affine maps
    * below. */

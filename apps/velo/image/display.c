@@ -101,7 +101,8 @@ static void tell_shown(const vlImage *image) {
                 vl_short_text(first).text);
 }
 
-vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result) {
+static vlResult display_colors(vlContext *context, const vlImage *image, vlView view, float exposure,
+                               vlImage **result) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")};
   double m[9];
@@ -112,5 +113,53 @@ vlResult display_image(vlContext *context, const vlImage *image, vlView view, fl
   vlResult status = to_rec709(context, image, rgb, m, &converted);
   if (status == VL_OK) status = vl_image_view(converted, view, exposure, NULL, result);
   vl_image_destroy(converted);
+  return status;
+}
+
+/* R G B divided by alpha: the colour of what covers the pixel. */
+static vlResult divide_by_alpha(vlContext *context, const vlImage *image, vlImage **result) {
+  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 3);
+  def.type = VL_PIXEL_F32;
+  vlAttribute attribute;
+  vlResult status = vl_image_create(context, &def, result);
+  if (status != VL_OK) return status;
+  if (vl_image_find_attribute(image, "chromaticities", &attribute) == VL_OK)
+    status = vl_image_set_attribute(*result, &attribute);
+  float *pixel = vl_image_pixels(*result);
+  for (uint32_t y = 0; y < def.height; y++)
+    for (uint32_t x = 0; x < def.width; x++, pixel += 3) {
+      float a = vl_image_get(image, x, y, 3);
+      for (uint32_t c = 0; c < 3; c++) pixel[c] = a > 0 ? vl_image_get(image, x, y, c) / a : 0;
+    }
+  return status;
+}
+
+static vlResult add_alpha(vlContext *context, const vlImage *image, vlImage **display) {
+  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), 4);
+  def.type = VL_PIXEL_U8;
+  def.encoding = VL_ENCODING_SRGB;
+  vlImage *result = NULL;
+  vlResult status = vl_image_create(context, &def, &result);
+  if (status != VL_OK) return status;
+  const uint8_t *from = vl_image_pixels(*display);
+  uint8_t *to = vl_image_pixels(result);
+  for (uint32_t y = 0; y < def.height; y++)
+    for (uint32_t x = 0; x < def.width; x++, from += 3, to += 4) {
+      memcpy(to, from, 3);
+      to[3] = (uint8_t)(255 * vl_image_get(image, x, y, 3) + 0.5f);
+    }
+  vl_image_destroy(*display);
+  *display = result;
+  return VL_OK;
+}
+
+vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, bool alpha,
+                       vlImage **result) {
+  if (!alpha) return display_colors(context, image, view, exposure, result);
+  vlImage *whole = NULL;
+  vlResult status = divide_by_alpha(context, image, &whole);
+  if (status == VL_OK) status = display_colors(context, whole, view, exposure, result);
+  if (status == VL_OK) status = add_alpha(context, image, result);
+  vl_image_destroy(whole);
   return status;
 }

@@ -5,7 +5,9 @@
 #include "velo/velo.h"
 
 /* Like vl_image_view, but first converts the image to Rec.709 if its chromaticities attribute names another colour
- * space. The caller owns *result. */
-vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, vlImage **result);
+ * space. alpha: the image is R G B A, premultiplied, and the result has its alpha; otherwise alpha is ignored. The
+ * caller owns *result. */
+vlResult display_image(vlContext *context, const vlImage *image, vlView view, float exposure, bool alpha,
+                       vlImage **result);
 
 #endif

@@ -52,6 +52,113 @@ float exposure_meter(const vlImage *image) {
   return (float)(ev < -64 ? -64 : ev > 64 ? 64 : ev);
 }
 
+/* ---- models ------------------------------------------------------------------------------------------------------ */
+
+enum { METER_SIDE = 96, METER_SPP = 8, METER_DEPTH = 6 };
+
+/* Sums of a model's pixels: luminance of radiance and albedo. */
+typedef struct ModelLight {
+  double radiance[METER_SIDE * METER_SIDE], albedo[METER_SIDE * METER_SIDE], ratio[METER_SIDE * METER_SIDE];
+  size_t count;
+} ModelLight;
+
+static int ascending(const void *a, const void *b) {
+  const double *x = a, *y = b;
+  return (*x > *y) - (*x < *y);
+}
+
+/* Radiance per albedo of a model's pixels. What dark surfaces reflect like glass counts as albedo, too. A pixel counts
+ * at most as four times the median: lamps and highlights. 0: there are no pixels. */
+static double mean_light(ModelLight *light) {
+  const double sheen = 0.04;
+  double radiance = 0, albedo = 0;
+  size_t n = light->count;
+  if (n == 0) return 0;
+  for (size_t i = 0; i < n; i++) {
+    light->albedo[i] += sheen;
+    light->ratio[i] = light->radiance[i] / light->albedo[i];
+  }
+  qsort(light->ratio, n, sizeof *light->ratio, ascending);
+  double most = 4 * light->ratio[n / 2];
+  for (size_t i = 0; i < n; i++) {
+    double limit = most > 0 ? most * light->albedo[i] : INFINITY;
+    radiance += light->radiance[i] < limit ? light->radiance[i] : limit, albedo += light->albedo[i];
+  }
+  return radiance / albedo;
+}
+
+/* The luminance that a tenth of the pixels exceeds. Call after mean_light. */
+static double bright(ModelLight *light) {
+  qsort(light->radiance, light->count, sizeof *light->radiance, ascending);
+  return light->radiance[light->count * 9 / 10];
+}
+
+static void gather(ModelLight *light, const vlImage *image, const vlImage *truth) {
+  const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
+                      vl_image_find_channel(image, "B")},
+            own[3] = {vl_image_find_channel(truth, "albedo.R"), vl_image_find_channel(truth, "albedo.G"),
+                      vl_image_find_channel(truth, "albedo.B")};
+  int alpha = vl_image_find_channel(image, "A");
+  for (uint32_t y = 0; y < vl_image_height(image); y++)
+    for (uint32_t x = 0; x < vl_image_width(image); x++) {
+      if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f)) continue;
+      double albedo = luminance(truth, own, x, y);
+      if (!(albedo > 1e-4)) continue; /* it only emits light, or is black */
+      light->radiance[light->count] = luminance(image, rgb, x, y);
+      light->albedo[light->count++] = albedo;
+    }
+}
+
+static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
+                             vlImage **image, vlImage **truth, vlError *error) {
+  vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
+  vlRenderDef render = vl_default_render_def();
+  render.tracer = defs->render.tracer == VL_TRACER_PATH ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
+  render.max_depth = defs->render.max_depth < METER_DEPTH ? defs->render.max_depth : METER_DEPTH;
+  render.spp = METER_SPP;
+  vlDevelopDef develop = vl_default_develop_def();
+  develop.exposure = defs->develop.exposure;
+  vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
+  channels.channels = VL_CHANNEL_ALBEDO;
+  vlFilm *film = NULL;
+  vlResult result = vl_film_create(context, &film_def, &film);
+  if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);
+  if (result == VL_OK) result = vl_film_develop(film, &develop, image);
+  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, truth, NULL, error);
+  vl_film_destroy(film);
+  return result;
+}
+
+int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
+                         double leave, float *ev) {
+  const double white = 0.62; /* mean of a white model in the studio */
+  double k = METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
+  uint32_t width = (uint32_t)(camera->width * k + 0.5), height = (uint32_t)(camera->height * k + 0.5);
+  vlCamera small = *camera;
+  vlImage *image = NULL, *truth = NULL;
+  vlError error = {0};
+  *ev = 0;
+  if (k < 1 && vl_camera_resize(camera, width ? width : 1, height ? height : 1, &small) != VL_OK) return -1;
+  vlResult result = render_small(context, world, &small, defs, &image, &truth, &error);
+  ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
+  if (result == VL_OK && !light) result = VL_ERROR_MEMORY;
+  if (result == VL_OK) {
+    gather(light, image, truth);
+    double mean = mean_light(light), stops = mean > 0 ? log2(white / mean) : 0;
+    double most = mean > 0 ? -log2(bright(light)) : 0; /* mirrors and glass may show little of a lamp's light */
+    stops = stops > 0 && most < stops ? (most > 0 ? most : 0) : stops;
+    stops = round(10 * (fabs(stops) <= leave ? 0 : stops)) / 10;
+    *ev = (float)(stops < -64 ? -64 : stops > 64 ? 64 : stops);
+    if (report_is_verbose())
+      report_note("exposure: white has %.3g on %zu of %u pixels of the model, %.2g is wanted: %+.1f EV", mean,
+                  light->count, small.width * small.height, white, (double)*ev);
+  }
+  free(light);
+  vl_image_destroy(image);
+  vl_image_destroy(truth);
+  return result == VL_OK ? -1 : report_error(&error, result, "metering");
+}
+
 void exposure_tell(float ev) {
   report_note("exposed by %+.1f EV, as metered (--exposure 0 leaves the light as it is)", (double)ev);
 }

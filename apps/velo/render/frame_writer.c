@@ -131,8 +131,8 @@ static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *p
   uint32_t count = 1;
   if (eight_bit) {
     vlImage *display = NULL;
-    vlResult result =
-        display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]), &display);
+    vlResult result = display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
+                                    w->outputs->transparent && output_holds_alpha(path), &display);
     if (result == VL_OK) result = vl_image_write(display, path, def, error);
     vl_image_destroy(display);
     return result;

@@ -64,6 +64,11 @@ enum {
   RENDER_ENVIRONMENT_ROTATION,
   RENDER_ENVIRONMENT_STRENGTH,
   RENDER_GROUND,
+  RENDER_NO_GROUND,
+  RENDER_FRAMING,
+  RENDER_WALLS,
+  RENDER_UP,
+  RENDER_TRANSPARENT,
   RENDER_SHUTTER,
   RENDER_SCENE,
   RENDER_MAX_MEMORY,
@@ -87,7 +92,8 @@ enum {
 };
 
 extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], color_choices[], view_choices[],
-    isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[];
+    isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[], framing_choices[], walls_choices[],
+    up_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];

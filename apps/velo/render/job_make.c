@@ -336,6 +336,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   if (status < 0) status = fit_camera(job, defs, arguments);
   if (status >= 0) return status;
   override_sampling(defs, arguments);
+  defs->render.transparent = v[RENDER_TRANSPARENT].given;
   fix_sequence(&defs->render);
   if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
   if (v[RENDER_BITS].given) defs->build.bits = (vlBits)v[RENDER_BITS].integer;

@@ -13,7 +13,7 @@ const Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
      "image to write; may be given several times. The suffix chooses\n"
      "the format: .exr .hdr .pfm (linear), .png .jpg .tga (display).\n"
-     "Default: the name the scene asks for, else its own with .exr,\nin the current folder",
+     "Default: the name the scene asks for, else its own with .exr, of\na model with .png, in the current folder",
      0, 0, NULL},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel", 1, 1 << 24, NULL},
     {RENDER_NOISE, 0, "noise", OPTION_TEXT, "PERCENT",
@@ -79,6 +79,19 @@ const Option render_options[] = {
      36000, NULL},
     {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X", "factor on its light", 0, 1e6, NULL},
     {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL, "a wide grey disk under everything", 0, 0, NULL},
+    {RENDER_NO_GROUND, 0, "no-ground", OPTION_FLAG, NULL,
+     "nothing under a model whose camera velo chooses. Default: a ground\nthat catches its shadows and fades into the "
+     "studio",
+     0, 0, NULL},
+    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME",
+     "from where a model without camera is seen; auto: flat ones from\ntheir front, else from the corner:", 0, 0,
+     framing_choices},
+    {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME",
+     "of a closed model whose camera velo chooses (a room, a dome): hide\nthe walls on the camera's side, or keep "
+     "them:",
+     0, 0, walls_choices},
+    {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS",
+     "which way is up for the camera, light and ground that velo chooses:", 0, 0, up_choices},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
      "render every frame of FILE: a COLMAP model, transforms.json, a\n"
      "camchain, a calibration with its views, or poses in lines (CSV,\n"
@@ -143,8 +156,9 @@ const Option render_options[] = {
     {RENDER_SECONDS, 0, "seconds", OPTION_NUMBER, "T", "exposure time for --iso; default: the shutter's", 1e-12, 1e12,
      NULL},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
-     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the image's light is 18 % grey. Default: 0; "
-     "auto for glTF\nfiles with lamps",
+     "brighter by 2^EV (.png .jpg .tga), or auto: so that the middle\nof the image's light is 18 % grey; models: so "
+     "that white in their\nlight is bright. "
+     "Default: 0, models auto",
      0, 0, NULL},
     {RENDER_CHANNELS, 0, "channels", OPTION_TEXT, "LIST",
      "ground truth into the .exr, 32-bit: any of Z, distance, P, N, Ng,\n"
@@ -178,6 +192,10 @@ const Option render_options[] = {
     {RENDER_SPECTRUM, 0, "spectrum", OPTION_TEXT, "N[:MIN:MAX]",
      "the image's spectrum into the .exr, too: N channels S0.<nm>nm,\n"
      "from 360 (MIN) to 830 (MAX) nm; 0: none",
+     0, 0, NULL},
+    {RENDER_TRANSPARENT, 0, "transparent", OPTION_FLAG, NULL,
+     "no background: .png and .exr have the alpha of the scene without\nthe ground and the studio (.exr is "
+     "premultiplied)",
      0, 0, NULL},
     {RENDER_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {RENDER_AGAIN, 0, "again", OPTION_TEXT, "IMAGE.exr",

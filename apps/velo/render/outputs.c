@@ -41,6 +41,11 @@ uint32_t output_largest_side(const char *path) {
   return UINT32_MAX;
 }
 
+bool output_holds_alpha(const char *path) {
+  size_t length = strlen(path);
+  return output_holds_layers(path) || (length >= 4 && strcasecmp(path + length - 4, ".png") == 0);
+}
+
 bool output_holds_layers(const char *path) {
   size_t length = strlen(path);
   return length >= 4 && strcasecmp(path + length - 4, ".exr") == 0;
@@ -186,7 +191,7 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
 
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {
   float exposure = outputs->meter ? exposure_meter(image) : outputs->exposure;
-  vlImage *display = NULL; /* made when the first file needs it */
+  vlImage *displays[2] = {NULL, NULL}; /* made when the first file needs it: without and with alpha */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i];
@@ -196,13 +201,14 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     if (stage == OUTPUT_PROGRESS && !has_part) continue;
     vlError error = {0};
     vlResult result = VL_OK;
-    if (eight_bit && !display) {
-      result = display_image(context, image, outputs->view, exposure, &display);
+    bool alpha = outputs->transparent && output_holds_alpha(path);
+    if (eight_bit && !displays[alpha]) {
+      result = display_image(context, image, outputs->view, exposure, alpha, &displays[alpha]);
       if (outputs->meter && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
     }
     const char *to = has_part && stage != OUTPUT_FINISHED ? part : path;
     if (result == VL_OK)
-      result = write_one(outputs, eight_bit ? display : image, output_holds_layers(path), to, &error);
+      result = write_one(outputs, eight_bit ? displays[alpha] : image, output_holds_layers(path), to, &error);
     if (stage == OUTPUT_PROGRESS) report_progress_failure(outputs, i, result, &error);
     if (stage != OUTPUT_PROGRESS && result != VL_OK) {
       int code = report_error(&error, result, to);
@@ -210,6 +216,6 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     }
     if (has_part) keep_part(outputs, i, part, stage, result == VL_OK, spp);
   }
-  vl_image_destroy(display);
+  for (int k = 0; k < 2; k++) vl_image_destroy(displays[k]);
   return status;
 }

@@ -22,6 +22,7 @@ typedef struct Outputs {
   bool patterns;            /* the names are patterns (pattern.h): directories with a % are made later */
   vlView view;              /* for 8-bit files */
   float exposure;           /* EV, for 8-bit files */
+  bool transparent;         /* .png files have alpha */
   bool meter;               /* meter the exposure from the image; `exposure` is not used */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */
   struct {
@@ -32,6 +33,8 @@ typedef struct Outputs {
 
 /* Whether the file's format holds more than colours. */
 bool output_holds_layers(const char *path);
+/* Whether the file's format holds an alpha channel. */
+bool output_holds_alpha(const char *path);
 /* Whether velo writes files with this suffix. *eight_bit: whether the format holds display values. */
 bool output_suffix(const char *path, bool *eight_bit);
 /* The largest width and height of the format. */

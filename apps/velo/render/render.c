@@ -171,9 +171,16 @@ static bool on_progress(void *user, const vlProgress *now) {
   return !signals_pending();
 }
 
-/* The default output name: the last component of the name that the scene gives, otherwise the scene's name with .exr.
- * It is in the current directory, since scenes may be untrusted. */
-static void choose_output(Render *render, const char *scene_path, const char *asked) {
+/* A model becomes a .png, unless something is asked for that only .exr holds. */
+static const char *default_suffix(const Render *render, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  bool exr = v[RENDER_CHANNELS].given || v[RENDER_SPECTRUM].given || v[RENDER_HALF].given || v[RENDER_STEREO].given;
+  return render->opening.model && !exr ? ".png" : ".exr";
+}
+
+/* The default output name: the last component of the name that the scene gives, otherwise the scene's name with the
+ * suffix. It is in the current directory, since scenes may be untrusted. */
+static void choose_output(Render *render, const char *scene_path, const char *asked, const char *suffix) {
   bool eight_bit;
   const char *slash = strrchr(asked, '/');
   if (slash) asked = slash + 1;
@@ -184,7 +191,8 @@ static void choose_output(Render *render, const char *scene_path, const char *as
     const char *name = slash ? slash + 1 : scene_path, *end = strstr(name, ".pbrt");
     if (!end) end = strrchr(name, '.');
     int length = end && end > name ? (int)(end - name) : (int)strlen(name);
-    snprintf(render->default_output, sizeof render->default_output, "%.*s.exr", length > 500 ? 500 : length, name);
+    snprintf(render->default_output, sizeof render->default_output, "%.*s%s", length > 500 ? 500 : length, name,
+             suffix);
   }
   render->outputs.paths[0] = render->default_output;
   render->outputs.count = 1;
@@ -201,6 +209,12 @@ static void warn_of_channels(const Render *render) {
                      : c->gbuffer ? "gbuffer"
                                   : "spectrum",
                      render->outputs.paths[i], c->bits ? "them" : "it");
+}
+
+static void warn_of_alpha(const Render *render) {
+  for (int i = 0; i < render->outputs.count && render->outputs.transparent; i++)
+    if (!output_holds_alpha(render->outputs.paths[i]))
+      report_warning("--transparent: %s cannot hold alpha, only .png and .exr can", render->outputs.paths[i]);
 }
 
 static int render_channels(Render *render) {
@@ -261,6 +275,7 @@ static int prepare(Render *render, const Arguments *arguments) {
                                  .receipt = &render->receipt,
                                  .outputs = &render->outputs};
   outputs->half = v[RENDER_HALF].given;
+  outputs->transparent = v[RENDER_TRANSPARENT].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
   int status = exposure_parse(&v[RENDER_EXPOSURE], &outputs->exposure, &outputs->meter);
   if (status < 0) status = channels_choose(&render->channels, arguments);
@@ -316,19 +331,44 @@ static int check_metering(const Outputs *outputs, const Arguments *arguments) {
   return -1;
 }
 
+/* Meters a model before the render, so that neither noise nor the crop nor a part of the work changes its exposure. */
+static int meter_model(Render *render, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  Outputs *outputs = &render->outputs;
+  bool eight_bit = false;
+  for (int i = 0; i < outputs->count && !eight_bit; i++) output_suffix(outputs->paths[i], &eight_bit);
+  bool wanted = outputs->meter || !v[RENDER_EXPOSURE].given;
+  if (!render->opening.model || !eight_bit || !wanted || v[RENDER_DRY_RUN].given) return -1;
+  const vlCamera *camera = &render->job.camera;
+  vlCamera first;
+  vlError error = {0};
+  if (render->many) {
+    const Frame frame = frames_at(&render->frames, 0);
+    vlResult result = frames_camera(&render->frames, &frame, 0, &first, &error);
+    if (result != VL_OK) return -1; /* the render reports it */
+    camera = &first;
+  }
+  bool given = outputs->meter || render->opening.lamps;
+  outputs->meter = false;
+  int status =
+      exposure_meter_model(render->context, render->world, camera, render->job.defs, given ? 0 : 1, &outputs->exposure);
+  if (status < 0 && (given || outputs->exposure != 0)) exposure_tell(outputs->exposure);
+  return status;
+}
+
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   vlError error = {0};
   start_receipt(render, arguments);
   int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
   if (status >= 0) return status;
-  if (render->opening.lamps && !arguments->values[RENDER_EXPOSURE].given) render->outputs.meter = true;
   double loaded = monotonic_seconds();
 
   status = job_make(&render->job, render->context, render->scene, path, arguments);
   if (status >= 0) return status;
+  warn_of_alpha(render);
   if (render->outputs.count == 0 && !render->film_plan.path) {
-    choose_output(render, path, render->job.defs->output);
+    choose_output(render, path, render->job.defs->output, default_suffix(render, arguments));
     record_files(render, arguments);
     status = outputs_check_folders(&render->outputs);
     if (status >= 0) return status;
@@ -571,6 +611,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
+  if (status < 0) status = meter_model(&render, arguments);
   if (status < 0 && render.again.receipt) status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);

@@ -16,6 +16,10 @@ static bool ends_with(const char *text, const char *suffix) {
   return n >= m && strcasecmp(text + n - m, suffix) == 0;
 }
 
+bool scene_is_model(const char *path) {
+  return !ends_with(path, ".pbrt") && !ends_with(path, ".pbrt.gz");
+}
+
 bool scene_camera_is_own(const char *path, const Arguments *arguments) {
   const OptionValue *camera = &arguments->values[RENDER_CAMERA];
   struct stat info;
@@ -39,6 +43,16 @@ static void choose_environment(const char *text, vlCompleteDef *def) {
     }
   def->environment = VL_ENVIRONMENT_FILE;
   def->path = text;
+}
+
+const Choice framing_choices[] = {
+    {"auto", VL_FRAMING_AUTO}, {"corner", VL_FRAMING_CORNER}, {"front", VL_FRAMING_FRONT}, {NULL, 0}};
+const Choice walls_choices[] = {{"hide", 0}, {"keep", 1}, {NULL, 0}};
+const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
+
+/* The front is +z, for z upwards -y, as modellers have it. */
+static void choose_up(int axis, vlCompleteDef *def) {
+  for (int i = 0; i < 3; i++) def->up[i] = i == axis, def->front[i] = axis == 2 ? -(i == 1) : i == 2;
 }
 
 /* Reports the lecture's parameters of the added camera. d: distance of the view plane in pixels. */
@@ -96,7 +110,8 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   defs->camera_missing = camera; /* another file gives the camera */
   vlSceneInfo info;
   vl_scene_info(*scene, &info);
-  opening->lamps = info.lights > 0 && (ends_with(path, ".gltf") || ends_with(path, ".glb"));
+  opening->model = scene_is_model(path);
+  opening->lamps = info.lights > 0 && opening->model;
   if (v[RENDER_RESOLUTION].given) {
     complete.width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
     complete.height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
@@ -106,6 +121,10 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
     complete.rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
   if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete.strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
   complete.ground = v[RENDER_GROUND].given;
+  complete.backdrop = !v[RENDER_NO_GROUND].given && !v[RENDER_CHANNELS].given; /* ground truth is of the file alone */
+  complete.open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
+  if (v[RENDER_FRAMING].given) complete.framing = (vlFraming)v[RENDER_FRAMING].integer;
+  if (v[RENDER_UP].given) choose_up((int)v[RENDER_UP].integer, &complete);
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   opening->load = load;

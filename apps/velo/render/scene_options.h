@@ -10,12 +10,15 @@
 typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
-  bool lamps; /* a glTF file with lights of its own */
+  bool lamps; /* a file of a model (glTF, OBJ, PLY) with lights of its own */
+  bool model; /* a file of a model: its exposure is metered, its default output is a .png */
 } SceneOpening;
 
 /* Loads the scene and completes it. Returns -1, or the exit code after reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
                SceneOpening *opening);
+/* Whether the file holds a model: a format other than pbrt. */
+bool scene_is_model(const char *path);
 /* Returns whether --camera names a camera of the scene. This requires that the scene is glTF and that no file has that
  * name. */
 bool scene_camera_is_own(const char *path, const Arguments *arguments);

@@ -138,7 +138,10 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
   }
 }
 
-/* Alpha is 1 where the camera ray hits a surface. */
+/* Alpha is 1 where the camera ray hits a surface that is no backdrop. */
 void vl_stage_alpha(vlTracing *t) {
-  for (uint32_t i = 0; i < t->batch->n; i++) t->batch->alpha[i] = t->s->hits_a.shape[i] == VL_NONE ? 0.0f : 1.0f;
+  for (uint32_t i = 0; i < t->batch->n; i++) {
+    uint32_t shape = t->s->hits_a.shape[i];
+    t->batch->alpha[i] = shape == VL_NONE || t->world->shapes.items[shape].backdrop ? 0.0f : 1.0f;
+  }
 }

@@ -55,6 +55,7 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   s->material = def->material.index; /* 0 is the default material */
   s->first_light = VL_NONE;
   s->flip = def->reverse_orientation != mirrored;
+  s->backdrop = def->backdrop;
   s->alpha = -1; /* opaque */
   if (def->alpha.texture.index || def->alpha.value < 1) {
     vlResult r = vl_world_float_node(world, scene, def->alpha, &s->alpha, error);

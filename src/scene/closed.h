@@ -1,0 +1,30 @@
+/* scene/closed.h: models that are seen from inside: rooms with walls on all sides, domes around a model. */
+#ifndef SCENE_CLOSED_H
+#define SCENE_CLOSED_H
+
+#include "scene/extent.h"
+
+typedef enum vlClosedKind {
+  VL_CLOSED_NOT,  /* the model is seen from outside */
+  VL_CLOSED_ROOM, /* its walls hide it */
+  VL_CLOSED_DOME, /* a shell eight times as large as what it contains, or larger */
+  VL_CLOSED_EMPTY /* a shell that contains nothing: a panorama */
+} vlClosedKind;
+
+/* What surrounds a model. */
+typedef struct vlClosed {
+  vlClosedKind kind;
+  bool *shell; /* for each shape: it is a part of the shell; null for NOT; the caller frees it */
+  bool inward; /* the shell's faces look inwards */
+  bool emits;  /* the shell emits light */
+  double middle[3];
+} vlClosed;
+
+/* Finds out by several hundred rays: from `eye` into the scene's box, and from its middle in all directions. False: the
+ * scene holds the error. */
+bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, const double eye[3], vlClosed *closed);
+
+/* Leaves out the shell's faces between `eye` and the middle. *count: their number. False: the scene holds the error. */
+bool vl_closed_open(vlScene *scene, const vlClosed *closed, const double eye[3], uint64_t *count);
+
+#endif

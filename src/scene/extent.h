@@ -1,0 +1,23 @@
+/* scene/extent.h: where the things of a scene are: points on them, and bounding boxes. */
+#ifndef SCENE_EXTENT_H
+#define SCENE_EXTENT_H
+
+#include "scene/scene.h"
+
+/* A bounding box; low > high if it is empty. */
+typedef struct vlExtent {
+  double low[3], high[3];
+} vlExtent;
+extern const vlExtent vl_extent_nothing;
+
+/* Receives a point in world space. */
+typedef void vlPointVisit(void *user, const double p[3]);
+/* Grows the box `user`, a vlExtent. */
+void vl_extent_grow(void *user, const double p[3]);
+/* The bounding boxes of the groups, in group space; the caller frees the array. False: the scene holds the error. */
+bool vl_extent_groups(vlScene *scene, vlExtent **boxes);
+/* Calls `visit` with points of the scene: several thousand vertices of each mesh, and the corners of the boxes of other
+ * shapes and of instances. boxes: those of the groups. without[i]: shape i is left out; null: none is. */
+void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *without, vlPointVisit *visit, void *user);
+
+#endif

@@ -1,0 +1,139 @@
+#!/usr/bin/env bash
+# The image of a model without further options: lamps of any strength, closed rooms, a PNG by default, transparency.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
+cd "$work" || exit 1
+expect_absent() {
+  case "$out$err" in
+    *"$2"*) fail "$1 ('$2' is in the output)" ;;
+    *) pass "$1" ;;
+  esac
+}
+python3 - <<'END'
+import json, struct
+def box(a, b, inward=False):
+    v = [tuple((b if i >> k & 1 else a)[k] for k in range(3)) for i in range(8)]
+    t = [(4,5,7),(4,7,6),(1,0,2),(1,2,3),(5,1,3),(5,3,7),(0,4,6),(0,6,2),(6,7,3),(6,3,2),(0,1,5),(0,5,4)]
+    return v, [x[::-1] for x in t] if inward else t
+def write(path, parts, light=None):
+    data, views, accessors, meshes, materials, nodes = b"", [], [], [], [], []
+    for (v, t), color, two in parts:
+        for values, kind, name in ((v, "f", "VEC3"), (t, "I", "SCALAR")):
+            part = b"".join(struct.pack("<3" + kind, *x) for x in values)
+            views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(part)})
+            accessors.append({"bufferView": len(views) - 1, "componentType": 5126 if kind == "f" else 5125,
+                              "count": len(values) * (1 if kind == "f" else 3), "type": name})
+            data += part
+        k = len(meshes)
+        meshes.append({"primitives": [{"attributes": {"POSITION": 2 * k}, "indices": 2 * k + 1, "material": k}]})
+        materials.append({"doubleSided": two, "pbrMetallicRoughness": {
+            "baseColorFactor": color + [1], "metallicFactor": 0, "roughnessFactor": 0.6}})
+        nodes.append({"mesh": k})
+    g = {"asset": {"version": "2.0"}, "scene": 0, "buffers": [{"byteLength": len(data)}], "bufferViews": views,
+         "accessors": accessors, "meshes": meshes, "materials": materials}
+    if light:
+        g["extensionsUsed"] = ["KHR_lights_punctual"]
+        g["extensions"] = {"KHR_lights_punctual": {"lights": [light]}}
+        nodes.append({"translation": [0.5, 3, 2], "rotation": [-0.45, 0.25, 0.12, 0.85],
+                      "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    g["nodes"], g["scenes"] = nodes, [{"nodes": list(range(len(nodes)))}]
+    text = json.dumps(g).encode()
+    text += b" " * (-len(text) % 4)
+    open(path, "wb").write(struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data)) +
+                           struct.pack("<I4s", len(text), b"JSON") + text +
+                           struct.pack("<I4s", len(data), b"BIN\0") + data)
+navy = [0.01, 0.015, 0.08]
+sofa = [(box((-1, 0.2, -0.4), (1, 0.5, 0.4)), navy, True), (box((-1, 0.5, -0.4), (1, 1, -0.2)), navy, True)]
+white = [(box((-1, 0, -1), (1, 2, 1)), [0.8, 0.8, 0.8], True)]
+write("plain.glb", sofa)
+write("white.glb", white)
+for name, kind, strength in (("sun", "directional", 6830), ("noon", "directional", 100000), ("dim", "point", 0.1)):
+    write(name + ".glb", sofa, {"type": kind, "intensity": strength})
+write("white_sun.glb", white, {"type": "directional", "intensity": 6830})
+ball = (box((-0.3, 0.7, -0.3), (0.3, 1.3, 0.3)), [0.6, 0.05, 0.04], False)
+for name, inward, two in (("room", True, False), ("box", False, True)):
+    write(name + ".glb", [(box((-2, 0, -2), (2, 2.5, 2), inward), [0.8, 0.78, 0.7], two), ball])
+END
+small="--resolution 64x48 --spp 16"
+for m in plain white sun noon dim white_sun room box; do
+  check "renders_$m" "$VELO" render $m.glb $small --transparent
+done
+check kept "$VELO" render room.glb $small --transparent --walls keep -o kept.png
+expect_absent kept_says "hidden"
+check closed "$VELO" render room.glb $small -o room.exr
+expect_text closed_says 'the model is closed: 6 of its faces, on the camera'
+[ -f plain.png ] && [ ! -f plain.exr ] && pass png_by_default || fail png_by_default
+check with_channels "$VELO" render plain.glb $small --channels Z --quiet
+[ -f plain.exr ] && pass exr_for_channels || fail exr_for_channels
+check decisions "$VELO" render sun.glb $small -v -o decisions.png
+expect_text decisions_camera 'camera: from the front'
+expect_text decisions_light "light: the file's lamps give 6"
+expect_text decisions_ground 'ground: under the model'
+expect_text decisions_exposure 'exposure: white has'
+check switched "$VELO" render sun.glb $small -v --no-ground --framing front --exposure -10 --environment none -o switched.png
+expect_text switched_camera 'from the front, as asked'
+for word in 'ground:' 'light:' 'exposure:'; do expect_absent "switched_${word%:}" "$word"; done
+expect_code 2 bad_framing "$VELO" render sun.glb --framing above
+check jpeg_warns "$VELO" render plain.glb $small --transparent -o plain.jpg
+expect_text jpeg_warns_says 'cannot hold alpha'
+check shadows "$VELO" render white.glb $small --spp 64 -o shadows.png --quiet
+check no_ground "$VELO" render white.glb $small --spp 64 --no-ground -o floating.png --quiet
+check up_z "$VELO" render plain.glb $small --up z --quiet -o up_z.png
+check premultiplied "$VELO" render white.glb $small --transparent --quiet -o white.exr
+"$VELO" image convert white.exr white.pfm >/dev/null
+python3 - <<'END' && pass images || fail images
+import struct, sys, zlib
+def read(name):  # PNG of 8 bits: rows of pixels
+    data, at, idat = open(name, "rb").read(), 8, b""
+    while at < len(data):
+        n, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR": w, h, bits, color = struct.unpack(">IIBB", data[at + 8:at + 18])
+        if kind == b"IDAT": idat += data[at + 8:at + 8 + n]
+        at += 12 + n
+    k, raw, rows, before = {2: 3, 6: 4}[color], zlib.decompress(idat), [], None
+    for y in range(h):
+        kind, row = raw[y * (w * k + 1)], bytearray(raw[y * (w * k + 1) + 1:(y + 1) * (w * k + 1)])
+        for i in range(len(row)):
+            a = row[i - k] if i >= k else 0
+            b = before[i] if before else 0
+            c = before[i - k] if before and i >= k else 0
+            p = a + b - c
+            near = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[i] = (row[i] + [0, a, b, (a + b) // 2, near][kind]) & 255
+        rows.append([tuple(row[i:i + k]) for i in range(0, len(row), k)])
+        before = row
+    return rows
+def model(name):
+    pixels = [p for row in read(name) for p in row if p[3] == 255]
+    return [sum(p[c] for p in pixels) / len(pixels) for c in range(3)], len(pixels)
+bad = []
+plain, count = model("plain.png")
+everything = [p for row in read("plain.png") for p in row]
+if not 0.1 < count / len(everything) < 0.7 or not sum(p[3] == 0 for p in everything) > 0.2 * len(everything):
+    bad.append("alpha")
+for name in ("sun", "noon", "dim"):  # navy stays navy in any light
+    c, _ = model(name + ".png")
+    print(name, c, plain)
+    if not (c[2] > 1.5 * c[0] and 0.5 * plain[2] < c[2] < 1.6 * plain[2]): bad.append(name)
+for name in ("white", "white_sun"):  # and white white
+    c, _ = model(name + ".png")
+    print(name, c)
+    if not 150 < c[1] < 250: bad.append(name)
+for name in ("room", "box"):
+    c, _ = model(name + ".png")
+    print(name, c)
+    if not 100 < c[1] < 250: bad.append(name)
+c, _ = model("kept.png")
+print("kept", c)
+if not c[1] < 30: bad.append("kept")  # nothing lights it
+def darkest(name):  # of the ground beside the box's foot
+    row = read(name)[44]
+    return min(sum(p) for p in row)
+print(darkest("shadows.png"), darkest("floating.png"))
+if not darkest("shadows.png") < 0.9 * darkest("floating.png"): bad.append("shadow")
+head, size, scale, data = open("white.pfm", "rb").read().split(b"\n", 3)
+if any(data[:12]) or not any(data): bad.append("premultiplied")  # the corner is background
+print(bad)
+sys.exit(len(bad))
+END
+finish

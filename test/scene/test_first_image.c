@@ -1,0 +1,222 @@
+/* test/scene/test_first_image.c: the first image of a model: from where it is seen, how the studio is scaled to its
+ * lamps, the walls that are hidden, the ground. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "scene/lamps.h"
+#include "scene/scene.h"
+
+typedef struct Model {
+  vlContext *context;
+  vlScene *scene;
+} Model;
+
+static Model begin(void) {
+  Model m = {0};
+  assert_int_equal(vl_context_create(NULL, &m.context), VL_OK);
+  assert_int_equal(vl_scene_create(m.context, &m.scene), VL_OK);
+  vl_scene_defs(m.scene)->camera_missing = vl_scene_defs(m.scene)->light_missing = true;
+  return m;
+}
+
+static void end(Model *m) {
+  vl_scene_destroy(m->scene);
+  vl_context_destroy(m->context);
+}
+
+/* A box whose faces look outwards, or inwards. */
+static void add_box(Model *m, const float low[3], const float high[3], bool inward, bool one_sided) {
+  static const uint32_t faces[36] = {4, 5, 7, 4, 7, 6, 1, 0, 2, 1, 2, 3, 5, 1, 3, 5, 3, 7,
+                                     0, 4, 6, 0, 6, 2, 6, 7, 3, 6, 3, 2, 0, 1, 5, 0, 5, 4};
+  float p[24];
+  uint32_t indices[36];
+  for (int i = 0; i < 8; i++)
+    for (int k = 0; k < 3; k++) p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
+  for (int i = 0; i < 36; i++) indices[i] = faces[inward ? i / 3 * 3 + 2 - i % 3 : i];
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = 8, def.faces = 12, def.positions = p, def.indices = indices, def.one_sided = one_sided;
+  assert_int_not_equal(vl_scene_add_shape(m->scene, &def).index, 0);
+}
+
+static void complete(Model *m, vlCompleteDef *def) {
+  def->width = 300, def->height = 200;
+  vlError error;
+  if (vl_scene_complete(m->scene, def, &error) != VL_OK) fail_msg("%s", error.message);
+}
+
+static vlCompleteDef first_image(void) {
+  vlCompleteDef def = vl_default_complete_def();
+  def.backdrop = def.open_walls = true;
+  return def;
+}
+
+/* The direction from the middle of the model to the eye; a unit vector. */
+static void toward_eye(const Model *m, double d[3]) {
+  const vlCameraDef *c = &m->scene->defs.camera;
+  double length = 0;
+  for (int i = 0; i < 3; i++) d[i] = c->eye[i] - c->lookat[i], length += d[i] * d[i];
+  for (int i = 0; i < 3; i++) d[i] /= sqrt(length);
+}
+
+static void flat_models(void **state) {
+  (void)state;
+  for (int axis = 0; axis < 3; axis++)
+    for (int up = 1; up < 3; up++) {
+      Model m = begin();
+      float low[3] = {-1, -1, -1}, high[3] = {1, 1, 1};
+      low[axis] = -0.01f, high[axis] = 0.01f;
+      add_box(&m, low, high, false, false);
+      vlCompleteDef def = first_image();
+      if (up == 2) def.up[1] = 0, def.up[2] = 1, def.front[1] = -1, def.front[2] = 0;
+      complete(&m, &def);
+      double d[3];
+      toward_eye(&m, d);
+      assert_true(fabs(d[axis]) > 0.75);
+      end(&m);
+      m = begin();
+      add_box(&m, low, high, false, false);
+      def = first_image();
+      def.framing = VL_FRAMING_CORNER;
+      complete(&m, &def);
+      toward_eye(&m, d);
+      assert_true(fabs(d[2]) > 0.8 && d[1] > 0.2);
+      end(&m);
+    }
+}
+
+/* A sheet that looks backwards is seen from behind. */
+static void sheet_from_behind(void **state) {
+  (void)state;
+  for (int back = 0; back < 2; back++) {
+    Model m = begin();
+    const float p[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t front[3] = {0, 1, 2}, behind[3] = {0, 2, 1};
+    vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+    shape.vertices = 3, shape.faces = 1, shape.positions = p, shape.indices = back ? behind : front;
+    assert_int_not_equal(vl_scene_add_shape(m.scene, &shape).index, 0);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    double d[3];
+    toward_eye(&m, d);
+    assert_true(back ? d[2] < -0.8 : d[2] > 0.8);
+    end(&m);
+  }
+}
+
+static const float wall_low[3] = {-2, 0, -2}, wall_high[3] = {2, 2.5f, 2};
+static const float table_low[3] = {-0.5f, 0, -0.5f}, table_high[3] = {0.5f, 0.8f, 0.5f};
+
+/* The walls, floor and ceiling on the camera's side are hidden, two triangles each; kept where the caller wants it. */
+static void rooms(void **state) {
+  (void)state;
+  for (int inward = 0; inward < 2; inward++)
+    for (int hidden = 0; hidden < 2; hidden++) {
+      Model m = begin();
+      add_box(&m, wall_low, wall_high, inward, inward);
+      add_box(&m, table_low, table_high, false, false);
+      vlCompleteDef def = first_image();
+      def.open_walls = hidden;
+      complete(&m, &def);
+      assert_int_equal(m.scene->shapes.items[0].faces, hidden ? 6 : 12);
+      assert_int_equal(m.scene->shapes.items[1].faces, 12);
+      const vlShapeDef *d = &m.scene->shapes.items[0];
+      for (uint32_t i = 0; hidden && i < d->faces; i++) { /* none lies in the planes x = 2, y = 2.5, z = 2 */
+        for (int k = 0; k < 3; k++) {
+          bool all = true;
+          for (int c = 0; c < 3; c++)
+            all = all && d->positions[3 * d->indices[3 * i + (uint32_t)c] + (uint32_t)k] == wall_high[k];
+          assert_false(all);
+        }
+      }
+      end(&m);
+    }
+}
+
+/* A closed object is no room: alone; with wrong winding; around a part that is not hidden. */
+static void objects(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    Model m = begin();
+    add_box(&m, wall_low, wall_high, k == 1, false);
+    const float low[3] = {1.5f, 1, -1}, high[3] = {3, 1.5f, 1};
+    if (k == 2) add_box(&m, low, high, false, false);
+    vlCompleteDef def = first_image();
+    complete(&m, &def);
+    assert_int_equal(m.scene->shapes.items[0].faces, 12);
+    end(&m);
+  }
+}
+
+/* The camera is in the dome and frames what the dome contains; the half on its side is hidden. */
+static void dome(void **state) {
+  (void)state;
+  Model m = begin();
+  const float low[3] = {-50, -50, -50}, high[3] = {50, 50, 50};
+  add_box(&m, low, high, true, true);
+  add_box(&m, table_low, table_high, false, false);
+  vlCompleteDef def = first_image();
+  complete(&m, &def);
+  const vlCameraDef *c = &m.scene->defs.camera;
+  assert_true(fabs(c->eye[0]) < 10 && fabs(c->eye[1]) < 10 && fabs(c->eye[2]) < 10);
+  assert_true(m.scene->shapes.items[0].faces < 12);
+  assert_int_equal(m.scene->shapes.count, 2); /* no ground */
+  end(&m);
+}
+
+/* The ground lies under the model, is a backdrop, and is left out where nothing asks for it. */
+static void ground(void **state) {
+  (void)state;
+  for (int wanted = 0; wanted < 2; wanted++) {
+    Model m = begin();
+    const float low[3] = {-1, 3, -1}, high[3] = {1, 5, 1};
+    add_box(&m, low, high, false, false);
+    vlCompleteDef def = first_image();
+    def.backdrop = wanted;
+    complete(&m, &def);
+    assert_int_equal(m.scene->shapes.count, 1 + wanted);
+    if (wanted) {
+      const vlShapeDef *d = &m.scene->shapes.items[1];
+      assert_true(d->backdrop && d->alpha.texture.index);
+      assert_true(d->group_from_shape[7] <= 3 && d->group_from_shape[7] > 2.99);
+    }
+    end(&m);
+  }
+}
+
+/* The studio's radiance is proportional to the lamps' light. */
+static void lamps(void **state) {
+  (void)state;
+  const float lux[3] = {0.01f, 6830, 100000};
+  for (int i = 0; i < 3; i++)
+    for (int point = 0; point < 2; point++) {
+      Model m = begin();
+      add_box(&m, table_low, table_high, false, false);
+      vlLightDef light = vl_default_light_def(point ? VL_LIGHT_POINT : VL_LIGHT_DISTANT);
+      light.color = vl_spectrum_rgb(1, 1, 1);
+      light.scale = lux[i] * (point ? 1e6f : 1);
+      if (point) light.from[1] = 1000; /* as far as the distant one is to the model */
+      assert_int_not_equal(vl_scene_add_light(m.scene, &light).index, 0);
+      vlCompleteDef def = first_image();
+      complete(&m, &def);
+      const vlLightDef *studio = &m.scene->lights.items[1];
+      double ratio = (double)studio->scale * M_PI / (double)lux[i];
+      assert_true(ratio > 0.25 && ratio < 0.36); /* quarters of a stop */
+      end(&m);
+    }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(flat_models), cmocka_unit_test(sheet_from_behind),
+      cmocka_unit_test(rooms),       cmocka_unit_test(objects),
+      cmocka_unit_test(dome),        cmocka_unit_test(ground),
+      cmocka_unit_test(lamps),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

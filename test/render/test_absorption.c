@@ -73,8 +73,8 @@ static void several_pieces(void **state) {
   }
 }
 
-/* The camera and a lamp stand in the medium before a wall 2 away: light goes there and back. `merged`: most of it as
- * light's paths that meet the eye's at the wall. */
+/* The camera and a lamp are in the medium, 2 in front of a wall, so light crosses the medium twice. `merged`: most
+ * of the light is found by light paths that merge with camera paths at the wall. */
 static void see_wall(bool merged, bool absorbs, double mean[3]) {
   Stage s = stage_open(8, 8);
   s.camera.fov = 0.02;
@@ -175,8 +175,8 @@ static void scattered(void **state) {
   }
 }
 
-/* The tint of a principled solid (MTL's Tf, glTF's base colour) counts at both crossings, whatever lies between; that
- * of a sheet at its one. */
+/* The tint of a principled solid (MTL's Tf, glTF's base colour) is applied at both crossings, whatever lies between
+ * them. The tint of a sheet is applied once. */
 static void tints(void **state) {
   (void)state;
   static const float colors[3][3] = {{0.8f, 0.95f, 1.0f}, {0.9f, 0.5f, 0.1f}, {0.2f, 0.6f, 0.3f}};
@@ -239,7 +239,7 @@ static void tint_of_mtl(void **state) {
   assert_int_equal(unlink(obj) | unlink(mtl) | rmdir(folder), 0);
 }
 
-/* Where the law makes no sense a scene says so. */
+/* Absorption by channel is an error for media to which it cannot apply. */
 static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {

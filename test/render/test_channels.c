@@ -150,8 +150,8 @@ static void test_exact_distance_and_ids(void **state) {
   stage_close(&s);
 }
 
-/* A plane parallel to the view plane has one depth, wherever the camera stands, and though its triangles are instances.
- */
+/* A plane parallel to the view plane has one depth for every position of the camera, even if its triangles are
+ * instances. */
 static void test_plane_has_one_depth(void **state) {
   (void)state;
   Stage s = stage_open(80, 60);

@@ -12,8 +12,9 @@ static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_
   return t;
 }
 
-/* A wall at 8 and before it a narrow one at 4; the other camera stands 1 to the right. Focal length 60: the wall moves
- * 7.5 pixels to the left, the narrow one 15, and uncovers and covers stripes 7.5 pixels wide. */
+/* A wall at depth 8, and in front of it a narrow wall at depth 4. The other camera is 1 to the right. The focal
+ * length is 60, so the wall moves 7.5 pixels to the left and the narrow wall 15. Stripes 7.5 pixels wide appear and
+ * disappear. */
 static void test_two_walls(void **state) {
   (void)state;
   Stage s = stage_open(120, 40);
@@ -32,7 +33,7 @@ static void test_two_walls(void **state) {
       assert_int_equal(id(&t, x, y, "id.object"), front ? 2 : 1);
       assert_near("u", number(&t, x, y, "forward.U"), u, 2e-5);
       assert_near("v", number(&t, x, y, "forward.V"), 0, 2e-5);
-      /* the narrow wall stands at 33 to 57 in the other image */
+      /* the narrow wall covers columns 33 to 57 of the other image */
       uint32_t expected = at < 0 ? VL_HIDDEN_OUTSIDE : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
       if (at == 33 || at == 57 || at == 0) continue; /* the very edge */
       counts[expected]++;
@@ -74,8 +75,8 @@ static void test_sky_and_nowhere(void **state) {
   stage_close(&s);
 }
 
-/* No surface hides itself: a ball and a floor seen at grazing angles from far away from the origin; what the other
- * camera's own ground truth meets at the place decides. */
+/* No surface hides itself. The scene is a ball and a floor at grazing angles, far from the origin. The reference is
+ * the other camera's own ground truth at that place. */
 static void test_no_self_occlusion(void **state) {
   (void)state;
   Stage s = stage_open(90, 70);

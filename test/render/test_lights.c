@@ -327,7 +327,8 @@ static void sky_light_against_the_integral(void **state) {
   }
 }
 
-/* A sky of given illuminance gives that much to a floor under it, whatever the image. pbrt-v4 gives twice as much. */
+/* A sky of given illuminance gives that illuminance to a floor below it, whatever the image. pbrt-v4 gives twice as
+ * much. */
 static void illuminance_of_a_imaged_sky(void **state) {
   (void)state;
   float sky[SKY * SKY * 3];

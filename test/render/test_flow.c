@@ -35,7 +35,7 @@ static void test_two_walls(void **state) {
       assert_near("v", number(&t, x, y, "forward.V"), 0, 2e-5);
       /* the narrow wall covers columns 33 to 57 of the other image */
       uint32_t expected = at < 0 ? VL_HIDDEN_OUTSIDE : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
-      if (at == 33 || at == 57 || at == 0) continue; /* the very edge */
+      if (at == 33 || at == 57 || at == 0) continue; /* pixels on the edge are not tested */
       counts[expected]++;
       assert_int_equal(id(&t, x, y, "forward.hidden"), expected);
     }
@@ -44,7 +44,7 @@ static void test_two_walls(void **state) {
   stage_close(&s);
 }
 
-/* The other camera looks away, or is another kind of camera. The sky turns as the camera does. */
+/* The other camera looks away, or has another projection. The sky's flow depends on the camera's rotation. */
 static void test_sky_and_nowhere(void **state) {
   (void)state;
   Stage s = stage_open(64, 64);
@@ -59,7 +59,7 @@ static void test_sky_and_nowhere(void **state) {
   }
   ground_truth_free(&t);
   other = s.camera;
-  other.eye[0] = 100; /* the sky does not care where the camera is, but how it is turned */
+  other.eye[0] = 100; /* the sky's flow depends on the camera's orientation, not on its position */
   other.lookat[0] = 100 + 0.1;
   other.lookat[2] = -1;
   t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
@@ -129,7 +129,7 @@ static void test_no_self_occlusion(void **state) {
   stage_close(&s);
 }
 
-/* Boxes: a square half behind another, and an instance that reaches out of the image. */
+/* Boxes of a square that is half occluded by another, and of an instance that extends beyond the image. */
 static void test_boxes(void **state) {
   (void)state;
   Stage s = stage_open(100, 60);

@@ -110,7 +110,7 @@ typedef struct vlShortText {
   char text[64]; /**< UTF-8, zero-terminated */
 } vlShortText;
 /** The first 12 characters of `text`; "…" follows if there are more. Control characters, invisible characters and bytes
- * that are not UTF-8 become "?". A message must show no more of a file that may be a stranger's. Null is "". Any
+ * that are not UTF-8 become "?". A message must show no more of an untrusted file. Null is "". Any
  * thread. */
 VL_API vlShortText vl_short_text(const char *text);
 

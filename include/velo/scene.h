@@ -146,7 +146,7 @@ typedef enum vlTextureFilter {
   VL_FILTER_POINT,     /**< nearest texel of the level that fits the footprint */
   VL_FILTER_BILINEAR,  /**< between four texels of the finer level */
   VL_FILTER_TRILINEAR, /**< bilinear on two levels, and linear between them */
-  VL_FILTER_EWA        /**< treated as trilinear, because footprints are isotropic */
+  VL_FILTER_EWA        /**< treated as trilinear; the taps follow the longer axis of the footprint */
 } vlTextureFilter;
 /** The map from a surface point to (s, t) (pbrt book 10.2). */
 typedef enum vlMapping { VL_MAPPING_UV, VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR } vlMapping;

@@ -3,9 +3,9 @@
  *
  * Usage: helper_order SCENE WIDTH HEIGHT SPP TRACER SEED ORDER OUT.pfm
  *
- * TRACER is a name of pbrt files, or - for the
- * scene's own. ORDER is 0 (first to last), 1 (last to first), or a larger number (the seed of a shuffle). The image
- * must equal that of `velo render SCENE --resolution WIDTHxHEIGHT --spp SPP --seed SEED`. */
+ * TRACER is a name of pbrt files, or - for the scene's own. ORDER is 0 (first to last), 1 (last to first), or a larger
+ * number (the seed of a shuffle). The image must equal that of
+ * `velo render SCENE --resolution WIDTHxHEIGHT --spp SPP --seed SEED`. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

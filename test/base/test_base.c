@@ -206,7 +206,7 @@ static void files_are_read_whole(void **state) {
   assert_int_equal(vl_file_read(context, in_folder("empty"), true, &data, &size, &error), VL_OK);
   assert_int_equal(size, 0);
   vl_free(context, data);
-  /* a file that tells no size */
+  /* a file whose size the system reports as 0 */
   assert_int_equal(vl_file_read(context, "/proc/self/maps", false, &data, &size, &error), VL_OK);
   assert_true(size > 100);
   vl_free(context, data);
@@ -284,7 +284,7 @@ static void files_are_written_whole_or_not_at_all(void **state) {
 
   assert_int_equal(vl_file_open_write(&writer, in_folder("none/target"), &error), VL_ERROR_IO);
   assert_int_equal(vl_file_open_write(&writer, folder, &error), VL_ERROR_IO);
-  /* a full disk: what was written cannot be kept, and commit says so */
+  /* a full disk: the written bytes cannot be kept, and commit reports an error */
   if (access("/dev/full", W_OK) == 0) {
     assert_int_equal(vl_file_open_write(&writer, "/dev/full", &error), VL_OK);
     vl_file_write(&writer, "x", 1);
@@ -323,7 +323,7 @@ static void instruction_sets(void **state) {
   assert_int_equal(vl_isa_choose((vlIsa)77, &isa), VL_ERROR_ARGUMENT);
 }
 
-/* Names from files are short and printable, whatever stands in the file. */
+/* Names from files are shortened and made printable, whatever bytes the file holds. */
 static void names_of_files_are_short(void **state) {
   (void)state;
   const struct {

@@ -111,7 +111,7 @@ static void ways_in_agree(void **state) {
   assert_true(make_or_fail(&nothing).fx == 240); /* 90 degrees across the smaller side */
 }
 
-/* A screen window equal to the default one says nothing new; one that is twice as wide halves the focal length. */
+/* A screen window equal to the default one changes nothing. One that is twice as wide halves the focal length. */
 static void screen_window(void **state) {
   (void)state;
   vlCameraDef plain = vl_default_camera_def(600, 400), def = plain;
@@ -306,7 +306,7 @@ static void error_messages(void **state) {
   EXPECT_ERROR(d.near_plane = -1, "near plane -1", NULL);
   EXPECT_ERROR((d.near_plane = 5, d.far_plane = 5), "far plane 5", NULL);
   EXPECT_ERROR(d.far_plane = NAN, "far plane", NULL);
-  /* null arguments; a failed make leaves the camera alone */
+  /* null arguments; after an error the camera is unchanged */
   vlCameraDef good = vl_default_camera_def(4, 4), bad = good;
   vlCamera c = camera_of(0), before = c;
   bad.fov = -1;

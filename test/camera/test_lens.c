@@ -250,10 +250,10 @@ static void f_number_and_focus_point(void **state) {
   assert_true(fabs(camera.focus_distance - 4.5) < 1e-12);
   def.lens_radius = 0.0125; /* agrees */
   make_or_fail(&def);
-  /* sensor's width alone: the focal length follows from the field of view */
+  /* only the sensor's width is given: the focal length follows from the field of view */
   def.focal_mm = VL_UNSET, def.fov = 2 * atan(18.0 / 50), def.fov_axis = VL_FOV_HORIZONTAL;
   assert_true(fabs(make_or_fail(&def).lens_radius - 0.0125) < 1e-12);
-  /* through the point goes the tilted plane, too; spheres focus by distance */
+  /* the tilted plane contains the point, too; spheres of focus have the point's distance as radius */
   def.lens.tilt_x = 0.3;
   camera = make_or_fail(&def);
   assert_true(fabs(camera.focus_distance - (4.5 + tan(0.3) * 2)) < 1e-12);
@@ -372,7 +372,7 @@ static void wrong_lenses(void **state) {
   REFUSED(d.focus_distance = 0, "focus distance is 0", "");
 }
 
-/* Out of memory at each allocation: told, and nothing is left behind. */
+/* Each allocation in turn fails: the failure is reported, and no memory leaks. */
 static int fails_at, calls;
 static void *allocate(void *user, size_t size) {
   (void)user;

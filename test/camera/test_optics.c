@@ -294,8 +294,9 @@ static void image_in_the_stop(void **state) {
   vl_aperture_destroy(square);
 }
 
-/* Pupils turn with the film point and the opening does not: near the axis all directions are equally bright, for
- * openings with corners, too. (pbrt-v4 bounds the pupil for points to the right alone and cuts corners elsewhere.) */
+/* The exit pupil rotates with the film point, but an aperture polygon or image does not. Near the axis all
+ * directions are equally bright, also for apertures with corners. (pbrt-v4 bounds the pupil only for points to the
+ * right and cuts off corners elsewhere.) */
 static void corners_of_the_opening_count(void **state) {
   (void)state;
   static float white[64 * 64];

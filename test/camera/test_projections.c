@@ -123,7 +123,7 @@ static void there_and_back(void **state) {
   print_message("there and back: %.3g pixels at worst\n", worst);
 }
 
-/* Any direction that a camera says it projects comes back to itself; nothing is ever NaN. */
+/* If a camera projects a direction, unprojection returns the same direction. No result is ever NaN. */
 static void back_and_there(void **state) {
   (void)state;
   for (int k = 0; k < MODELS; k++) {

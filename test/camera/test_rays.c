@@ -51,9 +51,9 @@ static void same_float(float a, float b) {
   if (x != y) fail_msg("%.9g (%08x) is not %.9g (%08x)", a, x, b, y);
 }
 
-/* d = (s(c - h_res/2 + p_x), s(r - v_res/2 + p_y), -d), normalised, o = (0, 0, e): evaluated in double as it stands on
- * the slide, rounded to float; the kernel must give these very bits, -0 apart from 0 included. Each pixel of three
- * images (even, odd, large), the pixel's centre and other points of it. */
+/* The formula of the slide is d = (s(c - h_res/2 + p_x), s(r - v_res/2 + p_y), -d), normalised, o = (0, 0, e). It is
+ * evaluated in double and rounded to float. The kernel must give the same bits, except that -0 may be 0. Tested are
+ * each pixel of three images (even, odd, large), at its centre and at other points. */
 static void slides_formula_to_the_last_bit(void **state) {
   (void)state;
   const struct {
@@ -213,7 +213,7 @@ static void disk_map_is_exact_enough(void **state) {
     }
 }
 
-/* t_min and t_max reach the planes z = near and z = far, whatever the angle, the matrix's scale or the projection. */
+/* t_min and t_max lie on the planes z = near and z = far for every angle, scale of the matrix and projection. */
 static void near_and_far_planes(void **state) {
   (void)state;
   for (int k = 0; k < 2 * CAMERA_COUNT; k++) {

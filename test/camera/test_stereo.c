@@ -146,7 +146,7 @@ static void omnidirectional_goes_both_ways(void **state) {
         assert_true(valid[i] && vl_camera_unproject(c, pixels[2 * i], pixels[2 * i + 1], o, d));
         assert_memory_equal(o, origins + 3 * i, sizeof o);
         assert_memory_equal(d, directions + 3 * i, sizeof d);
-        /* the eye stands on the circle, beside the direction */
+        /* the eye is on the circle, beside the direction */
         double out[3] = {o[0] - c->world_from_camera[3], o[1] - c->world_from_camera[7],
                          o[2] - c->world_from_camera[11]};
         assert_true(fabs(sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]) - 0.065) < 1e-12);

@@ -228,7 +228,7 @@ static void test_lens_and_time(void **state) {
     }
 }
 
-/* What glTF's own fields cannot hold is refused, and dropped by name stands in the extras. */
+/* Fields that glTF's own members cannot hold are refused. If they are dropped by name, the extras still hold them. */
 static void test_gltf_extras(void **state) {
   (void)state;
   static const double k[5] = {-0.21, 0.07, 0.0011, -0.0007, 0.013};

@@ -211,7 +211,7 @@ static void test_colmap_images(void **state) {
   vlCameraRecord r = read_as(path_of("model"), 0, "c.png");
   assert_int_equal(r.frames, 2);
   assert_int_equal(r.camera.width, 320);
-  /* half a turn about y; the camera stands at -R^T t */
+  /* half a turn about y; the camera is at -R^T t */
   assert_float_equal(r.camera.world_from_camera[3], 1, 1e-15);
   assert_float_equal(r.camera.world_from_camera[7], -2, 1e-15);
   assert_float_equal(r.camera.world_from_camera[11], 3, 1e-15);

@@ -30,7 +30,7 @@ static void test_gltf(void **state) {
           "no rotation");
   REFUSED("a.gltf", 2, "{\n\"asset\": }", "not JSON");
   REFUSED("a.gltf", 1, "glTF\2", "");
-  /* someone changed what glTF says and left the extras */
+  /* glTF's own members were changed, but the extras were not */
   vlCameraRecord r = {.camera = vl_default_camera_def(64, 48), .frames = 1};
   vlError error;
   r.camera.fov = 1.0, r.camera.fov_axis = VL_FOV_VERTICAL;

@@ -1,5 +1,5 @@
-/* The whole pipeline: a scene file is built into a world and a few pixels are rendered. No valid file may cause a
- * crash, a hang or excessive memory, whatever its numbers are. */
+/* Fuzzes the whole pipeline: builds a world from a scene file and renders a few pixels. No input may cause a crash,
+ * a hang or excessive memory. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -99,7 +99,7 @@ static void test_round_trip(void **state) {
   close_layers(&l);
 }
 
-/* Read whole it is an image of floats that remembers the types of the file; half touches the first layer alone. */
+/* Read as a whole, the image has floats and remembers the types of the file. `half` applies only to the first layer. */
 static void test_stored_types(void **state) {
   (void)state;
   Layers l = open_layers(NULL);

@@ -64,7 +64,7 @@ static void materials(void **state) {
   }
 }
 
-/* Four ways to say what a body is made of. */
+/* The four ways to describe the medium of a subsurface material. */
 static void bodies(void **state) {
   (void)state;
   Loaded l;
@@ -107,7 +107,8 @@ static void bodies(void **state) {
   end_load(&l);
 }
 
-/* Materials may be named before they are made; a mix refers by name; shapes get what holds where they stand. */
+/* A material may be named before it is defined, and a mix names its parts. A shape gets the state at its own
+ * statement. */
 static void named_materials(void **state) {
   (void)state;
   Loaded l;
@@ -248,7 +249,7 @@ static void area_lights(void **state) {
   end_load(&l);
 }
 
-/* pbrt's surface integrators look past media; so does velo, and says so. */
+/* pbrt's surface integrators ignore media. velo ignores them, too, and gives a warning. */
 static void media(void **state) {
   (void)state;
   Loaded l;

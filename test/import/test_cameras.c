@@ -14,8 +14,8 @@ static vlCamera camera_of(Loaded *l, const char *text) {
   return camera;
 }
 
-/* Direction of the film point (x, y) in shares of the image, in pbrt's camera space (x right, y up, z forward). The
- * camera stands at the origin, untransformed. */
+/* Direction of the film point (x, y), given as fractions of the image, in pbrt's camera space (x right, y up, z
+ * forward). The camera is at the origin without a transform. */
 static void look(const vlCamera *c, double x, double y, double d[3]) {
   double o[3];
   assert_true(vl_camera_unproject(c, x * c->width, y * c->height, o, d));

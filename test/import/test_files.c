@@ -94,7 +94,7 @@ static void includes(void **state) {
   end_load(&l);
 }
 
-/* As scenes of pbrt-v4 have it: a file ends within a list of parameters, which goes on where it was included. */
+/* As in pbrt-v4's scenes, a file may end within a list of parameters; the list continues in the including file. */
 static void lists_across_files(void **state) {
   (void)state;
   Loaded l;

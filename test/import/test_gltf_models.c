@@ -7,8 +7,8 @@ static void is_near(double a, double b, double most) {
   if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);
 }
 
-/* RecursiveSkeletons: two skins on one mesh, one node hanging from a joint of its own skin; a skinned mesh stands where
- * its joints say, whatever its node's pose. */
+/* RecursiveSkeletons has two skins for one mesh, and one node is a child of a joint of its own skin. The joints
+ * alone determine the position of a skinned mesh; its node's pose is ignored. */
 static void skins(void **state) {
   (void)state;
   Gltf *g = new_square();

@@ -84,7 +84,7 @@ static void cameras_move(void **state) {
   end_load(&l);
 }
 
-/* What cannot move says so, and takes the start. */
+/* Objects that cannot move use the transform at the start, with a warning. */
 static void others_rest(void **state) {
   (void)state;
   Loaded l;

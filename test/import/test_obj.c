@@ -209,7 +209,7 @@ static void materials(void **state) {
   end_load(&l);
 }
 
-/* What others forgot to send along is told and done without. */
+/* Missing files are reported as warnings, and the import continues without them. */
 static void missing(void **state) {
   (void)state;
   Loaded l;

@@ -122,7 +122,7 @@ static void all_meshes(void **state) {
   vl_context_destroy(context);
 }
 
-/* What stands in cornell-box.pbrt. */
+/* The contents of cornell-box.pbrt. */
 static void cornell_box(void **state) {
   (void)state;
   if (absent()) skip();
@@ -134,7 +134,7 @@ static void cornell_box(void **state) {
   vlCamera camera;
   vlError error;
   assert_int_equal(vl_camera_make(&s->camera, &camera, NULL, &error), VL_OK);
-  /* its Transform says: camera at (0, 1, 6.8), looking along -z */
+  /* by the file's Transform the camera is at (0, 1, 6.8) and looks along -z */
   assert_near(camera.world_from_camera[3], 0, 1e-6);
   assert_near(camera.world_from_camera[7], 1, 1e-6);
   assert_near(camera.world_from_camera[11], 6.8, 1e-6);

@@ -55,7 +55,8 @@ static void ends_are_met(void **unused) {
   }
 }
 
-/* A turn by any angle up to 180 degrees goes evenly about its axis, and the centre goes straight. */
+/* A rotation by any angle up to 180 degrees has constant speed about its axis, and the centre moves on a straight
+ * line. */
 static void turns_are_even(void **unused) {
   (void)unused;
   uint32_t state = 3;

@@ -8,7 +8,7 @@
 
 static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth */
 
-/* A medium in which a way of length 2 is `depth` units deep. */
+/* A medium in which a distance of 2 has `depth` units of absorption. */
 static vlMediumId glass_of(Stage *s, double depth, const double color[3], float scattering) {
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
   float sigma[3];
@@ -28,7 +28,7 @@ static Stage open_stage(vlColorMode color, vlTracer tracer, uint32_t size, uint3
   return s;
 }
 
-/* Absolute: what a few wavelengths leave of noise. */
+/* Absolute tolerance: the noise that a few wavelengths leave. */
 static void assert_law(const char *what, const Image *p, const double expected[3]) {
   for (int c = 0; c < 3; c++) {
     double seen = image_mean(p, c);
@@ -55,7 +55,7 @@ static void one_piece(void **state) {
       }
 }
 
-/* Two media of different colours one behind the other, and the first again. */
+/* Two media of different colours, one behind the other, and then the first again. */
 static void several_pieces(void **state) {
   (void)state;
   const double other[3] = {1.0, 0.9, 0.7}, depth[3] = {6, 4, 9};
@@ -73,8 +73,8 @@ static void several_pieces(void **state) {
   }
 }
 
-/* The camera and a lamp stand in the medium before a wall 2 away: light goes there and back. `merged`: most of it as
- * light's paths that meet the eye's at the wall. */
+/* The camera and a lamp are in the medium, 2 in front of a wall, so light crosses the medium twice. `merged`: most
+ * of the light is found by light paths that merge with camera paths at the wall. */
 static void see_wall(bool merged, bool absorbs, double mean[3]) {
   Stage s = stage_open(8, 8);
   s.camera.fov = 0.02;
@@ -94,7 +94,7 @@ static void see_wall(bool merged, bool absorbs, double mean[3]) {
   image_free(&p);
 }
 
-/* merged: ways are a little longer where the disk is wide, so that a few percent more are lost. */
+/* merged: where the disk is wide, paths are a little longer, so a few percent more light is absorbed. */
 static void there_and_back(void **state) {
   (void)state;
   for (int merged = 0; merged < 2; merged++) {
@@ -130,7 +130,7 @@ static void assert_same_law(const char *what, const Image images[2]) {
   }
 }
 
-/* From inside a rod of glass light comes through its end after many total reflections. */
+/* From inside a glass rod, light arrives through the end of the rod after many total internal reflections. */
 static void total_reflection(void **state) {
   (void)state;
   Image images[2];
@@ -151,7 +151,8 @@ static void total_reflection(void **state) {
   for (int mode = 0; mode < 2; mode++) image_free(&images[mode]);
 }
 
-/* Scattering in a coloured ball, with a grey ball inside: paths of many pieces, which tracers join in many ways. */
+/* Scattering in a coloured ball with a grey ball inside. Paths have many segments, which the tracers connect in many
+ * ways. */
 static void scattered(void **state) {
   (void)state;
   const vlTracer tracers[3] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
@@ -175,8 +176,8 @@ static void scattered(void **state) {
   }
 }
 
-/* The tint of a principled solid (MTL's Tf, glTF's base colour) counts at both crossings, whatever lies between; that
- * of a sheet at its one. */
+/* The tint of a principled solid (MTL's Tf, glTF's base colour) is applied at both crossings, whatever lies between
+ * them. The tint of a sheet is applied once. */
 static void tints(void **state) {
   (void)state;
   static const float colors[3][3] = {{0.8f, 0.95f, 1.0f}, {0.9f, 0.5f, 0.1f}, {0.2f, 0.6f, 0.3f}};
@@ -208,7 +209,7 @@ static void tints(void **state) {
       }
 }
 
-/* The same through an OBJ file: MTL's Tf of a solid of glass. */
+/* The same scene through an OBJ file: MTL's Tf of a glass solid. */
 static void tint_of_mtl(void **state) {
   (void)state;
   static const double color[3] = {0.9, 0.5, 0.1};
@@ -239,7 +240,7 @@ static void tint_of_mtl(void **state) {
   assert_int_equal(unlink(obj) | unlink(mtl) | rmdir(folder), 0);
 }
 
-/* Where the law makes no sense a scene says so. */
+/* Absorption by channel is an error for media to which it cannot apply. */
 static void refused(void **state) {
   (void)state;
   for (int what = 0; what < 3; what++) {

@@ -179,7 +179,7 @@ static void point_light_in_sphere(void **state) {
   assert_mean("point light in a sphere", mean, 1, 1e-3);
 }
 
-/* Light cannot leak through a closed mesh, wherever it stands and however large it is. */
+/* Light cannot leak through a closed mesh, whatever its position and size. */
 static void closed_mesh_is_tight(void **state) {
   (void)state;
   const float radii[3] = {1e-3f, 1, 1e4f};

@@ -4,8 +4,8 @@
 
 /* ---- lens -------------------------------------------------------------------------------------------------------- */
 
-/* A small bright square out of focus makes a disk of radius lens_radius * |1/z - 1/focus| * fx pixels, evenly bright.
- */
+/* A small bright square out of focus becomes a uniformly bright disk of radius lens_radius * |1/z - 1/focus| * fx
+ * pixels. */
 static void circle_of_confusion(void **state) {
   (void)state;
   const double depths[3] = {1.5, 4, 9};
@@ -50,8 +50,8 @@ static void near_and_far(void **state) {
     s.camera.projection = projection ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
     s.camera.near_plane = 2, s.camera.far_plane = 4;
     s.render.max_depth = 0;
-    /* Three walls: before the near plane, between (left half), behind the far plane. Planes, not distances: the whole
-     * wall at depth 3.99 is seen, out to the corners. */
+    /* Three walls: in front of the near plane, between the planes (left half), behind the far plane. The limits are
+     * planes, not distances: the whole wall at depth 3.99 is visible, including the corners. */
     const float z[3] = {-1.9f, -3.99f, -4.01f}, light[3] = {5, 1, 7};
     for (int k = 0; k < 3; k++) {
       Quad q = quad_at(k == 1 ? -10 : 0, 0, z[k], k == 1 ? 10 : 50, 0, 0, 0, 50, 0);
@@ -65,7 +65,7 @@ static void near_and_far(void **state) {
   }
 }
 
-/* Parallel projection: sizes do not hang on depth; screen units are scene units. */
+/* Orthographic projection: sizes do not depend on depth, and screen units are scene units. */
 static void orthographic(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
@@ -205,7 +205,7 @@ static void ambient_occlusion(void **state) {
       }
 }
 
-/* Grey scenes do not know which colour mode they are in. */
+/* Images of grey scenes are the same in both colour modes. */
 static void modes_agree_on_greys(void **state) {
   (void)state;
   double mean[2][3];

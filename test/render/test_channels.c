@@ -2,7 +2,7 @@
  * have the exact depth, and the bits do not depend on threads, instruction set or crop. */
 #include "render/ground_truths.h"
 
-/* Builds what the stage holds and takes all channels. */
+/* Builds the world of the stage and computes all channels. */
 static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {
   GroundTruth t = ground_truth_begin(s);
   vlChannelsDef def = vl_default_channels_def(s->camera.width, s->camera.height);
@@ -21,8 +21,8 @@ static void vector(const GroundTruth *t, uint32_t x, uint32_t y, const char *nam
   }
 }
 
-/* A floor, a sphere, a mirrored and turned instance of a mesh and a patch, a cylinder; seen from aside by a camera with
- * an odd principal point, skew, roll and a lens. */
+/* A floor, a sphere, a mirrored and rotated instance of a mesh and a patch, a cylinder. The camera looks from the
+ * side and has an unusual principal point, skew, roll and a lens. */
 static void fill(Stage *s) {
   Quad floor = quad_at(0, -1, -6, 2.5f, 0, 0, 0, 0, -2.5f);
   floor.material = add_diffuse(s, 0.5f, 0.5f, 0.5f);
@@ -109,7 +109,7 @@ static void test_consistent(void **state) {
   }
 }
 
-/* The distance is that to the surface itself, to the last bit of float, not only near it: analytic sphere and plane. */
+/* The distance is that to the exact surface of an analytic sphere and plane, to the last bit of a float. */
 static void test_exact_distance_and_ids(void **state) {
   (void)state;
   Stage s = stage_open(64, 64);
@@ -127,7 +127,7 @@ static void test_exact_distance_and_ids(void **state) {
       double o[3], d[3];
       vl_camera_unproject(&t.camera, x + 0.5, y + 0.5, o, d);
       double b = d[0] * 0.25 + d[1] * -0.5 + d[2] * -5, c = 0.0625 + 0.25 + 25 - 2.25, root = b * b - c;
-      if (fabs(root) < 1e-3) continue; /* grazing: either is right */
+      if (fabs(root) < 1e-3) continue; /* at grazing angles both results are correct */
       bool sphere_met = root > 0;
       on_sphere += sphere_met;
       assert_int_equal(id(&t, x, y, "id.object"), sphere_met ? 2 : 1);
@@ -150,8 +150,8 @@ static void test_exact_distance_and_ids(void **state) {
   stage_close(&s);
 }
 
-/* A plane parallel to the view plane has one depth, wherever the camera stands, and though its triangles are instances.
- */
+/* A plane parallel to the view plane has one depth for every position of the camera, even if its triangles are
+ * instances. */
 static void test_plane_has_one_depth(void **state) {
   (void)state;
   Stage s = stage_open(80, 60);
@@ -231,7 +231,7 @@ static void test_same_bits(void **state) {
   same_bits(whole.floats, part.floats, 13, 5);
   same_bits(whole.ids, part.ids, 13, 5);
   for (int isa = VL_ISA_BASE; isa <= VL_ISA_V4; isa++) {
-    if (isa == VL_ISA_V2) continue; /* which BASE is on x86-64 */
+    if (isa == VL_ISA_V2) continue; /* BASE is V2 on x86-64 */
     Stage other;
     if (!stage_like(&s, isa, &other)) continue;
     fill(&other);

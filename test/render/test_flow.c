@@ -12,8 +12,9 @@ static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_
   return t;
 }
 
-/* A wall at 8 and before it a narrow one at 4; the other camera stands 1 to the right. Focal length 60: the wall moves
- * 7.5 pixels to the left, the narrow one 15, and uncovers and covers stripes 7.5 pixels wide. */
+/* A wall at depth 8, and in front of it a narrow wall at depth 4. The other camera is 1 to the right. The focal
+ * length is 60, so the wall moves 7.5 pixels to the left and the narrow wall 15. Stripes 7.5 pixels wide appear and
+ * disappear. */
 static void test_two_walls(void **state) {
   (void)state;
   Stage s = stage_open(120, 40);
@@ -32,9 +33,9 @@ static void test_two_walls(void **state) {
       assert_int_equal(id(&t, x, y, "id.object"), front ? 2 : 1);
       assert_near("u", number(&t, x, y, "forward.U"), u, 2e-5);
       assert_near("v", number(&t, x, y, "forward.V"), 0, 2e-5);
-      /* the narrow wall stands at 33 to 57 in the other image */
+      /* the narrow wall covers columns 33 to 57 of the other image */
       uint32_t expected = at < 0 ? VL_HIDDEN_OUTSIDE : !front && at > 33 && at < 57 ? VL_HIDDEN_BEHIND : VL_HIDDEN_NOT;
-      if (at == 33 || at == 57 || at == 0) continue; /* the very edge */
+      if (at == 33 || at == 57 || at == 0) continue; /* pixels on the edge are not tested */
       counts[expected]++;
       assert_int_equal(id(&t, x, y, "forward.hidden"), expected);
     }
@@ -43,7 +44,7 @@ static void test_two_walls(void **state) {
   stage_close(&s);
 }
 
-/* The other camera looks away, or is another kind of camera. The sky turns as the camera does. */
+/* The other camera looks away, or has another projection. The sky's flow depends on the camera's rotation. */
 static void test_sky_and_nowhere(void **state) {
   (void)state;
   Stage s = stage_open(64, 64);
@@ -58,7 +59,7 @@ static void test_sky_and_nowhere(void **state) {
   }
   ground_truth_free(&t);
   other = s.camera;
-  other.eye[0] = 100; /* the sky does not care where the camera is, but how it is turned */
+  other.eye[0] = 100; /* the sky's flow depends on the camera's orientation, not on its position */
   other.lookat[0] = 100 + 0.1;
   other.lookat[2] = -1;
   t = ground_truth_take(&s, &other, VL_CHANNEL_ALL | VL_CHANNEL_FORWARD);
@@ -74,8 +75,8 @@ static void test_sky_and_nowhere(void **state) {
   stage_close(&s);
 }
 
-/* No surface hides itself: a ball and a floor seen at grazing angles from far away from the origin; what the other
- * camera's own ground truth meets at the place decides. */
+/* No surface hides itself. The scene is a ball and a floor at grazing angles, far from the origin. The reference is
+ * the other camera's own ground truth at that place. */
 static void test_no_self_occlusion(void **state) {
   (void)state;
   Stage s = stage_open(90, 70);
@@ -128,7 +129,7 @@ static void test_no_self_occlusion(void **state) {
   stage_close(&s);
 }
 
-/* Boxes: a square half behind another, and an instance that reaches out of the image. */
+/* Boxes of a square that is half occluded by another, and of an instance that extends beyond the image. */
 static void test_boxes(void **state) {
   (void)state;
   Stage s = stage_open(100, 60);

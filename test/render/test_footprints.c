@@ -39,7 +39,7 @@ static void on_patch(double u, double v, double p[3]) {
 }
 
 static void slopes(Base *base, double u, double v, const double side[3], bool displaced, double n[3]);
-/* The point put off by the height along the normal that goes to `side`. */
+/* The point displaced by the height along the normal on the given side. */
 static void put_off(Base *base, double u, double v, const double side[3], bool displaced, double p[3]) {
   double n[3];
   base(u, v, p);

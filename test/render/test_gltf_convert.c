@@ -2,7 +2,7 @@
  * with an emissive image whose uvs are far from the origin. */
 #include "render/gltf_shots.h"
 
-/* Images of the file, and of what is written of it as pbrt. */
+/* Renders the images of the glTF file and of the pbrt file that is written from it. */
 static void both_ways(const Gltf *g, const char *rest, Image *own, Image *written) {
   char folder[] = "/tmp/velo-convert-XXXXXX", from[80], to[80], command[80];
   assert_non_null(mkdtemp(folder));
@@ -48,7 +48,7 @@ static void both_ways(const Gltf *g, const char *rest, Image *own, Image *writte
   "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0},{\"camera\":0,\"translation\":[0,0,10]}]" \
   "," SHOT_CAMERA
 
-/* A coat sends light back to what lies below it: the colour there must be brighter to show the same. */
+/* A coat reflects light back to the base, so the base's colour must be brighter for the same appearance. */
 static void balls(void **state) {
   (void)state;
   static const struct {

@@ -6,7 +6,7 @@
   "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1],\"metallicFactor\":0,\"roughnessFactor\":1}," \
   "\"extensions\":{\"KHR_materials_specular\":{\"specularFactor\":0}}"
 
-/* The wall lies in z = 0 and is looked at from z = 10; pixel (x, y) sees: */
+/* The wall is the plane z = 0 and the camera is at z = 10. Computes the point that pixel (x, y) shows. */
 static void pixel_point(uint32_t x, uint32_t y, double p[2]) {
   p[0] = (x + 0.5) / 16 - 1, p[1] = 1 - (y + 0.5) / 16;
 }
@@ -33,7 +33,7 @@ static Image lamp_image(const char *node, const char *light) {
 
 static void point_and_spot(void **state) {
   (void)state;
-  /* the spot looks 0.3 radians from straight down towards +x: its -z turned about y */
+  /* the spot points 0.3 radians away from straight down, towards +x: its -z is rotated about y */
   Image point = lamp_image("\"translation\":[0.3,-0.2,2],\"scale\":[3,3,3]",
                            "\"type\":\"point\",\"intensity\":4,\"color\":[1,0.5,0.25]");
   Image spot =

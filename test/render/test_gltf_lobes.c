@@ -7,8 +7,8 @@
 
 /* ---- albedos, without velo's tables ------------------------------------------------------------------------------ */
 
-/* Of GGX microfacets with single scattering, F0 and F90: over the hemisphere of half vectors that o sees (Heitz 2018),
- * in double. */
+/* The albedo of GGX microfacets with single scattering for F0 and F90, integrated in double over the half vectors
+ * that are visible from o (Heitz 2018). */
 static double ggx_albedo(double cosine, double alpha, double f0, double f90) {
   enum { U = 24, V = 200 };
   double ox = sqrt(1 - cosine * cosine), sum = 0, wx = alpha * ox, length = sqrt(wx * wx + cosine * cosine);

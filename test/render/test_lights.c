@@ -4,7 +4,8 @@
 
 enum { SIZE = 32 };
 
-/* A floor of reflectance 1/2 in the plane z = 0 seen straight from above: pixel (x, y) looks at (2u - 1, 2v - 1). */
+/* A floor of reflectance 1/2 in the plane z = 0, seen from straight above: pixel (x, y) shows the point (2u - 1, 2v
+ * - 1). */
 static Stage floor_stage(bool exact) {
   Stage s = stage_open(SIZE, SIZE);
   s.camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
@@ -115,7 +116,7 @@ static void uniform_sky(void **state) {
   }
 }
 
-/* Whatever the spectrum, a light of radiance 1 shows luminance 1, in both colour modes; the colours agree. */
+/* A light of radiance 1 has luminance 1 for every spectrum, in both colour modes, and the colours agree. */
 static void photometric_scale(void **state) {
   (void)state;
   const vlSpectrum colors[4] = {vl_spectrum_blackbody(2800), vl_spectrum_named("stdillum-D65"),
@@ -141,7 +142,7 @@ static void photometric_scale(void **state) {
 
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
-/* The light's own image: one side, both sides, turned over. */
+/* The image shows the light itself: one-sided, two-sided, reversed. */
 static void sides(void **state) {
   (void)state;
   for (int kind = 0; kind < 5; kind++) /* triangles, patch, disk, sphere (from inside), cylinder (from inside) */
@@ -173,7 +174,7 @@ static void sides(void **state) {
     }
 }
 
-/* A small square light of known power far over the floor is a point of intensity power/pi on its axis. */
+/* A small square light of known power, far above the floor, acts like a point of intensity power/pi on its axis. */
 static void power_of_area_lights(void **state) {
   (void)state;
   for (int two_sided = 0; two_sided < 2; two_sided++)
@@ -183,7 +184,7 @@ static void power_of_area_lights(void **state) {
       vlEmissionDef shine = vl_default_emission_def();
       shine.power = 10;
       shine.two_sided = two_sided;
-      shine.radiance = vl_spectrum_rgb(7, 7, 7); /* does not matter */
+      shine.radiance = vl_spectrum_rgb(7, 7, 7); /* the value has no effect */
       vlEmissionId emission = vl_scene_add_emission(s.scene, &shine);
       if (kind == 0) {
         Quad q = quad_at(0, 0, 10, 0.01f, 0, 0, 0, -0.02f, 0); /* faces down */
@@ -327,7 +328,8 @@ static void sky_light_against_the_integral(void **state) {
   }
 }
 
-/* A sky of given illuminance gives that much to a floor under it, whatever the image. pbrt-v4 gives twice as much. */
+/* A sky of given illuminance gives that illuminance to a floor below it, whatever the image. pbrt-v4 gives twice as
+ * much. */
 static void illuminance_of_a_imaged_sky(void **state) {
   (void)state;
   float sky[SKY * SKY * 3];

@@ -284,8 +284,8 @@ static void far_plane_behind_an_interface(void **state) {
 
 /* ---- glass that splits colours ----------------------------------------------------------------------------------- */
 
-/* A thin white strip seen through a wedge whose thick side is on the left: rays bend to the left, blue ones more, so
- * that the strip's image goes to the right, its blue further than its red. */
+/* A thin white strip seen through a wedge whose thick side is on the left. Rays are refracted to the left, blue ones
+ * more, so the strip's image moves to the right, its blue part farther than its red part. */
 static void prism(void **state) {
   (void)state;
   Stage s = stage_open(96, 8);

@@ -212,8 +212,8 @@ static void test_standard_error(void **state) {
   stage_close(&s);
 }
 
-/* Features are means over the samples that the mattes count: of a flat surface alone in its pixel they are its values
- * times its coverage. */
+/* Features are means over the samples that Cryptomatte counts. For a flat surface that is alone in its pixel they
+ * are its values times its coverage. */
 static void test_features(void **state) {
   (void)state;
   Stage s = stage_open(49, 37);

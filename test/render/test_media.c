@@ -192,7 +192,7 @@ static void hot(void **state) {
       assert_near("black body", mean[rgb][1][c], factor * mean[rgb][0][c], 0.015 * factor * mean[rgb][0][0]);
 }
 
-/* A lamp with an image on it, seen straight on, stands upright with and without fog in the world. */
+/* A lamp with an image, seen from the front, is upright with and without fog in the world. */
 static void imaged_lamp(void **state) {
   (void)state;
   const float rows[6] = {4, 4, 4, 1, 1, 1}; /* bright above */

@@ -227,8 +227,8 @@ static void emissive_fog(void **state) {
 
 /* ---- NanoVDB ----------------------------------------------------------------------------------------------------- */
 
-/* A cube of 128^3 voxels of 1/2, density 7, from (74, 0, 0): a ray through its middle, with the medium as it is,
- * turned, and stretched along the ray. */
+/* A cube of 128^3 voxels of side 1/2 and density 7, starting at (74, 0, 0). A ray goes through its middle; the
+ * medium is unchanged, rotated, and stretched along the ray. */
 static void voxels(void **state) {
   (void)state;
   char path[128];

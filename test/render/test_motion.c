@@ -150,8 +150,8 @@ static void same_bits(void **state) {
   image_free(&first);
 }
 
-/* Ambient occlusion of convex bodies that are alone: every sample that meets one is white, however fast it moves,
- * unless a ray that leaves the surface meets it again. */
+/* Ambient occlusion of single convex objects: every sample that hits one is white, however fast it moves, unless a
+ * ray that leaves the surface hits the object again. */
 static void nothing_hides_itself(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) { /* turning, far from the origin, growing, vertices */

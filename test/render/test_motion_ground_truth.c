@@ -94,8 +94,8 @@ static void as_in_a_still_world(void **state) {
   }
 }
 
-/* From the time 0 to the time 1, by a camera that stands still: the ball's points go as its pose says, the vertices'
- * as they are told. */
+/* Flow from time 0 to time 1 for a camera at rest: points of the ball follow its pose, vertices follow their given
+ * positions. */
 static void flow_follows(void **state) {
   (void)state;
   Stage s = fill(-1);

@@ -116,8 +116,8 @@ static void natural_vignetting(void **state) {
   image_free(&p);
 }
 
-/* A double Gauss before a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha 1. In front
- * of an empty background the barrel is black and opaque. A dot is found where the chief ray says. */
+/* A double Gauss lens in front of a bright wall: pi / (4 N^2) of its light in the middle, less in the corners, alpha
+ * 1. Against an empty background the barrel is black and opaque. A dot is imaged where the chief ray meets the film. */
 static void many_elements(void **state) {
   (void)state;
   vlOpticsDef def = vl_default_optics_def();

@@ -75,7 +75,7 @@ static void rougher(void **state) {
       }
 }
 
-/* What the eye meets first stays; so does what is rough enough, or has no alpha. */
+/* The first surface that the camera sees does not change, nor does a surface that is rough enough or has no alpha. */
 static void unchanged(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++) {

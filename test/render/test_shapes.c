@@ -164,7 +164,7 @@ static void fine_mesh_is_the_sphere(void **state) {
   }
 }
 
-/* The near plane cuts the front of a sphere away: one sees the inside of its back, as through a part of a sphere. */
+/* The near plane cuts off the front of a sphere, so the inside of its back is visible, as through a partial sphere. */
 static void near_plane_opens_a_sphere(void **state) {
   (void)state;
   Image p[2];
@@ -347,7 +347,8 @@ static void alpha_holes_are_holes(void **state) {
   }
 }
 
-/* Half a sphere by alpha is the half sphere: through the hole one sees the inside of the far half, not the near one. */
+/* Half a sphere made by alpha equals the half sphere: the inside of the far half is visible through the hole, not
+ * the near half. */
 static void half_a_sphere_by_alpha(void **state) {
   (void)state;
   for (int instanced = 0; instanced < 2; instanced++) {

@@ -290,7 +290,7 @@ static void note(void *user, vlLogLevel level, const vlError *where, const char 
   if (level == VL_LOG_WARNING && strstr(message, "subsurface")) ++*(int *)user;
 }
 
-/* The path tracer sees glass, to the bit, and says so once. */
+/* The path tracer renders glass, bit for bit, and warns once. */
 static void as_glass(void **state) {
   (void)state;
   Image p[2];

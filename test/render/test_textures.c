@@ -257,7 +257,8 @@ static void image_orientation_wrap_filter(void **state) {
   }
 }
 
-/* 8-bit images by file: sRGB unless told otherwise; floats stay linear. Grey, colour and coverage as a float. */
+/* 8-bit images from files are sRGB unless an encoding is given; float images are linear. Grey, colour and coverage
+ * are read as floats. */
 static void encodings_and_floats(void **state) {
   (void)state;
   char path[600];

@@ -18,7 +18,7 @@ static void move_camera(vlCameraDef *c) {
   c->roll_close = 0.3;
 }
 
-/* A board that turns and a ball that goes with it, above a floor. */
+/* A board that rotates and a ball that moves with it, above a floor. */
 static void add_mover(Stage *s) {
   static const double times[2] = {0.2, 0.9};
   double poses[32];

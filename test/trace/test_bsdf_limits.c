@@ -208,7 +208,7 @@ static void same_bits(void **state) {
   if (!compared) print_message("only one instruction set here: nothing to compare\n");
 }
 
-/* The bits of a lane depend on that lane alone, not on its position, its neighbours or the length of the batch. */
+/* The bits of a lane depend only on that lane, not on its position, its neighbours or the length of the batch. */
 static void lanes_alone(void **state) {
   const State *s = *state;
   Batch *b = s->batch, *c = s->other;

@@ -32,7 +32,7 @@ static void put_surface(Batch *b, const vlMeasured *m, uint32_t n) {
   }
 }
 
-/* Directions of both sides at once: lane i as the rng says, within the cone of cos > least. */
+/* Sets random directions on both sides of the surface for lane i, within the cone of cos > least. */
 static void put_random(Batch *b, uint32_t n, statRng *rng, double least) {
   for (uint32_t i = 0; i < n; i++) {
     double o[3], w[3];

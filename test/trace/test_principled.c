@@ -343,7 +343,7 @@ static void thin_film(void **state) {
   assert_true(fabs(film_reflection(s, (float)(500 / (4 * n)), (float)n, 0.99999, 1) - expected) < 2e-3);
 }
 
-/* A layer at 0 leaves the same bits, whatever its other numbers. */
+/* A layer of weight 0 gives the same bits, whatever its other parameters. */
 static void off_is_off(void **state) {
   State *s = *state;
   Batch *a = s->batch, *b = s->other;

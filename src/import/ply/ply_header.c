@@ -1,4 +1,5 @@
-/* import/ply/ply_header.c: the header of a PLY file becomes a table of elements and properties; errors. */
+/* import/ply/ply_header.c: reads the header of a PLY file into a table of elements and properties, and reports
+ * errors. */
 #include <stdio.h>
 #include <string.h>
 

@@ -10,7 +10,7 @@
   PARAMETER(SPECTRUM, name, member, text, VL_DEFAULT(1), VL_FROM(0), .role = VL_PARAMETER_UNBOUNDED, \
             .unit = "per length")
 #define SIGMAS SIGMA("sigma_a", sigma_a, "absorption coefficient"), SIGMA("sigma_s", sigma_s, "scattering coefficient")
-/* A name in files that stands for two members. */
+/* A parameter of files that sets two members. */
 #define PRESET                                                                                     \
   {                                                                                                \
     .type = VL_PARAMETER_STRING, .name = "preset", .member = "sigma_a, sigma_s",                   \

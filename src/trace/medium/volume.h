@@ -98,7 +98,8 @@ void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Appends the paths order[k] of volume.scattered to the n paths of a. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
-/* The flight of shadow ray k. beta includes the transmittance; densities are relative to that of light sampling. */
+/* The flight of shadow ray k. beta includes the transmittance; the path's densities are relative to the density of
+ * light sampling. */
 vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
 /* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf: of the BSDF or phase
  * function. Returns the new count. */

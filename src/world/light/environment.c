@@ -8,8 +8,8 @@
 
 _Static_assert(VL_ENVIRONMENT_CELLS <= VL_GUIDES && VL_GUIDES <= 65536, "cells are found from a guide of 16 bits");
 
-/* Sets the pdf of each cell to its weight, the mean luminance. *sum receives the sum of all weights, *upper the sum
- * over the upper half of directions of weight times cosine. */
+/* Sets the pdf of each cell to its weight, the mean luminance. *sum_all receives the sum of all weights, *upper the
+ * sum over the upper half of directions of weight times cosine. */
 static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_t step, double *sum_all, double *upper,
                                 vlError *error) {
   uint32_t n = mip->levels[0].width, channels = mip->channels, size = env->size;

@@ -114,7 +114,7 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextu
     s->hits_b.shape[i] = shape, s->hits_b.prim[i] = 0;
     for (int k = 0; k < 9; k++) s->corners.p[k][i] = k == 3 || k == 7 ? 1.0f : 0.0f;
   }
-  return (vlTextureRun){f->world, s, &s->b, at, 0, VL_BATCH, 0, NULL, NULL, NULL, NULL, NULL};
+  return (vlTextureRun){.world = f->world, .s = s, .paths = &s->b, .surface = at, .last = VL_BATCH};
 }
 
 static void same_bits(void **state) {

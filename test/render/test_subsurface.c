@@ -220,6 +220,36 @@ static void corner(void **state) {
   }
 }
 
+/* ---- small triangles --------------------------------------------------------------------------------------------- */
+
+/* A ball in which light goes far; probes start far outside of it, because another object makes the world wide. */
+static Image far_probes(bool mesh) {
+  Stage s = open_stage(16, 256, VL_COLOR_RGB);
+  s.camera.fov = 0.2;
+  s.render.max_depth = 1;
+  add_sky(&s, 1);
+  float *block = NULL;
+  vlMaterialDef def = reflecting(vl_spectrum_constant(0.6f), 3);
+  vlShapeDef ball = mesh ? mesh_sphere(100, 1, true, &block) : vl_default_shape_def(VL_SHAPE_SPHERE);
+  set_matrix(ball.group_from_shape, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -5);
+  ball.material = add(&s, &def);
+  vl_scene_add_shape(s.scene, &ball);
+  free(block);
+  Quad away = quad_at(40, 0, -5, 0.1f, 0, 0, 0, 0.1f, 0);
+  away.material = add_diffuse(&s, 0, 0, 0);
+  add_quad(&s, &away);
+  return stage_finish(&s);
+}
+
+/* A probe counts each crossing once, also that of a small triangle seen from afar. */
+static void fine_mesh(void **state) {
+  (void)state;
+  Image ball = far_probes(false), mesh = far_probes(true);
+  assert_ratio("ball of small triangles", image_mean(&mesh, 1), image_mean(&ball, 1), 5e-3);
+  image_free(&ball);
+  image_free(&mesh);
+}
+
 /* ---- others ------------------------------------------------------------------------------------------------------ */
 
 /* A body in a medium: light goes through it on both sides of its way through the body. */
@@ -443,9 +473,9 @@ static void memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(walls),    cmocka_unit_test(colours),   cmocka_unit_test(rough),    cmocka_unit_test(white),
-      cmocka_unit_test(corner),   cmocka_unit_test(in_fog),    cmocka_unit_test(mixed),    cmocka_unit_test(textured),
-      cmocka_unit_test(as_glass), cmocka_unit_test(same_bits), cmocka_unit_test(extremes), cmocka_unit_test(refused),
-      cmocka_unit_test(memory)};
+      cmocka_unit_test(walls),    cmocka_unit_test(colours),   cmocka_unit_test(rough),     cmocka_unit_test(white),
+      cmocka_unit_test(corner),   cmocka_unit_test(fine_mesh), cmocka_unit_test(in_fog),    cmocka_unit_test(mixed),
+      cmocka_unit_test(textured), cmocka_unit_test(as_glass),  cmocka_unit_test(same_bits), cmocka_unit_test(extremes),
+      cmocka_unit_test(refused),  cmocka_unit_test(memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,12 +115,26 @@ static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   }
 }
 
+/* Where a probe from o goes on behind a crossing: behind every distance that Embree may compute for it, so that it is
+ * counted once. The plane through the point gives the distance. The point itself is less exact: that of a small
+ * triangle far from o has a large error within the triangle's plane. The margin holds the error along the normal, which
+ * is at->offset and 32 roundings of the distance: of the corners relative to o, of the normal's products, of the
+ * quotient. */
+static float past_crossing(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
+  const float least = 0.01f; /* of the cosine: a bound of the margin */
+  float cosine = vl_dot(at->g, d), steep = vl_abs(cosine);
+  float t = steep > least ? vl_dot(vl_sub(at->p, o), at->g) / cosine : at->t;
+  float margin = (2.0f * at->offset + 0x1p-19f * vl_abs(at->t)) / vl_max(steep, least);
+  return vl_max(t, t_min) + vl_max(margin, VL_MIN_POSITIVE); /* more than t_min even if t_min and margin are 0 */
+}
+
 /* Records one crossing of probe j, whose ids are in hits_b. Returns false if it was the last crossing. */
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = &s->subsurface;
   vlHits *h = &s->hits_b;
   if (h->shape[j] == VL_NONE) return false;
+  vlVec3 o = vl_lane3(s->b.ox, s->b.oy, s->b.oz, j), d = vl_lane3(s->b.dx, s->b.dy, s->b.dz, j);
   vlPoint at = vl_hit_point(t->world, &s->b, h, j);
   if (vl_hit_material(t->world, &s->b, h, j) == x->material[j]) {
     uint32_t count = ++x->found[j];
@@ -130,7 +144,7 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
       x->hits.t[j] = h->t[j];
     }
   }
-  x->t_min[j] = vl_past_surface(&at, vl_lane3(s->b.dx, s->b.dy, s->b.dz, j), x->t_min[j]);
+  x->t_min[j] = past_crossing(&at, o, d, x->t_min[j]);
   return x->t_min[j] < x->length[j];
 }
 

@@ -71,7 +71,7 @@ static void assert_image(const char *what, vlColorMode mode, Image *p, const dou
 
 /* n sheets, or n / 2 solids, of two colours in turns. */
 static void stack_of(int n, bool sheets, const float *const colors[2], vlColorMode mode, vlTracer tracer) {
-  Stage s = open_stage(mode, tracer, 256);
+  Stage s = open_stage(mode, tracer, n > 10 ? 64 : 512);
   add_sky(&s, 1);
   vlMaterialId material[2];
   for (int k = 0; k < 2; k++) {
@@ -211,7 +211,7 @@ static void half(void **state) {
   (void)state;
   for (int mode = 0; mode < 2; mode++)
     for (int n = 0; n < 4; n++) { /* 0: before the sky */
-      Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, n > 0 ? 2048 : 512);
+      Stage s = open_stage((vlColorMode)mode, VL_TRACER_VOLPATH, n > 0 ? 1024 : 256);
       vlMaterialDef def = glass(rgb(amber), true);
       def.principled.transmission = vl_float_input(0.5f);
       vlMaterialId material = vl_scene_add_material(s.scene, &def);
@@ -237,7 +237,7 @@ static void half(void **state) {
  * that both colour modes show the same. */
 static Image rough(vlColorMode mode, vlTracer tracer, bool media) {
   static const float tint[3] = {0.2f, 0.7f, 1.0f}, sigma[2][3] = {{0.1f, 0.3f, 0.6f}, {0.4f, 0.02f, 0.2f}};
-  Stage s = open_stage(mode, tracer, 512);
+  Stage s = open_stage(mode, tracer, 256);
   s.camera.fov = 0.8;
   s.render.max_depth = 12;
   s.render.merge_radius = 0.1;

@@ -31,6 +31,7 @@ typedef struct Surface {
 
 static inline vlBsdfParams batch_params(Batch *b) {
   vlBsdfParams p;
+  for (int c = 0; c < 4; c++) p.tint[c] = NULL;
   for (int c = 0; c < 4; c++) p.reflectance[c] = b->reflectance[c], p.eta[c] = b->eta[c], p.k[c] = b->k[c];
   p.alpha_x = b->alpha_x, p.alpha_y = b->alpha_y, p.eta_s = b->eta_s, p.coat = b->coat;
   for (int k = 0; k < VL_BSDF_ROWS; k++) p.own[k] = b->own[k];

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"
@@ -26,6 +25,7 @@ static int parse_command(Again *again) {
     if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(again, "it is not velo render");
     if (i < 2) continue;
     if (count == most) return fail_command(again, "it is too long");
+    if (strlen(word) >= RECEIPT_MOST_WORD) return fail_command(again, "a word is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(again, "it asks for help");
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }
@@ -61,9 +61,7 @@ static int take_scene(Again *again, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
   if (!path) return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file", again->path);
   again->arguments.operands[0] = path;
-  if (given->operand_count || access(path, F_OK) == 0) return -1;
-  return report_failure(STATUS_MISSING, "no such file: %s (of the receipt of %s); give the scene's file before --again",
-                        path, again->path);
+  return given->operand_count ? -1 : receipt_check_scene(path, "the receipt of", again->path, "--again");
 }
 
 /* The camera of another file is taken from the receipt, so that the file is not needed; its lens, where the receipt

@@ -3,12 +3,12 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
 #include "render/pattern.h"
+#include "render/receipt.h"
 
 static int fail_command(const Continue *c, const char *why) {
   return report_failure(STATUS_SCENE, "%s: the command in its receipt cannot be followed: %s", c->path, why);
@@ -24,6 +24,7 @@ static int parse_command(Continue *c, const vlReceipt *receipt) {
     if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(c, "it is not velo render");
     if (i < 2) continue;
     if (count == most) return fail_command(c, "it is too long");
+    if (strlen(word) >= RECEIPT_MOST_WORD) return fail_command(c, "a word is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(c, "it asks for help");
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }
@@ -59,9 +60,7 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
 static int take_scene(Continue *c, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : c->arguments.operands[0];
   c->arguments.operands[0] = path;
-  if (given->operand_count || access(path, F_OK) == 0) return -1;
-  return report_failure(STATUS_MISSING, "no such file: %s (of the film %s); give the scene's file before --continue",
-                        path, c->path);
+  return given->operand_count ? -1 : receipt_check_scene(path, "the film", c->path, "--continue");
 }
 
 int continue_open(Continue *c, const Arguments **arguments) {

@@ -63,6 +63,9 @@ typedef struct vlFilmReader {
   char *path;
   vlFilmShape shape;
   char *receipt; /* text; null: none */
+  char buffer[4096];
+  uint64_t buffer_at; /* place of the buffer's bytes in the file */
+  size_t buffered;    /* number of these bytes */
   uint32_t blocks, next;
   /* head and ranges of the block that was read last */
   vlFilmBlockHead head;

@@ -14,7 +14,7 @@ static vlResult damaged(const vlFilmReader *r, const char *what, vlError *error)
 }
 
 /* Reads `size` bytes at offset `at`. The caller has checked that the file is long enough. */
-static vlResult get(const vlFilmReader *r, void *data, size_t size, uint64_t at, vlError *error) {
+static vlResult get_bytes(const vlFilmReader *r, void *data, size_t size, uint64_t at, vlError *error) {
   char *to = data;
   while (size) {
     ssize_t n = pread(r->descriptor, to, size, (off_t)at);
@@ -23,6 +23,22 @@ static vlResult get(const vlFilmReader *r, void *data, size_t size, uint64_t at,
     if (n == 0) return damaged(r, "it ends too early", error);
     to += n, at += (uint64_t)n, size -= (size_t)n;
   }
+  return VL_OK;
+}
+
+/* Reads `size` bytes at `at`, which the file has. Small pieces come from a buffer, since a part of a render has many
+ * blocks without samples. */
+static vlResult get(vlFilmReader *r, void *data, size_t size, uint64_t at, vlError *error) {
+  if (size > sizeof r->buffer) return get_bytes(r, data, size, at, error);
+  if (at < r->buffer_at || at + size > r->buffer_at + r->buffered) {
+    uint64_t rest = r->size - at;
+    r->buffer_at = at, r->buffered = 0;
+    size_t count = rest < sizeof r->buffer ? (size_t)rest : sizeof r->buffer;
+    vlResult result = get_bytes(r, r->buffer, count, at, error);
+    if (result != VL_OK) return result;
+    r->buffered = count;
+  }
+  memcpy(data, r->buffer + (at - r->buffer_at), size);
   return VL_OK;
 }
 

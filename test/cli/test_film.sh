@@ -142,12 +142,16 @@ data = open("f.film", "rb").read()
 size = struct.unpack_from("<I", data, 12)[0]
 header = data[24:24 + size]
 no_receipt = header[:header.index(b'"receipt"')] + b'"receipt": "SCALAR"}'
-for name, text in (("later.film", header.replace(b'"velo_receipt": 1', b'"velo_receipt": 9')), ("scalar.film", no_receipt)):
+folder = header.replace(b'"scene.pbrt"', b'"."')
+long = header.replace(b'"scene.pbrt"', b'"' + b"x" * 70000 + b'"')
+for name, text in (("folder.film", folder), ("long.film", long), ("later.film", header.replace(b'"velo_receipt": 1', b'"velo_receipt": 9')), ("scalar.film", no_receipt)):
     head = data[:12] + struct.pack("<II", len(text), zlib.crc32(text))
     open(name, "wb").write(head + struct.pack("<I", zlib.crc32(head)) + text + data[24 + size:])
 SCRIPT
 refused "a receipt of a later version" 3 "later.film: film file: receipt" "$VELO" film info later.film
 refused "no receipt" 3 "scalar.film" "$VELO" film info scalar.film
+refused "a folder as scene" 5 "of the film folder.film" $render --continue folder.film
+refused "a word of 70000 letters" 3 "long.film: the command in its receipt cannot be followed: a word is too long" $render --continue long.film
 refused "a receipt of a later version, merged" 3 "later.film: film file: receipt" "$VELO" film merge f.film later.film -o none.film
 [ ! -e none.film ] && pass "no result of a failed merge" || fail "no result of a failed merge"
 finish

@@ -3,7 +3,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/context.h"
 #include "cli/report.h"
@@ -28,9 +27,7 @@ static int take_scene(Again *again, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : vl_receipt_scene(again->receipt);
   if (!path) return report_failure(STATUS_SCENE, "%s: its receipt names no scene; give the scene's file", again->path);
   again->arguments.operands[0] = path;
-  if (given->operand_count || access(path, F_OK) == 0) return -1;
-  return report_failure(STATUS_MISSING, "no such file: %s (of the receipt of %s); give the scene's file before --again",
-                        path, again->path);
+  return given->operand_count ? -1 : receipt_check_scene(path, "the receipt of", again->path, "--again");
 }
 
 /* If the image's camera came from a file of its own, takes it from the receipt, so the file is not needed. If the

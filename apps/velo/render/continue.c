@@ -2,11 +2,11 @@
 #include "render/continue.h"
 
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/context.h"
 #include "cli/report.h"
 #include "render/pattern.h"
+#include "render/receipt.h"
 #include "render/receipt_repeat.h"
 
 /* Given options replace those of the film. Options that must not change are compared later. */
@@ -26,9 +26,7 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
 static int take_scene(Continue *c, const Arguments *given) {
   const char *path = given->operand_count ? given->operands[0] : c->arguments.operands[0];
   c->arguments.operands[0] = path;
-  if (given->operand_count || access(path, F_OK) == 0) return -1;
-  return report_failure(STATUS_MISSING, "no such file: %s (of the film %s); give the scene's file before --continue",
-                        path, c->path);
+  return given->operand_count ? -1 : receipt_check_scene(path, "the film", c->path, "--continue");
 }
 
 int continue_open(Continue *c, const Arguments **arguments) {

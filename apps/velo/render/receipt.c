@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli/report.h"
 #include "render/lens_options.h"
@@ -129,4 +130,16 @@ int receipt_of_image(vlContext *context, const vlImage *image, const char *path,
   if (result == VL_OK) return -1;
   snprintf(error.file, sizeof error.file, "%s", path);
   return report_error(&error, result, path);
+}
+
+int receipt_check_scene(const char *path, const char *what, const char *owner, const char *option) {
+  struct stat info;
+  if (strlen(path) >= RECEIPT_MOST_WORD)
+    return report_failure(STATUS_SCENE, "%s: the path of the scene in its receipt is too long", owner);
+  if (stat(path, &info) != 0)
+    return report_failure(STATUS_MISSING, "no such file: %s (of %s %s); give the scene's file before %s", path, what,
+                          owner, option);
+  if (S_ISREG(info.st_mode)) return -1;
+  return report_failure(STATUS_IO, "%s (of %s %s) is not a regular file; give the scene's file before %s", path, what,
+                        owner, option);
 }

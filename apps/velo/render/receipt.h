@@ -7,6 +7,7 @@
 
 /* The name of the attribute. */
 #define RECEIPT_ATTRIBUTE "velo.receipt"
+enum { RECEIPT_MOST_WORD = 4096 }; /* longest word of a receipt's command, bytes with the zero */
 
 /* Settings shared by all receipts of a command. */
 typedef struct ReceiptPlan {
@@ -35,5 +36,8 @@ vlResult receipt_set(vlContext *context, const Job *job, const ReceiptImage *whi
 /* Finds the receipt in a header. Returns -1, or the exit code after reporting that there is none or that it is wrong.
  */
 int receipt_of_image(vlContext *context, const vlImage *image, const char *path, vlReceipt **receipt);
+/* Checks the scene's path that a receipt holds: it must be that of a file. what, owner: the file that holds the
+ * receipt, for messages; option: that by which it was given. Returns -1 or the exit code. */
+int receipt_check_scene(const char *path, const char *what, const char *owner, const char *option);
 
 #endif

@@ -22,6 +22,7 @@ int receipt_parse_command(const vlReceipt *receipt, const char *path, Arguments 
     if (i < 2 && strcmp(word, i ? "render" : "velo") != 0) return fail_command(path, "it is not velo render");
     if (i < 2) continue;
     if (count == most) return fail_command(path, "it is too long");
+    if (strlen(word) >= RECEIPT_MOST_WORD) return fail_command(path, "a word is too long");
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) return fail_command(path, "it asks for help");
     words[count++] = (char *)(uintptr_t)word; /* is not changed */
   }

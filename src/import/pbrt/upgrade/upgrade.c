@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/token.h"
+#include "import/pbrt/upgrade/detect.h"
 
 /* ---- directives without a table -----------------------------------------------------------------------------------
  */
@@ -220,6 +221,7 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
                  .plain_path = true};
   if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
   u.same_folder = folder_of(from, u.from_folder) && strcmp(u.from_folder, u.to_folder) == 0;
+  u.is_old = vl_old_scene(context, from).version != 0;
   run(&u);
   release(&u);
   if (error && u.result != VL_OK) *error = u.error;

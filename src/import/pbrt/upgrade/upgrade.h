@@ -75,6 +75,7 @@ typedef struct vlUpgrade {
   VL_ARRAY(char *) outputs; /* pairs: path and text of the files to write */
   VL_ARRAY(char *) images;  /* pairs: the old image with its factor, the new one's name */
   uint32_t depth;
+  bool is_old; /* the first file has statements that pbrt-v4 does not have */
   bool filter_given;
   bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
   double exposure;             /* factor on the film's iso: 1 / the shutter's time */
@@ -230,7 +231,7 @@ vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
 /* Converts an image over longitude and latitude, times the factor, to an equal-area one beside the new scene, and gives
- * its name. A square image only gets its name. */
+ * its name. */
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
                         size_t size);
 

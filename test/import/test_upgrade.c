@@ -351,7 +351,7 @@ static void environment(void **state) {
   write_file("old/s.pbrt",
              "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string mapname\" \"sky.exr\" \"rgb "
              "L\" [ 1 3 1 ] \"rgb scale\" [ 2 2 2 ]\nWorldEnd\n");
-  assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
+  assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/s.pbrt"),
                       "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string "
                       "filename\" \"sky-equiarea.exr\" \"float scale\" 2\n");

@@ -174,6 +174,12 @@ static void textures(void **state) {
   (void)state;
   Gltf *g = new_square();
   Loaded l;
+  static const char *const images[] = {"a.png", "a.webp"}; /* are looked for, but not read */
+  for (int i = 0; i < 2; i++) {
+    FILE *f = fopen(in_folder(images[i]), "w");
+    assert_non_null(f);
+    fclose(f);
+  }
   fine_with(
       &l, g,
       SCENE

@@ -253,6 +253,45 @@ static void settings(void **state) {
                       "\"box\"\nWorldBegin\nShape \"sphere\"\n");
 }
 
+/* A scene of pbrt-v4 stays as it is. */
+static void new_scene(void **state) {
+  (void)state;
+  Notes notes;
+  vlError error;
+  const char *text =
+      "Film \"rgb\" \"string sensor\" \"cie1931\"\nSampler \"zsobol\"\nPixelFilter \"gaussian\"\nIntegrator "
+      "\"volpath\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [ 1 1 1 ] \"float scale\" 2\n"
+      "Material \"diffuse\" \"rgb reflectance\" [ .1 .1 .1 ]\nAttributeBegin\nShape \"sphere\"\nAttributeEnd\n";
+  write_file("old/s.pbrt", text);
+  assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
+  assert_string_equal(read_file("new/s.pbrt"), text);
+  assert_int_equal(notes.changed, 0);
+}
+
+/* Any damaged text is an error with its place, or is upgraded. */
+static void damaged(void **state) {
+  (void)state;
+  Notes notes;
+  vlError error;
+  const char *text =
+      "Film \"image\" \"float scale\" [ 2 ] # a\nWorldBegin\nTransformBegin\nMaterial \"uber\" \"rgb opacity\" [ "
+      ".5 .5 .5 ] \"texture Kd\" \"t\"\nTransformEnd\nLightSource \"point\" \"spectrum I\" [ 400 1 700 2 ]\n"
+      "Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [ 0 0 0 1 ]\nTransform [ 1 0 0 0 0 1 0 "
+      "0 0 0 1 0 0 0 0 1 ]\nWorldEnd\n";
+  char part[1000];
+  size_t n = strlen(text);
+  for (size_t i = 0; i < n; i++) {
+    snprintf(part, sizeof part, "%.*s", (int)i, text);
+    write_file("old/d.pbrt", part);
+    vlResult r = upgrade("old/d.pbrt", "new/d.pbrt", false, &notes, &error);
+    assert_true(r == VL_OK || (r == VL_ERROR_SCENE && error.line > 0));
+    snprintf(part, sizeof part, "%.*s%s", (int)i, text, text + i + 1); /* without one byte */
+    write_file("old/d.pbrt", part);
+    r = upgrade("old/d.pbrt", "new/d.pbrt", false, &notes, &error);
+    assert_true(r == VL_OK || r == VL_ERROR_SCENE);
+  }
+}
+
 /* Included files are written beside the new scene where they change; names of other files lead to the old folder. */
 static void files(void **state) {
   (void)state;
@@ -312,7 +351,7 @@ static void environment(void **state) {
   write_file("old/s.pbrt",
              "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string mapname\" \"sky.exr\" \"rgb "
              "L\" [ 1 3 1 ] \"rgb scale\" [ 2 2 2 ]\nWorldEnd\n");
-  assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", false, &notes, &error), VL_OK);
+  assert_int_equal(upgrade("old/s.pbrt", "new/s.pbrt", true, &notes, &error), VL_OK);
   assert_string_equal(read_file("new/s.pbrt"),
                       "PixelFilter \"box\"\nWorldBegin\nLightSource \"infinite\" \"string "
                       "filename\" \"sky-equiarea.exr\" \"float scale\" 2\n");
@@ -431,6 +470,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(statements),   cmocka_unit_test(settings),
                                      cmocka_unit_test(files),        cmocka_unit_test(environment),
                                      cmocka_unit_test(black_bodies), cmocka_unit_test(strict),
+                                     cmocka_unit_test(new_scene),    cmocka_unit_test(damaged),
                                      cmocka_unit_test(solids),       cmocka_unit_test(recognised)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

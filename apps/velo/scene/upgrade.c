@@ -44,7 +44,7 @@ static void print_plain(const char *text) {
   for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
 }
 
-static void told(void *user, vlUpgradeNote note, const vlError *place, const char *message) {
+static void take_note(void *user, vlUpgradeNote note, const vlError *place, const char *message) {
   static const char *const kinds[] = {"", "lost: ", "wrote: "};
   List *list = user;
   if (note == VL_UPGRADE_CHANGED) list->changes++;
@@ -74,7 +74,7 @@ static int run(const Command *command, const Arguments *arguments) {
   if (status >= 0) return status;
   vlUpgradeDef def = vl_default_upgrade_def();
   def.strict = v[UPGRADE_STRICT].given;
-  def.report = told;
+  def.report = take_note;
   def.report_user = &list;
   if (v[UPGRADE_SEARCH].given) def.search_path = v[UPGRADE_SEARCH].text;
   vlResult r = vl_scene_upgrade(context, arguments->operands[0], arguments->operands[1], &def, &error);

@@ -57,15 +57,14 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
 }
 
 /* Three channels; those of an image of one are equal. */
-static bool read_pixels(vlOldFile *file, uint32_t line, const vlImage *from, float **pixels) {
+static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from, float **pixels) {
   uint32_t channel[4], count = vl_image_color(from, channel);
-  if (!count) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "the image has no colour");
+  if (!count) return u->result = vl_fail(&u->error, VL_ERROR_SCENE, "%s: the image has no colour", map->from), false;
   if (count < 3) channel[1] = channel[2] = channel[0];
-  return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(file->u);
+  return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(u);
 }
 
-static bool convert(vlOldFile *file, uint32_t line, const vlImage *from, const double factor[3], const char *path) {
-  vlUpgrade *u = file->u;
+static bool convert(vlUpgrade *u, const vlOldMap *map, const vlImage *from, const char *path) {
   double side = sqrt((double)from->width * from->height);
   uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
   vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE : even > MOST_SIDE ? MOST_SIDE : even, 0, 3);
@@ -73,14 +72,13 @@ static bool convert(vlOldFile *file, uint32_t line, const vlImage *from, const d
   def.type = VL_PIXEL_F32;
   vlImage *image = NULL;
   float *pixels = NULL;
-  if (!read_pixels(file, line, from, &pixels)) return false;
+  if (!read_pixels(u, map, from, &pixels)) return false;
   bool fine = vl_image_create(u->context, &def, &image) == VL_OK || vl_old_fail_memory(u);
   if (fine) {
-    Work work = {pixels, from->width, from->height, factor, image};
-    vlError error = {0};
+    Work work = {pixels, from->width, from->height, map->factor, image};
     vl_parallel_for(u->context, def.height, fill_row, &work);
-    vlResult r = vl_image_write(image, path, NULL, &error);
-    fine = r == VL_OK || vl_old_fail(file, r, line, 0, "%s", error.message);
+    u->result = vl_image_write(image, path, NULL, &u->error);
+    fine = u->result == VL_OK;
   }
   vl_image_destroy(image);
   vl_free(u->context, pixels);
@@ -94,52 +92,48 @@ static void make_name(vlUpgrade *u, const char *name, char *result, size_t size)
   snprintf(result, size, "%.*s-equiarea.exr", stem, base);
   for (uint32_t k = 2; k < 1000; k++) {
     bool taken = false;
-    for (size_t i = 1; i < u->images.count; i += 2) taken = taken || strcmp(u->images.items[i], result) == 0;
+    for (size_t i = 0; i < u->maps.count; i++) taken = taken || strcmp(u->maps.items[i].name, result) == 0;
     if (!taken) return;
     snprintf(result, size, "%.*s-equiarea-%u.exr", stem, base, k);
   }
 }
 
-static bool remember(vlUpgrade *u, const char *key, const char *name) {
-  const char *const texts[2] = {key, name};
-  for (int i = 0; i < 2; i++) {
-    char *copy = vl_strdup(u->context, texts[i]), **slot = copy ? VL_PUSH(u->context, &u->images) : NULL;
-    if (!slot) return vl_free(u->context, copy), vl_old_fail_memory(u);
-    *slot = copy;
-  }
-  return true;
-}
-
-static void tell(const vlUpgrade *u, const char *path) {
-  vlError place = {0};
-  vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
-  if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "the light's image, equal-area");
-}
-
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
                         size_t size) {
   vlUpgrade *u = file->u;
-  char path[4096], to[8300], key[4400];
+  char path[4096];
   vlFound found = vl_find_file(file->path, u->first, u->def->search_path, name, path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   if (found == VL_FOUND_NOT) {
     vl_old_lose(file, line, "there is no image \"%s\": it must become an equal-area map", name);
     return snprintf(result, size, "%s", name) > 0;
   }
-  vlImage *from = NULL;
-  vlError error = {0};
-  snprintf(key, sizeof key, "%s %g %g %g", path, factor[0], factor[1], factor[2]);
-  for (size_t i = 0; i < u->images.count; i += 2)
-    if (strcmp(u->images.items[i], key) == 0) return snprintf(result, size, "%s", u->images.items[i + 1]) > 0;
-  vlResult r = vl_image_read_named(u->context, path, &from, &error);
-  if (r != VL_OK) return vl_old_fail(file, r, line, 0, "%s", error.message);
-  make_name(u, name, result, size);
-  snprintf(to, sizeof to, "%s/%s", u->to_folder, result);
-  bool fine = remember(u, key, result);
-  if (fine && !u->def->strict) {
-    fine = convert(file, line, from, factor, to);
-    if (fine) tell(u, to);
+  for (size_t i = 0; i < u->maps.count; i++) {
+    const vlOldMap *map = &u->maps.items[i];
+    if (strcmp(map->from, path) == 0 && memcmp(map->factor, factor, sizeof map->factor) == 0)
+      return snprintf(result, size, "%s", map->name) > 0;
   }
-  vl_image_destroy(from);
-  return fine;
+  make_name(u, name, result, size);
+  vlOldMap *map = VL_PUSH(u->context, &u->maps);
+  if (!map) return vl_old_fail_memory(u);
+  *map = (vlOldMap){vl_strdup(u->context, path), vl_strdup(u->context, result), {factor[0], factor[1], factor[2]}};
+  return (map->from && map->name) || vl_old_fail_memory(u);
+}
+
+bool vl_old_convert_maps(vlUpgrade *u) {
+  for (size_t i = 0; i < u->maps.count; i++) {
+    const vlOldMap *map = &u->maps.items[i];
+    char to[8300];
+    vlImage *from = NULL;
+    u->result = vl_image_read_named(u->context, map->from, &from, &u->error);
+    if (u->result != VL_OK) return false;
+    snprintf(to, sizeof to, "%s/%s", u->to_folder, map->name);
+    bool fine = convert(u, map, from, to);
+    vl_image_destroy(from);
+    if (!fine) return false;
+    vlError place = {0};
+    vl_fail_at(&place, VL_OK, to, 0, 0, "%s", "");
+    if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "the light's image, equal-area");
+  }
+  return true;
 }

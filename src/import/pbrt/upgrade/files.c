@@ -91,14 +91,13 @@ static bool new_name(vlUpgrade *u, const char *name, const char *path, char *res
   return n > 0 && (size_t)n < size;
 }
 
-/* Makes the folders of a path below the new scene's folder. */
-static void make_folders(const vlUpgrade *u, const char *name) {
-  char path[PATH_MAX + 4200];
+void vl_old_make_folders(const vlUpgrade *u, const char *path) {
+  char folder[PATH_MAX + 4200];
+  snprintf(folder, sizeof folder, "%s", path);
   size_t base = strlen(u->to_folder) + 1;
-  snprintf(path, sizeof path, "%s/%s", u->to_folder, name);
-  for (char *slash = strchr(path + base, '/'); slash; slash = strchr(slash + 1, '/')) {
+  for (char *slash = strchr(folder + base, '/'); slash; slash = strchr(slash + 1, '/')) {
     *slash = 0;
-    mkdir(path, 0777);
+    mkdir(folder, 0777); /* writing the file reports a failure */
     *slash = '/';
   }
 }
@@ -143,7 +142,6 @@ bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
     } else {
       if (!new_name(u, s->name[0], path, name, sizeof name))
         return vl_free(u->context, text), vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
-      make_folders(u, name);
       if (!keep_output(u, name, text)) return false;
     }
     known = VL_PUSH(u->context, &u->includes);

@@ -162,11 +162,23 @@ static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool
   return vl_old_edit(file, map->span[0], "\"%s\"", name);
 }
 
+/* Its colour stays beside the image, which has numbers. */
+static bool goniometric_light(vlOldFile *file, vlOldStatement *s, vlOldParam *map) {
+  vlOldParam *color = vl_old_find(s, "I");
+  const double one[3] = {1, 1, 1};
+  double more = blackbody_scale(file, color), factor, tint[3];
+  if (!luminance(file, s->line, color, &factor) || !fold_scale(file, s, color, more * factor, tint)) return false;
+  if (tint[0] != tint[1] || tint[1] != tint[2])
+    vl_old_lose(file, s->line, "goniometric: a colour \"scale\" has no counterpart: left out");
+  return name_image(file, s, map, true, one);
+}
+
 static bool image_light(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
-  bool around = strcmp(s->name[0], "projection") != 0, far = color != NULL;
+  bool around = strcmp(s->name[0], "projection") != 0;
   double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
   if (!map || !map->strings || !map->text[0][0]) return true;
+  if (strcmp(s->name[0], "goniometric") == 0) return goniometric_light(file, s, map);
   if (!color) color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
     vl_old_lose(file, s->line, "\"%s\" is a spectrum beside an image: left out", color->name);
@@ -176,7 +188,7 @@ static bool image_light(vlOldFile *file, vlOldStatement *s) {
     for (int i = 0; i < 3; i++) rgb[i] = 1;
     color->dropped = true;
     if (grey != 1) vl_old_note(s, "%s in scale", color->name);
-  } else if (color && (far || around)) {
+  } else if (color && around) {
     color->dropped = true;
     vl_old_note(s, "%s in the image", color->name);
   } else if (color) {

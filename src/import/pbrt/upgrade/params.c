@@ -132,6 +132,8 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
     }
   }
   if (row->action != VL_OLD_DEFAULT || found) return true;
+  bool shared = s->word->rule == vl_old_filter || s->word->rule == vl_old_light; /* kinds that both pbrts have */
+  if (shared && !file->u->is_old) return true;
   vl_old_note(s, "with %s", row->to);
   return vl_old_add(file, s, "%s", row->to);
 }

@@ -263,7 +263,7 @@ bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
   vlUpgrade *u = file->u;
   char text[32];
   double iso = u->iso * u->exposure;
-  if (!u->filter_given) {
+  if (!u->filter_given && u->is_old) {
     vl_old_note(s, "PixelFilter \"box\", pbrt-v3's default, before it");
     if (!vl_old_before(file, s, "PixelFilter \"box\"")) return false;
   }

@@ -13,6 +13,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "import/pbrt/token.h"
+#include "import/pbrt/upgrade/detect.h"
 
 /* ---- directives without a table -----------------------------------------------------------------------------------
  */
@@ -174,11 +175,14 @@ static void release(vlUpgrade *u) {
     vl_free(c, u->includes.items[i].name);
   }
   for (size_t i = 0; i < u->outputs.count; i++) vl_free(c, u->outputs.items[i]);
-  for (size_t i = 0; i < u->images.count; i++) vl_free(c, u->images.items[i]);
+  for (size_t i = 0; i < u->maps.count; i++) {
+    vl_free(c, u->maps.items[i].from);
+    vl_free(c, u->maps.items[i].name);
+  }
   VL_ARRAY_FREE(c, &u->textures);
   VL_ARRAY_FREE(c, &u->includes);
   VL_ARRAY_FREE(c, &u->outputs);
-  VL_ARRAY_FREE(c, &u->images);
+  VL_ARRAY_FREE(c, &u->maps);
 }
 
 static bool run(vlUpgrade *u) {
@@ -191,9 +195,11 @@ static bool run(vlUpgrade *u) {
                            "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
     return false;
   }
-  bool fine = true;
-  for (size_t i = 0; fine && i + 1 < u->outputs.count; i += 2)
+  bool fine = vl_old_convert_maps(u);
+  for (size_t i = 0; fine && i + 1 < u->outputs.count; i += 2) {
+    vl_old_make_folders(u, u->outputs.items[i]);
     fine = write_text(u, u->outputs.items[i], u->outputs.items[i + 1]);
+  }
   fine = fine && write_text(u, u->to, text);
   vl_free(u->context, text);
   return fine;
@@ -220,6 +226,7 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
                  .plain_path = true};
   if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
   u.same_folder = folder_of(from, u.from_folder) && strcmp(u.from_folder, u.to_folder) == 0;
+  u.is_old = vl_old_scene(context, from).version != 0;
   run(&u);
   release(&u);
   if (error && u.result != VL_OK) *error = u.error;

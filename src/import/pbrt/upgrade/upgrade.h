@@ -60,6 +60,12 @@ typedef struct vlOldInclude {
   char *path, *name; /* where it was found; what the new Include says */
 } vlOldInclude;
 
+/* An image of a light that is converted at the end. */
+typedef struct vlOldMap {
+  char *from, *name; /* path of the old image; name of the new one, beside the new scene */
+  double factor[3];
+} vlOldMap;
+
 typedef struct vlUpgrade {
   vlContext *context;
   const vlUpgradeDef *def;
@@ -73,8 +79,9 @@ typedef struct vlUpgrade {
   VL_ARRAY(vlOldTexture) textures;
   VL_ARRAY(vlOldInclude) includes;
   VL_ARRAY(char *) outputs; /* pairs: path and text of the files to write */
-  VL_ARRAY(char *) images;  /* pairs: the old image with its factor, the new one's name */
+  VL_ARRAY(vlOldMap) maps;
   uint32_t depth;
+  bool is_old; /* the first file has statements that pbrt-v4 does not have */
   bool filter_given;
   bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
   double exposure;             /* factor on the film's iso: 1 / the shutter's time */
@@ -229,9 +236,12 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
-/* Converts an image over longitude and latitude, times the factor, to an equal-area one beside the new scene, and gives
- * its name. A square image only gets its name. */
+/* The name of the equal-area image that an image over longitude and latitude becomes, times the factor.
+ * vl_old_convert_maps makes all of them. */
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
                         size_t size);
+bool vl_old_convert_maps(vlUpgrade *u);
+/* Makes the folders of a file that is to be written, below the new scene's folder. */
+void vl_old_make_folders(const vlUpgrade *u, const char *path);
 
 #endif

@@ -48,6 +48,12 @@ expect_text named_info '1    Sheet  (nodes[0].meshes[0].primitives[0])'
 expect_text named_cameras 'cameras     2: 0 near, 1 far'
 check named_scene_json "$VELO" scene info named.gltf --json
 expect_text named_json '"shape": [{"id": 1, "name": "Sheet"'
+# What no scene uses does not stop a render; `scene check` warns of it.
+sed 's/"meshes": \[/"materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 4}}}], &/' square.gltf >unused.gltf
+check unused_renders "$VELO" render unused.gltf --resolution 8x8 --spp 1 -o unused.exr --quiet
+expect_code 1 unused_warns "$VELO" scene check unused.gltf
+expect_text unused_says 'no scene uses it, but: materials[0].pbrMetallicRoughness.baseColorTexture'
+expect_text unused_code 'UNUSED_OBJECT'
 expect_code 3 no_such_camera "$VELO" render square.gltf --camera back
 expect_text no_such_camera_says 'the scene has no camera "back" (2 are there: near, far)'
 expect_code 3 no_such_variant "$VELO" render square.gltf --variant red

@@ -67,8 +67,10 @@ const Option render_options[] = {
      "glTF: the moment of its animation, in seconds, or two: what moves\nbetween them is blurred; default: as modelled",
      0, 0, NULL},
     {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS", "the shutter is open so long from --at on", 0, 1e6, NULL},
-    {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "which one, by name or number from 0; default: the first",
-     0, 0, NULL},
+    {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
+     "which one, by name or number from 0, several with commas, or all;\ndefault: the first", 0, 0, NULL},
+    {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES",
+     "turn the scene's camera about the vertical axis through its middle", -1e6, 1e6, NULL},
     {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
      "light from all around: studio, sky, white, none, or an image\n(twice as wide as high: longitude and latitude; "
@@ -105,6 +107,13 @@ const Option render_options[] = {
     {RENDER_RIG, 0, "rig", OPTION_TEXT, "FILE",
      "every camera of FILE at each pose of the trajectory: a pose is\nthe place of the rig, as a camchain's is cam0's",
      0, 0, NULL},
+    {RENDER_ANIMATE, 0, "animate", OPTION_TEXT, "T0:T1",
+     "glTF: the frames of its animation from T0 on and before T1, in\nseconds; in -o %d (%04d) becomes the frame's "
+     "number",
+     0, 0, NULL},
+    {RENDER_FPS, 0, "fps", OPTION_NUMBER, "N", "frames per second of --animate; default 24", 1e-3, 1e5, NULL},
+    {RENDER_TURNTABLE, 0, "turntable", OPTION_INTEGER, "N", "N frames of a camera that goes once around the scene", 1,
+     1000000, NULL},
     {RENDER_STEREO, 0, "stereo", OPTION_CHOICE, "MODE",
      "two eyes: an .exr holds both views, or one file for each where\n"
      "the name has %v:",

@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -190,7 +191,9 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
 }
 
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {
-  float exposure = outputs->meter ? exposure_meter(image) : outputs->exposure;
+  const bool known = outputs->meter && outputs->shared && !isnan(*outputs->shared);
+  float exposure = known ? *outputs->shared : outputs->meter ? exposure_meter(image) : outputs->exposure;
+  if (outputs->meter && outputs->shared && stage == OUTPUT_FINISHED) *outputs->shared = exposure;
   vlImage *displays[2] = {NULL, NULL}; /* made when the first file needs it: without and with alpha */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
@@ -204,7 +207,7 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     bool alpha = outputs->transparent && output_holds_alpha(path);
     if (eight_bit && !displays[alpha]) {
       result = display_image(context, image, outputs->view, exposure, alpha, &displays[alpha]);
-      if (outputs->meter && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
+      if (outputs->meter && !known && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
     }
     const char *to = has_part && stage != OUTPUT_FINISHED ? part : path;
     if (result == VL_OK)

@@ -24,6 +24,7 @@ typedef struct Outputs {
   float exposure;           /* EV, for 8-bit files */
   bool transparent;         /* .png files have alpha */
   bool meter;               /* meter the exposure from the image; `exposure` is not used */
+  float *shared;            /* with meter: the exposure of several images; NaN until the first is metered; null: none */
   const vlImage *layers[4]; /* further channels of .exr files; null: none */
   struct {
     uint32_t part_spp; /* samples per pixel in NAME.part.EXT; 0: it was not written */

@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/again.h"
+#include "render/animate.h"
 #include "render/attributes.h"
 #include "render/channels.h"
 #include "render/continue.h"
@@ -598,10 +599,12 @@ static int check_again(const Render *render) {
   return again_check(&render->again, &render->receipt, render->context, job, &which, !render->many);
 }
 
-static int run_render(const Command *command, const Arguments *arguments) {
+/* exposure: see outputs.h, `shared`; null: the image has its own. */
+static int render_once(const Command *command, const Arguments *arguments, float *exposure) {
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
+  render.outputs.shared = exposure;
   set_up_reports(arguments);
   int status = again_open(&render.again, &arguments);
   if (status < 0) status = continue_open(&render.resumed, &arguments);
@@ -633,6 +636,11 @@ static int run_render(const Command *command, const Arguments *arguments) {
   again_close(&render.again);
   continue_close(&render.resumed);
   return status;
+}
+
+static int run_render(const Command *command, const Arguments *arguments) {
+  if (arguments->operand_count && animate_wanted(arguments)) return animate_run(command, arguments, render_once);
+  return render_once(command, arguments, NULL);
 }
 
 const Command render_command = {

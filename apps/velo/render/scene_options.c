@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "cli/report.h"
+#include "render/animate.h"
 #include "render/job.h"
 
 static bool ends_with(const char *text, const char *suffix) {
@@ -129,6 +130,10 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (result != VL_OK) return report_error(&error, result, path);
   opening->load = load;
   opening->complete = complete;
+  const OptionValue *turned = &v[RENDER_TURN];
+  if (turned->given && v[RENDER_CAMERA].given && !load.camera)
+    return report_usage("--turn turns the scene's own camera: it does not go with --camera FILE");
+  if (turned->given) turn_camera(*scene, camera, complete.up, turned->number);
   if (camera) tell_camera(defs);
   return -1;
 }

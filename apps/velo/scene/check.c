@@ -49,11 +49,13 @@ static void report_message(void *user, const vlError *e) {
       e->message);
 }
 
-/* The importer's warnings become findings; its notes do not. */
+/* The importer's warnings become findings; its notes do not. An error in its log does not end a render: what is wrong
+ * is not used. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
+  const bool wrong = level == VL_LOG_ERROR;
   if (level <= VL_LOG_WARNING)
-    add(user, VL_FINDING_REMARK, VL_SEVERITY_NOTE, VL_OK, where ? where->file : "", where ? where->line : 0,
-        where ? where->column : 0, message);
+    add(user, wrong ? VL_FINDING_WRONG : VL_FINDING_REMARK, wrong ? VL_SEVERITY_WARNING : VL_SEVERITY_NOTE, VL_OK,
+        where ? where->file : "", where ? where->line : 0, where ? where->column : 0, message);
 }
 
 /* Returns -1 when the whole scene was checked. */

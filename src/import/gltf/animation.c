@@ -175,7 +175,7 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
   return ok;
 }
 
-static bool apply_animation(vlGltf *g, size_t index) {
+bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
   const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "animations", index);
   const json_t *animation = vl_gltf_item(g, "animations", index), *channels, *samplers;
   size_t count, sampler_count;
@@ -233,5 +233,5 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
 }
 
 bool vl_gltf_animate(vlGltf *g) {
-  return !(g->time == g->time) || vl_gltf_each_animation(g, apply_animation);
+  return !(g->time == g->time) || vl_gltf_each_animation(g, vl_gltf_apply_animation);
 }

@@ -91,6 +91,11 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
   return true;
 }
 
+bool vl_gltf_check_camera(vlGltf *g, size_t index) {
+  const vlGltfNode node = {.world = vl_mat4_identity()};
+  return take_camera(g, index, &node);
+}
+
 static bool is_called(const json_t *json, const char *name) {
   const char *own = json_string_value(json_object_get(json, "name"));
   return own && strcmp(own, name) == 0;

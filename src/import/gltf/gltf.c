@@ -47,6 +47,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, 
   ok = ok && vl_gltf_frame_animation(&g);
   vl_repairs_report(g.context, &g.repairs, path);
   if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");
+  if (ok && scene->problem) vl_gltf_validate(&g);
   vl_gltf_close(&g);
   return vl_scene_result(scene, error);
 }

@@ -219,6 +219,8 @@ bool vl_gltf_spend(vlGltf *g, const vlGltfPlace *at, uint64_t bytes);
 
 bool vl_gltf_read_nodes(vlGltf *g);
 bool vl_gltf_animate(vlGltf *g); /* applies the animations at g->time */
+/* Applies animation `index` at g->time. */
+bool vl_gltf_apply_animation(vlGltf *g, size_t index);
 /* Visits the animations that the def chooses, in order. False after an error, also that there is no such animation. */
 bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index));
 bool vl_gltf_pose_nodes(vlGltf *g); /* world matrices of all nodes */
@@ -232,6 +234,9 @@ bool vl_gltf_node_moves(const vlGltf *g, const vlGltfNode *node);
 /* Adds the chosen scene's meshes, lights and camera. */
 bool vl_gltf_draw(vlGltf *g);
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]);
+
+/* validate.c: reads what the scene does not use, and reports what is wrong there by the log. Call last. */
+void vl_gltf_validate(vlGltf *g);
 
 /* choices.c: lists the file's scenes, cameras, animations and variants. Call after vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);
@@ -324,6 +329,8 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t light);
 bool vl_gltf_image_light(vlGltf *g, const json_t *scene, const vlGltfPlace *at);
 bool vl_gltf_choose_camera(vlGltf *g);
+/* Reads a camera that no node has. The scene's own camera is replaced. */
+bool vl_gltf_check_camera(vlGltf *g, size_t index);
 bool vl_gltf_choose_variant(vlGltf *g);
 
 #endif

@@ -182,6 +182,8 @@ bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
+/* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is not compressed. */
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive);
 /* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path, relative
  * to the folder of the glTF file. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,

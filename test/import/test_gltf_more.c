@@ -330,6 +330,34 @@ static void draco(void **state) {
   end_load(&l);
 }
 
+/* Points are sized by all that is drawn, whatever the size of their own mesh and the scale of its node. */
+static void points_by_the_image(void **state) {
+  (void)state;
+  double extents[2];
+  for (int scaled = 0; scaled < 2; scaled++) {
+    Gltf *g = calloc(1, sizeof *g);
+    const float p[3] = {0, 0, 0}, q[6] = {-50, 0, 0, 50, 0, 0};
+    gltf_accessor(g, gltf_view(g, p, sizeof p, 0), 5126, 1, "VEC3", ",\"min\":[0,0,0],\"max\":[0,0,0]");
+    gltf_accessor(g, gltf_view(g, q, sizeof q, 0), 5126, 2, "VEC3", ",\"min\":[-50,0,0],\"max\":[50,0,0]");
+    Loaded l;
+    char rest[600];
+    snprintf(rest, sizeof rest,
+             "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1}],"
+             "\"meshes\":[{\"primitives\":[{\"mode\":0,"
+             "\"attributes\":{\"POSITION\":0}}]},{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":1}}]}]",
+             scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0);
+    load(&l, g, rest, NULL);
+    if (l.result != VL_OK) fail_msg("%s", l.error.message);
+    double low[3], high[3];
+    l.scene->shapes.count = 1; /* the points alone */
+    vl_scene_bounds(l.scene, low, high);
+    extents[scaled] = high[0] - low[0];
+    end_load(&l);
+    free(g);
+  }
+  assert_true(fabs(extents[0] - 0.3) < 0.02 && fabs(extents[1] - extents[0]) < 1e-3);
+}
+
 /* A buffer without uri is legal where nothing reads it. */
 static void no_uri(void **state) {
   (void)state;
@@ -362,8 +390,9 @@ static void no_uri(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(variants),     cmocka_unit_test(motion), cmocka_unit_test(scenes),  cmocka_unit_test(packed),
-      cmocka_unit_test(draco),        cmocka_unit_test(no_uri), cmocka_unit_test(lacking), cmocka_unit_test(textures),
+      cmocka_unit_test(variants),     cmocka_unit_test(motion),  cmocka_unit_test(scenes),
+      cmocka_unit_test(packed),       cmocka_unit_test(draco),   cmocka_unit_test(points_by_the_image),
+      cmocka_unit_test(no_uri),       cmocka_unit_test(lacking), cmocka_unit_test(textures),
       cmocka_unit_test(surroundings), cmocka_unit_test(lamps),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

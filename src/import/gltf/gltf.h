@@ -116,6 +116,8 @@ typedef struct vlGltf {
       skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
   const json_t *lights; /* array of KHR_lights_punctual */
   uint64_t total;       /* size of all buffers in bytes */
+  double diagonal;      /* of all that is drawn, in the world; 0: not known. For the size of points and lines */
+  double scale;         /* of the node that is drawn */
   uint64_t spent;       /* bytes of geometry made so far; see vl_gltf_spend */
   int64_t variant;      /* index of the material variant; -1: none */
   double time;          /* time in seconds at which nodes are posed */
@@ -236,6 +238,9 @@ typedef struct vlGltfPrimitive {
   uint32_t *indices;
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
+
+/* The diagonal of the box around the meshes of these nodes, at their poses; 0: no accessor has bounds. */
+double vl_gltf_diagonal(const vlGltf *g, const uint32_t *order, size_t count);
 
 /* Adds mesh `index` for a node. A null node adds the mesh to a group, in the mesh's own space. */
 bool vl_gltf_add_mesh(vlGltf *g, size_t index, const vlGltfNode *node, size_t node_index, vlGroupId group, vlMat4 pose);

@@ -680,9 +680,9 @@ typedef struct vlLoadDef {
 } vlLoadDef;
 /** The default def. */
 VL_API vlLoadDef vl_default_load_def(void);
-/** Adds the contents of a file to the scene. The suffix selects the format: .pbrt, .gltf, .glb, .obj, .ply, .pbrt.gz,
- * .obj.gz or .ply.gz. Relative paths in the file are relative to its folder. def may be null. Errors: SCENE, MISSING,
- * IO, MEMORY, UNSUPPORTED (valid, but not supported; the message says what). */
+/** Adds the contents of a file to the scene. The suffix selects the format: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off
+ * or one of these but glTF's with .gz. Relative paths in the file are relative to its folder. def may be null. Errors:
+ * SCENE, MISSING, IO, MEMORY, UNSUPPORTED (valid, but not supported; the message says what). */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 
 /** The environment (light from all directions) that vl_scene_complete adds. */

@@ -14,15 +14,19 @@
   X(".obj", obj)            \
   X(".obj.gz", obj)         \
   X(".ply", ply)            \
-  X(".ply.gz", ply)
+  X(".ply.gz", ply)         \
+  X(".stl", stl)            \
+  X(".stl.gz", stl)         \
+  X(".off", off)            \
+  X(".off.gz", off)
 #define VL_DECLARE_IMPORT(suffix, name) \
   vlResult vl_import_##name(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 VL_SCENE_FORMATS(VL_DECLARE_IMPORT)
 #undef VL_DECLARE_IMPORT
 
 /* pbrt: a pbrt-v4 scene file, plain or compressed by gzip. gltf: a glTF 2.0 file, .gltf or .glb as its content shows;
- * the scene's defs are marked when camera or lights are missing. obj, ply: geometry without camera and lights, from
- * Wavefront OBJ with its MTL libraries or from PLY; the scene's defs are marked accordingly. */
+ * the scene's defs are marked when camera or lights are missing. obj, ply, stl, off: geometry without camera and
+ * lights; the scene's defs are marked accordingly. */
 
 /* A pbrt-v4 scene from memory; errors use `name` as the file's name, and relative file names start from its folder.
  * data is copied. */

@@ -6,6 +6,7 @@
 #include "import/import.h"
 #include "import/labels.h"
 #include "import/ply/ply.h"
+#include "import/points.h"
 #include "import/repair.h"
 
 void vl_import_plain_settings(vlScene *scene) {
@@ -48,6 +49,81 @@ static vlMaterialId add_material(vlScene *scene, bool colors) {
   return vl_scene_add_material(scene, &def);
 }
 
+static void free_mesh(vlContext *context, vlPlainMesh *m) {
+  vl_free(context, m->positions);
+  vl_free(context, m->normals);
+  vl_free(context, m->uvs);
+  vl_free(context, m->colors);
+  vl_free(context, m->face_colors);
+  vl_free(context, m->indices);
+  *m = (vlPlainMesh){0};
+}
+
+static float *copy_rows(vlContext *context, const float *from, uint32_t width, const uint32_t *rows, size_t count) {
+  float *to = vl_alloc_array(context, count, width * sizeof *to);
+  for (size_t i = 0; to && i < count; i++) memcpy(to + i * width, from + (size_t)rows[i] * width, width * sizeof *to);
+  return to;
+}
+
+/* Gives each triangle vertices of its own, with its colour. */
+static bool separate_faces(vlContext *context, vlPlainMesh *m) {
+  size_t count = 3 * (size_t)m->triangles;
+  vlPlainMesh made = {.vertices = (uint32_t)count, .triangles = m->triangles};
+  if (count > 0x7fffffff) return false;
+  made.positions = copy_rows(context, m->positions, 3, m->indices, count);
+  if (m->normals) made.normals = copy_rows(context, m->normals, 3, m->indices, count);
+  if (m->uvs) made.uvs = copy_rows(context, m->uvs, 2, m->indices, count);
+  made.colors = vl_alloc_array(context, count, 4 * sizeof *made.colors);
+  made.indices = vl_alloc_array(context, count, sizeof *made.indices);
+  bool ok = made.positions && made.colors && made.indices && (!m->normals || made.normals) && (!m->uvs || made.uvs);
+  for (size_t i = 0; ok && i < count; i++) {
+    memcpy(made.colors + 4 * i, m->face_colors + i / 3 * 3, 3 * sizeof *made.colors);
+    made.colors[4 * i + 3] = 1, made.indices[i] = (uint32_t)i;
+  }
+  if (!ok) {
+    free_mesh(context, &made);
+    return false;
+  }
+  free_mesh(context, m);
+  *m = made;
+  return true;
+}
+
+vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef *load, vlPlainMesh *m, vlError *error) {
+  vlContext *context = scene->context;
+  bool ok = true;
+  if (!m->vertices) {
+    vlError where = {0};
+    strncpy(where.file, path, sizeof where.file - 1);
+    vl_log(context, VL_LOG_WARNING, &where, "it has no faces and draws nothing");
+    free_mesh(context, m);
+    return vl_scene_result(scene, error);
+  }
+  if (!m->triangles) ok = vl_import_points(context, path, m);
+  if (ok && m->face_colors && !m->colors) ok = separate_faces(context, m);
+  if (!ok) {
+    free_mesh(context, m);
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){.file = path}, "out of memory");
+    return vl_scene_result(scene, error);
+  }
+  vl_free(context, m->face_colors);
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  char name[VL_LABEL_SIZE];
+  vl_label_of_file(path, name);
+  def.source.file = path;
+  def.label.name = name;
+  def.vertices = m->vertices, def.faces = m->triangles;
+  def.positions = m->positions, def.normals = m->normals, def.uvs = m->uvs, def.colors = m->colors;
+  def.indices = m->indices;
+  def.material = add_material(scene, m->colors != NULL);
+  vlRepairs repairs = {0};
+  if (load && load->permissive) vl_repair_mesh(context, &repairs, &def); /* out of memory: the scene checks it */
+  vl_repairs_report(context, &repairs, path);
+  vl_scene_adopt_shape(scene, &def);
+  *m = (vlPlainMesh){0};
+  return vl_scene_result(scene, error);
+}
+
 vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {
   vlContext *context = scene->context;
   vl_import_plain_settings(scene);
@@ -63,26 +139,8 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, 
     vl_scene_fail(scene, r, place, "%s", r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
     return vl_scene_result(scene, error);
   }
-  if (!mesh.triangles) {
-    vlError where = {0};
-    strncpy(where.file, path, sizeof where.file - 1);
-    vl_log(context, VL_LOG_WARNING, &where, "it has no faces and draws nothing");
-    vl_ply_free(context, &mesh);
-    return vl_scene_result(scene, error);
-  }
-  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  char name[VL_LABEL_SIZE];
-  vl_label_of_file(path, name);
-  def.source.file = path;
-  def.label.name = name;
-  def.vertices = mesh.vertices, def.faces = mesh.triangles;
-  def.positions = mesh.positions, def.normals = mesh.normals, def.uvs = mesh.uvs, def.colors = mesh.colors;
-  def.indices = mesh.triangle_indices;
-  def.material = add_material(scene, mesh.colors != NULL);
-  vlRepairs repairs = {0};
-  if (load && load->permissive) vl_repair_mesh(context, &repairs, &def); /* out of memory: the scene checks it */
-  vl_repairs_report(context, &repairs, path);
-  vl_scene_adopt_shape(scene, &def);
   vl_free(context, mesh.quad_indices);
-  return vl_scene_result(scene, error);
+  vlPlainMesh plain = {mesh.vertices, mesh.triangles, mesh.positions,   mesh.normals,
+                       mesh.uvs,      mesh.colors,    mesh.face_colors, mesh.triangle_indices};
+  return vl_import_plain_mesh(scene, path, load, &plain, error);
 }

@@ -40,8 +40,7 @@ static void errors(void **state) {
        "accessors[3].count: 4000000000 zeros are out of proportion to the file"},
       {"\"extensionsRequired\":[\"KHR_materials_iridescense\"],\"nodes\":[]",
        "extensionsRequired[0]: velo does not read KHR_material… (it reads KHR_materials_iridescence)"},
-      {"\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\":[]",
-       "extensionsRequired[0]: velo does not read KHR_draco_mesh_compression"},
+      {"\"extensionsRequired\":[\"MPEG_media\"],\"nodes\":[]", "extensionsRequired[0]: velo does not read MPEG_media"},
       {SCENE "\"nodes\":[{\"mesh\":0}],\"materials\":[{\"alphaMode\":\"GLASS\"}],\"meshes\":[{\"primitives\":[{"
              "\"attributes\":{\"POSITION\":0},\"material\":0}]}]",
        "materials[0].alphaMode: unknown name \"GLASS\" (known: OPAQUE, MASK, BLEND)"},

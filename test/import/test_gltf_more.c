@@ -149,7 +149,7 @@ static void packed(void **state) {
 static void lacking(void **state) {
   (void)state;
   Gltf *g = new_square();
-  static const char *const names[] = {"KHR_draco_mesh_compression", "KHR_texture_basisu"};
+  static const char *const names[] = {"KHR_materials_subsurface", "KHR_texture_basisu"};
   Loaded l;
   char rest[400];
   for (int i = 0; i < 2; i++)
@@ -306,10 +306,100 @@ static void variants(void **state) {
   free(g);
 }
 
+/* A ball of 224 faces, compressed. Positions have 12 bits, normals 8. Builds without libdraco name it. */
+static void draco(void **state) {
+  (void)state;
+  char path[500];
+  snprintf(path, sizeof path, "%s/test/fuzz/corpus/gltf/draco.glb",
+           getenv("VELO_SOURCE_DIR") ? getenv("VELO_SOURCE_DIR") : ".");
+  Loaded l;
+  start_load(&l);
+  l.result = vl_scene_load(l.scene, path, NULL, &l.error);
+  if (l.result == VL_ERROR_UNSUPPORTED) {
+    assert_non_null(strstr(l.error.message, "without libdraco"));
+    end_load(&l);
+    skip();
+  }
+  if (l.result != VL_OK) fail_msg("%s", l.error.message);
+  assert_int_equal(l.scene->shapes.count, 1);
+  const vlShapeDef *d = &l.scene->shapes.items[0];
+  assert_int_equal(d->faces, 224);
+  assert_true(d->normals && d->uvs);
+  for (uint32_t i = 0; i < d->vertices; i++) {
+    double length = 0, along = 0;
+    for (int k = 0; k < 3; k++) {
+      double p = d->positions[3 * i + (uint32_t)k], n = d->normals[3 * i + (uint32_t)k];
+      length += p * p, along += p * n;
+    }
+    assert_true(fabs(sqrt(length) - 1) < 2e-3 && along > 0.99);
+  }
+  end_load(&l);
+}
+
+/* Points are sized by all that is drawn, whatever the size of their own mesh and the scale of its node. */
+static void points_by_the_image(void **state) {
+  (void)state;
+  double extents[2];
+  for (int scaled = 0; scaled < 2; scaled++) {
+    Gltf *g = calloc(1, sizeof *g);
+    const float p[3] = {0, 0, 0}, q[6] = {-50, 0, 0, 50, 0, 0};
+    gltf_accessor(g, gltf_view(g, p, sizeof p, 0), 5126, 1, "VEC3", ",\"min\":[0,0,0],\"max\":[0,0,0]");
+    gltf_accessor(g, gltf_view(g, q, sizeof q, 0), 5126, 2, "VEC3", ",\"min\":[-50,0,0],\"max\":[50,0,0]");
+    Loaded l;
+    char rest[600];
+    snprintf(rest, sizeof rest,
+             "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1}],"
+             "\"meshes\":[{\"primitives\":[{\"mode\":0,"
+             "\"attributes\":{\"POSITION\":0}}]},{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":1}}]}]",
+             scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0);
+    load(&l, g, rest, NULL);
+    if (l.result != VL_OK) fail_msg("%s", l.error.message);
+    double low[3], high[3];
+    l.scene->shapes.count = 1; /* the points alone */
+    vl_scene_bounds(l.scene, low, high);
+    extents[scaled] = high[0] - low[0];
+    end_load(&l);
+    free(g);
+  }
+  assert_true(fabs(extents[0] - 0.3) < 0.02 && fabs(extents[1] - extents[0]) < 1e-3);
+}
+
+/* A buffer without uri is legal where nothing reads it. */
+static void no_uri(void **state) {
+  (void)state;
+  Gltf *g = new_square();
+  Loaded l;
+  load(&l, g, SCENE "\"nodes\":[{\"mesh\":0}]," SQUARE_MESH, NULL);
+  assert_int_equal(l.result, VL_OK);
+  end_load(&l);
+  free(g);
+  for (int read = 0; read < 2; read++) {
+    char path[] = "/tmp/velo-no-uri-XXXXXX.gltf";
+    int file = mkstemps(path, 5);
+    assert_true(file >= 0);
+    FILE *f = fdopen(file, "w");
+    fprintf(f,
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36}],\"bufferViews\":[{\"buffer\":0,"
+            "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"
+            "\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":[{%s}],"
+            "\"scenes\":[{\"nodes\":[0]}],\"scene\":0}",
+            read ? "\"mesh\":0" : "");
+    fclose(f);
+    start_load(&l);
+    l.result = vl_scene_load(l.scene, path, NULL, &l.error);
+    unlink(path);
+    assert_int_equal(l.result, read ? VL_ERROR_SCENE : VL_OK);
+    if (read) assert_non_null(strstr(l.error.message, "holds nothing that velo can read"));
+    end_load(&l);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(variants), cmocka_unit_test(motion),   cmocka_unit_test(scenes),       cmocka_unit_test(packed),
-      cmocka_unit_test(lacking),  cmocka_unit_test(textures), cmocka_unit_test(surroundings), cmocka_unit_test(lamps),
+      cmocka_unit_test(variants),     cmocka_unit_test(motion),  cmocka_unit_test(scenes),
+      cmocka_unit_test(packed),       cmocka_unit_test(draco),   cmocka_unit_test(points_by_the_image),
+      cmocka_unit_test(no_uri),       cmocka_unit_test(lacking), cmocka_unit_test(textures),
+      cmocka_unit_test(surroundings), cmocka_unit_test(lamps),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -261,6 +261,12 @@ def obj():
     yield "packed", {"m.obj.gz": gzip.compress(OBJ, mtime=0), "m.mtl": MTL}, "m.obj.gz", "packed", "m.obj.gz"
 
 
+def plain_meshes():
+    for name in names(os.path.join(CORPUS, "mesh"), "."):
+        form = "ply" if name.endswith(".ply") else "bytes" if name == "binary.stl" else "plain"
+        yield name, {name: os.path.join(CORPUS, "mesh", name)}, name, form, name
+
+
 def cameras():
     for name in names(os.path.join(CORPUS, "camera_file"), "."):
         form = "json" if re.search(r"\.(json|gltf)$", name) else "plain"

@@ -93,16 +93,16 @@ static double bright(ModelLight *light) {
   return light->radiance[light->count * 9 / 10];
 }
 
-static void gather(ModelLight *light, const vlImage *image, const vlImage *truth) {
+static void gather(ModelLight *light, const vlImage *image, const vlImage *albedos) {
   const int rgb[3] = {vl_image_find_channel(image, "R"), vl_image_find_channel(image, "G"),
                       vl_image_find_channel(image, "B")},
-            own[3] = {vl_image_find_channel(truth, "albedo.R"), vl_image_find_channel(truth, "albedo.G"),
-                      vl_image_find_channel(truth, "albedo.B")};
+            own[3] = {vl_image_find_channel(albedos, "albedo.R"), vl_image_find_channel(albedos, "albedo.G"),
+                      vl_image_find_channel(albedos, "albedo.B")};
   int alpha = vl_image_find_channel(image, "A");
   for (uint32_t y = 0; y < vl_image_height(image); y++)
     for (uint32_t x = 0; x < vl_image_width(image); x++) {
       if (!(vl_image_get(image, x, y, (uint32_t)alpha) > 0.99f)) continue;
-      double albedo = luminance(truth, own, x, y);
+      double albedo = luminance(albedos, own, x, y);
       if (!(albedo > 1e-4)) continue; /* it only emits light, or is black */
       light->radiance[light->count] = luminance(image, rgb, x, y);
       light->albedo[light->count++] = albedo;
@@ -110,7 +110,7 @@ static void gather(ModelLight *light, const vlImage *image, const vlImage *truth
 }
 
 static vlResult render_small(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlSceneDefs *defs,
-                             vlImage **image, vlImage **truth, vlError *error) {
+                             vlImage **image, vlImage **albedos, vlError *error) {
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
   render.tracer = defs->render.tracer == VL_TRACER_PATH ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
@@ -124,7 +124,7 @@ static vlResult render_small(vlContext *context, const vlWorld *world, const vlC
   vlResult result = vl_film_create(context, &film_def, &film);
   if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);
   if (result == VL_OK) result = vl_film_develop(film, &develop, image);
-  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, truth, NULL, error);
+  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, albedos, NULL, error);
   vl_film_destroy(film);
   return result;
 }
@@ -135,15 +135,15 @@ int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamer
   double k = METER_SIDE / (double)(camera->width > camera->height ? camera->width : camera->height);
   uint32_t width = (uint32_t)(camera->width * k + 0.5), height = (uint32_t)(camera->height * k + 0.5);
   vlCamera small = *camera;
-  vlImage *image = NULL, *truth = NULL;
+  vlImage *image = NULL, *albedos = NULL;
   vlError error = {0};
   *ev = 0;
   if (k < 1 && vl_camera_resize(camera, width ? width : 1, height ? height : 1, &small) != VL_OK) return -1;
-  vlResult result = render_small(context, world, &small, defs, &image, &truth, &error);
+  vlResult result = render_small(context, world, &small, defs, &image, &albedos, &error);
   ModelLight *light = result == VL_OK ? calloc(1, sizeof *light) : NULL;
   if (result == VL_OK && !light) result = VL_ERROR_MEMORY;
   if (result == VL_OK) {
-    gather(light, image, truth);
+    gather(light, image, albedos);
     double mean = mean_light(light), stops = mean > 0 ? log2(white / mean) : 0;
     double most = mean > 0 ? -log2(bright(light)) : 0; /* mirrors and glass may show little of a lamp's light */
     stops = stops > 0 && most < stops ? (most > 0 ? most : 0) : stops;
@@ -155,7 +155,7 @@ int exposure_meter_model(vlContext *context, const vlWorld *world, const vlCamer
   }
   free(light);
   vl_image_destroy(image);
-  vl_image_destroy(truth);
+  vl_image_destroy(albedos);
   return result == VL_OK ? -1 : report_error(&error, result, "metering");
 }
 

@@ -93,7 +93,8 @@ const Option render_options[] = {
      "them:",
      0, 0, walls_choices},
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS",
-     "which way is up for the camera, light and ground that velo chooses:", 0, 0, up_choices},
+     "which way is up for the camera, light and ground that velo chooses;\ndefault: y, of .stl files z:", 0, 0,
+     up_choices},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
      "render every frame of FILE: a COLMAP model, transforms.json, a\n"
      "camchain, a calibration with its views, or poses in lines (CSV,\n"

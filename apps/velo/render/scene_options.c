@@ -125,7 +125,10 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   complete.backdrop = !v[RENDER_NO_GROUND].given && !v[RENDER_CHANNELS].given; /* ground truth is of the file alone */
   complete.open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
   if (v[RENDER_FRAMING].given) complete.framing = (vlFraming)v[RENDER_FRAMING].integer;
-  if (v[RENDER_UP].given) choose_up((int)v[RENDER_UP].integer, &complete);
+  if (v[RENDER_UP].given)
+    choose_up((int)v[RENDER_UP].integer, &complete);
+  else if (ends_with(path, ".stl") || ends_with(path, ".stl.gz"))
+    choose_up(2, &complete);
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   opening->load = load;

@@ -7,18 +7,21 @@
 #include "import/gltf/gltf.h"
 
 static const char *const known[] = {
-    "KHR_materials_unlit",       "KHR_materials_emissive_strength",
-    "KHR_materials_ior",         "KHR_materials_specular",
-    "KHR_materials_clearcoat",   "KHR_materials_transmission",
-    "KHR_materials_volume",      "KHR_materials_sheen",
-    "KHR_materials_iridescence", "KHR_materials_anisotropy",
-    "KHR_materials_dispersion",  "KHR_materials_diffuse_transmission",
-    "KHR_materials_variants",    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_texture_transform",     "KHR_mesh_quantization",
-    "EXT_mesh_gpu_instancing",   "KHR_lights_punctual",
-    "EXT_texture_webp",          "EXT_meshopt_compression",
-    "EXT_lights_image_based",    "KHR_animation_pointer",
+    "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_clearcoat",    "KHR_materials_transmission",
+    "KHR_materials_volume",       "KHR_materials_sheen",
+    "KHR_materials_iridescence",  "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",   "KHR_materials_diffuse_transmission",
+    "KHR_materials_variants",     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_texture_transform",      "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
+    "EXT_texture_webp",           "EXT_meshopt_compression",
+    "EXT_lights_image_based",     "KHR_animation_pointer",
     "KHR_node_visibility",
+#ifdef VELO_DRACO
+    "KHR_draco_mesh_compression",
+#endif
 };
 /* Extensions of the Khronos registry that velo does not read. Messages show their names in full and shorten unknown
  * names. */
@@ -87,6 +90,13 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (is_in(name, known, known_count)) continue;
+    if (strcmp(name, "KHR_draco_mesh_compression") == 0)
+      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "this velo was built without libdraco, which %s needs",
+                               name);
+    if (strcmp(name, "KHR_texture_basisu") == 0)
+      return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
+                               "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
+                               name);
     const char *near = vl_nearest_name(name, known, known_count);
     return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s (it reads %s)",
                                     shown(name).text, near)

@@ -217,12 +217,8 @@ static bool read_buffer(vlGltf *g, size_t i) {
     if (i == 0 && g->chunk) {
       b->data = g->chunk;
       size = g->chunk_size;
-    } else if (vl_gltf_extension(json, "EXT_meshopt_compression")) {
-      return true; /* a fallback buffer that no view reads */
     } else {
-      return vl_gltf_fail(g, at,
-                          g->chunk ? "has no uri, and the file has no binary chunk for it"
-                                   : "has no uri, and the file is no .glb with a binary chunk");
+      return true; /* legal: a fallback of compressed views, or bytes that only another program has */
     }
   } else {
     if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &b->data, &size, &path)) return false;
@@ -256,7 +252,7 @@ static bool read_view(vlGltf *g, size_t i) {
     return false;
   if (buffer < 0) return vl_gltf_fail(g, at, "\"buffer\" is missing");
   const vlGltfBuffer *b = &g->buffers[buffer];
-  if (!b->data) return true; /* the view is compressed */
+  if (!b->data) return true; /* what reads the view reports it */
   if (offset > b->size || length > b->size - offset)
     return vl_gltf_fail(g, at, "bytes %zu to %zu, but buffers[%d] has only %zu", offset, offset + length, (int)buffer,
                         b->size);

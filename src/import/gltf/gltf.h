@@ -118,6 +118,8 @@ typedef struct vlGltf {
       skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
   const json_t *lights;         /* array of KHR_lights_punctual */
   uint64_t total;               /* size of all buffers in bytes */
+  double diagonal;              /* of all that is drawn, in the world; 0: not known. For the size of points and lines */
+  double scale;                 /* of the node that is drawn */
   uint64_t spent;               /* bytes of geometry made so far; see vl_gltf_spend */
   int64_t variant;              /* index of the material variant; -1: none */
   double time;                  /* time in seconds at which nodes are posed */
@@ -188,6 +190,8 @@ bool vl_gltf_read_buffers(vlGltf *g); /* buffers and buffer views */
 void vl_gltf_close(vlGltf *g);
 /* meshopt.c: decodes a buffer view by its EXT_meshopt_compression object. */
 bool vl_gltf_unpack_view(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfView *view);
+/* Decodes a compressed primitive (KHR_draco_mesh_compression) into its accessors; true if it is not compressed. */
+bool vl_gltf_unpack_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *primitive);
 /* Resolves a uri. A data: uri is decoded into a block owned by the scene. Otherwise *path is the file's path: in the
  * folder of the glTF file, else on the search path. */
 bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_t **data, size_t *size,
@@ -269,6 +273,9 @@ typedef struct vlGltfPrimitive {
   uint32_t *indices;
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
+
+/* The diagonal of the box around the meshes of these nodes, at their poses; 0: no accessor has bounds. */
+double vl_gltf_diagonal(const vlGltf *g, const uint32_t *order, size_t count);
 
 /* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a group, in the mesh's own
  * space. */

@@ -22,19 +22,10 @@ static bool attribute(vlGltf *g, const vlGltfPlace *up, const json_t *attributes
   return *out != NULL;
 }
 
-static bool is_compressed(vlGltf *g, const vlGltfPlace *at, const json_t *primitive, int64_t position) {
-  if (!vl_gltf_extension(primitive, "KHR_draco_mesh_compression")) return false;
-  if (json_object_get(vl_gltf_item(g, "accessors", (size_t)position), "bufferView")) return false;
-  vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
-                    "is compressed by KHR_draco_mesh_compression, which velo does not read");
-  return true;
-}
-
-static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *primitive, const json_t *attributes,
-                            int64_t position, vlGltfPrimitive *p) {
+static bool read_attributes(vlGltf *g, const vlGltfPlace *up, const json_t *attributes, int64_t position,
+                            vlGltfPrimitive *p) {
   static const char *const sets[4] = {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2", "TEXCOORD_3"};
   const vlGltfPlace *at = VL_GLTF_KEY(up, "attributes"), *at_position = VL_GLTF_KEY(at, "POSITION");
-  if (is_compressed(g, up, primitive, position)) return false;
   const vlGltfAccessor *a = vl_gltf_accessor(g, at_position, (size_t)position);
   if (!a) return false;
   if (a->components != 3) return vl_gltf_fail(g, at_position, "must be of type VEC3");
@@ -183,7 +174,7 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, con
                        const vlGltfNode *node, int64_t position, bool skinned, vlGltfPrimitive *p) {
   vlGltfPrimitive q = {0};
   g->closing = true;
-  bool ok = read_attributes(g, at, primitive, json_object_get(primitive, "attributes"), position, &q) &&
+  bool ok = read_attributes(g, at, json_object_get(primitive, "attributes"), position, &q) &&
             vl_gltf_morph(g, at, mesh, primitive, node, &q) && (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
   g->closing = false;
   if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
@@ -218,7 +209,7 @@ static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
     vl_gltf_warn(g, VL_LOG_WARNING, at, "has no positions and is not drawn");
     return true;
   }
-  if (!read_attributes(g, at, primitive, attributes, position, p) ||
+  if (!vl_gltf_unpack_primitive(g, at, primitive) || !read_attributes(g, at, attributes, position, p) ||
       !read_indices(g, at, primitive, p->vertices, &indices, &count))
     return false;
   bool skinned = node && json_object_get(node->json, "skin");

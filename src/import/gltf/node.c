@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
+#include "math/elementary.h"
 #include "math/motion.h"
 
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
@@ -205,6 +206,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
 static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local) {
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
+  g->scale = vl_precise_cbrt(fabs(vl_mat4_determinant3(pose)));
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
   if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
     vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index), "its scale makes it flat");
@@ -346,6 +348,7 @@ bool vl_gltf_draw(vlGltf *g) {
   uint32_t *order = vl_alloc_array(g->context, g->node_count + 1, sizeof *order);
   bool ok = order || vl_gltf_fail_memory(g);
   ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count);
+  if (ok) g->diagonal = vl_gltf_diagonal(g, order, count);
   for (size_t k = 0; ok && k < count; k++) ok = draw_node(g, order[k]);
   ok = ok && vl_gltf_image_light(g, scene, at);
   vl_free(g->context, order);

@@ -116,7 +116,11 @@ static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32
   }
 }
 
-static float point_radius(const vlGltfPrimitive *p) {
+/* About a pixel of an image of 720 rows that shows everything. Where the file does not give its size, a share of the
+ * mesh's. */
+static float point_radius(const vlGltf *g, const vlGltfPrimitive *p) {
+  double radius = g->scale > 0 ? 0.0015 * g->diagonal / g->scale : 0;
+  if (radius > 1e-30 && radius < 1e30) return (float)radius;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, d = 0;
   for (size_t i = 0; i < 3 * p->vertices; i++) {
     double x = p->positions[i];
@@ -141,7 +145,7 @@ static bool make_solids(vlGltf *g, const vlGltfPlace *at, uint32_t mode, const u
   if (!make_room(g, at, p, solids * (mode == POINTS ? BALL_VERTICES : TUBE_VERTICES),
                  solids * (mode == POINTS ? BALL_FACES : TUBE_FACES), &b))
     return false;
-  float radius = point_radius(p);
+  float radius = point_radius(g, p);
   for (size_t i = 0; i < solids; i++) {
     size_t first = mode == LINES ? 2 * i : i;
     if (mode == POINTS)

@@ -12,13 +12,14 @@ typedef struct vlPlyMesh {
   float *positions;           /* 3 per vertex */
   float *normals, *uvs;       /* 3, 2 per vertex, or null */
   float *colors;              /* 4 per vertex, linear (converted from the file's sRGB), or null */
+  float *face_colors;         /* 3 per triangle, linear, or null; only of files that the caller names */
   uint32_t *triangle_indices; /* 3 per triangle */
   uint32_t *quad_indices;     /* 4 per patch: p00 p10 p01 p11 */
 } vlPlyMesh;
 
 /* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line number in text files and
- * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours.
- * broken: normals and uvs that are not finite are no error (import/repair.h). */
+ * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours; without faces it
+ * is a cloud of points. broken: normals and uvs that are not finite are no error (import/repair.h). */
 vlResult vl_ply_read_given(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
 /* Reads a file that a scene names, without colours. */
 vlResult vl_ply_read(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);

@@ -129,9 +129,10 @@ static bool read_body(vlPlyReader *r) {
     if (e->row_size && e->count > (left + 1) / e->row_size)
       return vl_ply_fail(r, "the header promises %llu of element %s, but only %llu bytes follow",
                          (unsigned long long)e->count, e->name, (unsigned long long)left);
-    bool fine = e->kind == VL_PLY_VERTEX ? vl_ply_read_vertices(r, e)
-                : e->kind == VL_PLY_FACE ? vl_ply_read_faces(r, e)
-                                         : skip_rows(r, e);
+    bool fine = e->kind == VL_PLY_VERTEX   ? vl_ply_read_vertices(r, e)
+                : e->kind == VL_PLY_FACE   ? vl_ply_read_faces(r, e)
+                : e->kind == VL_PLY_STRIPS ? vl_ply_read_strips(r, e)
+                                           : skip_rows(r, e);
     if (!fine) return false;
   }
   return true;
@@ -142,7 +143,7 @@ static bool check(vlPlyReader *r) {
   const vlPlyMesh *m = r->mesh;
   r->line = 0;
   if (!r->has_vertices || m->vertices == 0) return vl_ply_fail(r, "the mesh has no vertices");
-  if (m->triangles == 0 && m->quads == 0) return vl_ply_fail(r, "the mesh has no faces");
+  if (m->triangles == 0 && m->quads == 0 && !r->alone) return vl_ply_fail(r, "the mesh has no faces");
   for (size_t i = 0; i < 3 * (size_t)m->triangles; i++)
     if (m->triangle_indices[i] >= m->vertices)
       return vl_ply_fail(r, "a face names vertex %u, but there are %u vertices", m->triangle_indices[i], m->vertices);
@@ -171,19 +172,26 @@ void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
   vl_free(context, mesh->normals);
   vl_free(context, mesh->uvs);
   vl_free(context, mesh->colors);
+  vl_free(context, mesh->face_colors);
   vl_free(context, mesh->triangle_indices);
   vl_free(context, mesh->quad_indices);
   *mesh = (vlPlyMesh){0};
 }
 
-static vlResult parse(vlContext *context, const char *name, const char *data, size_t size, bool broken, vlPlyMesh *mesh,
-                      vlError *error) {
+static vlResult parse(vlContext *context, const char *name, const char *data, size_t size, bool alone, bool broken,
+                      vlPlyMesh *mesh, vlError *error) {
   vlError local;
   if (!error) error = &local;
   vl_error_clear(error);
   *mesh = (vlPlyMesh){0};
-  vlPlyReader r = {
-      .context = context, .name = name, .at = data, .end = data + size, .broken = broken, .mesh = mesh, .error = error};
+  vlPlyReader r = {.context = context,
+                   .name = name,
+                   .at = data,
+                   .end = data + size,
+                   .alone = alone,
+                   .broken = broken,
+                   .mesh = mesh,
+                   .error = error};
   r.elements = vl_alloc_array(context, VL_PLY_MAX_ELEMENTS, sizeof *r.elements);
   bool fine = r.elements ? true : vl_ply_fail_memory(&r);
   fine = fine && vl_ply_read_header(&r) && read_body(&r) && check(&r) &&
@@ -197,7 +205,7 @@ static vlResult parse(vlContext *context, const char *name, const char *data, si
 
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
                       vlError *error) {
-  return parse(context, name, data, size, false, mesh, error);
+  return parse(context, name, data, size, false, false, mesh, error);
 }
 
 static vlResult read_file(vlContext *context, const char *path, bool given, bool broken, vlPlyMesh *mesh,
@@ -208,7 +216,7 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
                           : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK) return result;
-  result = parse(context, path, data, size, broken, mesh, error);
+  result = parse(context, path, data, size, given, broken, mesh, error);
   vl_free(context, data);
   return result;
 }

@@ -98,9 +98,10 @@ static bool read_element(vlPlyReader *r, const Words *w) {
   vlPlyElement *e = &r->elements[r->element_count++];
   memset(e, 0, sizeof *e);
   snprintf(e->name, sizeof e->name, "%s", w->word[1]);
-  e->kind = strcmp(w->word[1], "vertex") == 0 ? VL_PLY_VERTEX
-            : strcmp(w->word[1], "face") == 0 ? VL_PLY_FACE
-                                              : VL_PLY_OTHER;
+  e->kind = strcmp(w->word[1], "vertex") == 0      ? VL_PLY_VERTEX
+            : strcmp(w->word[1], "face") == 0      ? VL_PLY_FACE
+            : strcmp(w->word[1], "tristrips") == 0 ? VL_PLY_STRIPS
+                                                   : VL_PLY_OTHER;
   const char *p = w->word[2];
   for (; *p >= '0' && *p <= '9' && e->count < 1000000000000000ull; p++) e->count = e->count * 10 + (uint64_t)(*p - '0');
   if (*p || p == w->word[2])
@@ -129,7 +130,9 @@ static bool read_property(vlPlyReader *r, const Words *w) {
   if (list && p->count_type >= VL_PLY_F32) return vl_ply_fail(r, "the length of a list must be of an integer type");
   const char *name = w->word[list ? 4 : 2];
   if (e->kind == VL_PLY_VERTEX && !list) p->role = vertex_role(name);
-  if (e->kind == VL_PLY_FACE && list && (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0)) {
+  if (e->kind == VL_PLY_FACE && !list && r->alone && vertex_role(name) >= VL_PLY_RED) p->role = vertex_role(name);
+  if ((e->kind == VL_PLY_FACE || e->kind == VL_PLY_STRIPS) && list &&
+      (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0)) {
     if (p->type >= VL_PLY_F32) return vl_ply_fail(r, "%s must be of an integer type", name);
     p->role = VL_PLY_INDICES;
   }

@@ -49,7 +49,7 @@ typedef struct vlPlyProperty {
   vlPlyRole role;
 } vlPlyProperty;
 
-typedef enum vlPlyElementKind { VL_PLY_OTHER, VL_PLY_VERTEX, VL_PLY_FACE } vlPlyElementKind;
+typedef enum vlPlyElementKind { VL_PLY_OTHER, VL_PLY_VERTEX, VL_PLY_FACE, VL_PLY_STRIPS } vlPlyElementKind;
 
 typedef struct vlPlyElement {
   vlPlyElementKind kind;
@@ -71,8 +71,10 @@ typedef struct vlPlyReader {
   uint32_t element_count;
   vlPlyMesh *mesh;
   bool has_vertices;
-  bool broken;                             /* normals and uvs may be not finite */
-  size_t triangle_capacity, quad_capacity; /* in triangles, in patches */
+  bool broken; /* normals and uvs may be not finite */
+  bool alone;  /* the file is a scene: colours of faces are read, and it may have points alone */
+  size_t triangle_capacity, quad_capacity; /* numbers of indices */
+  size_t color_capacity;                   /* number of triangles with colours */
   VL_ARRAY(uint32_t) face;
   vlError *error;
 } vlPlyReader;
@@ -91,5 +93,6 @@ bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);
 bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length);
 bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e);
 bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e);
+bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e);
 
 #endif

@@ -122,22 +122,40 @@ static bool grow(vlPlyReader *r, uint32_t **items, size_t *capacity, size_t coun
   return true;
 }
 
+static bool add_triangle(vlPlyReader *r, uint32_t a, uint32_t b, uint32_t c) {
+  vlPlyMesh *m = r->mesh;
+  if (m->triangles == 0x3fffffff) return vl_ply_fail(r, "too many faces");
+  if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1))) return false;
+  uint32_t *t = m->triangle_indices + 3 * (size_t)m->triangles++;
+  t[0] = a, t[1] = b, t[2] = c;
+  return true;
+}
+
 static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
   vlPlyMesh *m = r->mesh;
   if (n < 3) return true; /* points and lines have no area */
-  if (n == 4) {
+  if (n == 4 && !m->face_colors) {
     if (m->quads == 0x3fffffff) return vl_ply_fail(r, "too many faces");
     if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1))) return false;
     uint32_t *q = m->quad_indices + 4 * (size_t)m->quads++;
     q[0] = v[0], q[1] = v[1], q[2] = v[3], q[3] = v[2]; /* order around the face to p00 p10 p01 p11 */
     return true;
   }
-  for (uint64_t i = 2; i < n; i++) {
-    if (m->triangles == 0x3fffffff) return vl_ply_fail(r, "too many faces");
-    if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1))) return false;
-    uint32_t *t = m->triangle_indices + 3 * (size_t)m->triangles++;
-    t[0] = v[0], t[1] = v[i - 1], t[2] = v[i];
+  for (uint64_t i = 2; i < n; i++)
+    if (!add_triangle(r, v[0], v[i - 1], v[i])) return false;
+  return true;
+}
+
+/* Gives the triangles from `first` on a colour. */
+static bool add_colors(vlPlyReader *r, uint32_t first, const float color[3]) {
+  vlPlyMesh *m = r->mesh;
+  if (m->triangles > r->color_capacity) {
+    size_t wanted = (size_t)m->triangles + m->triangles / 2 + 1024;
+    float *fresh = vl_realloc_array(r->context, m->face_colors, wanted, 3 * sizeof *fresh);
+    if (!fresh) return vl_ply_fail_memory(r);
+    m->face_colors = fresh, r->color_capacity = wanted;
   }
+  for (size_t i = first; i < m->triangles; i++) memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);
   return true;
 }
 
@@ -155,6 +173,27 @@ static bool read_corners(vlPlyReader *r, const vlPlyProperty *p, uint64_t face) 
     r->face.items[k] = (uint32_t)value;
   }
   return add_face(r, r->face.items, n);
+}
+
+static bool read_face_row(vlPlyReader *r, const vlPlyElement *e, const vlPlyProperty *indices, uint64_t face,
+                          float color[4]) {
+  double value;
+  for (uint32_t j = 0; j < e->property_count; j++) {
+    const vlPlyProperty *p = &e->properties[j];
+    uint64_t n = 1;
+    if (p == indices) {
+      if (!read_corners(r, p, face)) return false;
+      continue;
+    }
+    if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
+    for (uint64_t k = 0; k < n; k++)
+      if (!vl_ply_read_value(r, p->type, &value)) return false;
+    if (p->role < VL_PLY_RED || p->role > VL_PLY_ALPHA) continue;
+    color[p->role - VL_PLY_RED] = color_value(p->type, p->role == VL_PLY_ALPHA, value);
+    if (!isfinite(color[p->role - VL_PLY_RED]))
+      return vl_ply_fail(r, "face %llu: its colour is not finite", (unsigned long long)face);
+  }
+  return true;
 }
 
 /* Fast path: rows that hold only a triangle: a byte 3 and three 32-bit indices. Reads as many as follow each other and
@@ -195,13 +234,51 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
     r->mesh->triangle_indices = vl_alloc_array(r->context, r->triangle_capacity, sizeof(uint32_t));
     if (!r->mesh->triangle_indices) return vl_ply_fail_memory(r);
   }
+  bool colors = has_roles(e, VL_PLY_RED, 3);
+  if (colors && r->mesh->triangles)
+    return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
+  if (colors && !(r->mesh->face_colors = vl_alloc_array(r->context, 1024, 3 * sizeof(float))))
+    return vl_ply_fail_memory(r);
+  if (colors) r->color_capacity = 1024;
+  for (uint64_t i = copy_triangles(r, e); i < e->count; i++) {
+    float color[4] = {0, 0, 0, 1};
+    uint32_t first = r->mesh->triangles;
+    if (!read_face_row(r, e, indices, i, color) || (colors && !add_colors(r, first, color))) return false;
+  }
+  return true;
+}
+
+/* A strip names a vertex after another; -1 ends a strip. Every second triangle is turned over. */
+static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
+  uint64_t n, run = 0;
+  uint32_t last[2] = {0, 0};
+  if (!vl_ply_read_length(r, p, &n)) return false;
+  for (uint64_t k = 0; k < n; k++) {
+    double value;
+    if (!vl_ply_read_value(r, p->type, &value)) return false;
+    if (value == -1 || value == 4294967295.0) {
+      run = 0;
+      continue;
+    }
+    if (!(value >= 0 && value < 4294967295.0) || (r->has_vertices && value >= (double)r->mesh->vertices))
+      return vl_ply_fail(r, "a strip names vertex %.0f, but there are %u vertices", value, r->mesh->vertices);
+    uint32_t v = (uint32_t)value;
+    if (run >= 2 && !(run & 1 ? add_triangle(r, last[1], last[0], v) : add_triangle(r, last[0], last[1], v)))
+      return false;
+    last[0] = last[1], last[1] = v, run++;
+  }
+  return true;
+}
+
+bool vl_ply_read_strips(vlPlyReader *r, const vlPlyElement *e) {
   double ignored;
-  for (uint64_t i = copy_triangles(r, e); i < e->count; i++)
+  if (r->mesh->face_colors) return vl_ply_fail(r, "faces with colours and strips in one file are not supported");
+  for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       uint64_t n = 1;
-      if (p == indices) {
-        if (!read_corners(r, p, i)) return false;
+      if (p->role == VL_PLY_INDICES) {
+        if (!read_strip(r, p)) return false;
         continue;
       }
       if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;

@@ -270,7 +270,7 @@ static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
   if (!vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position))
     return false;
   if (position < 0) return true;
-  bool ok = read_attributes(g, at, primitive, attributes, position, &p) &&
+  bool ok = vl_gltf_unpack_primitive(g, at, primitive) && read_attributes(g, at, attributes, position, &p) &&
             vl_gltf_morph(g, at, mesh, primitive, node, &p) && (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
   for (size_t i = 0; ok && i < p.vertices; i++)
     for (size_t k = 0; k < 3; k++)

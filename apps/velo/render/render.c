@@ -646,7 +646,7 @@ static int run_render(const Command *command, const Arguments *arguments) {
 const Command render_command = {
     .name = "render",
     .usage = "FILE [options]",
-    .summary = "render a scene (.pbrt, .gltf, .glb, .obj, .ply, .stl, .off) into images",
+    .summary = "render a scene: .pbrt .gltf .glb .obj .ply .stl .off",
     .text =
         "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
         "seconds or so, the image is written as it is to NAME.part.EXT; when the render is done it\n"

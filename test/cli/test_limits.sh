@@ -193,4 +193,11 @@ late late_is_reported 1 scene.pbrt --resolution 1600x1200
 late late_with_denoise 2 scene.pbrt --resolution 1600x1200 --denoise clean.exr
 check late_film "$V" render scene.pbrt --resolution 1600x1200 --spp 16 --tracer raycast --quiet --film late.film
 late late_continue 1 --continue late.film --spp 1000000
+
+# A camera farther away than Embree's largest coordinate sees nothing of the scene, in a medium too.
+sed 's/^Camera /MakeNamedMedium "fog" "string type" "homogeneous"\nMediumInterface "" "fog"\nTransform [1 0 0 0  0 1 0 0  0 0 1 0  0 1e20 0 1]\nCamera /' scene.pbrt >far.pbrt
+grep -q 1e20 far.pbrt || fail far_camera_scene
+for tracer in path volpath bidirectional raycast; do
+  check "far_camera_$tracer" timeout 60 "$V" render far.pbrt --tracer $tracer --resolution 16x16 --spp 2 --quiet -o far.exr
+done
 finish

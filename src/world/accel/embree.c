@@ -485,6 +485,12 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
   *prim_out = bundled_hit ? 0 : prim;
 }
 
+/* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only cameras, and media around
+ * them, can be that far away, because the extent of the world is limited (shapes.c). */
+static bool is_near(const vlRays *r, uint32_t i) {
+  return fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
+}
+
 static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
                        uint32_t *instance, float *t) {
   BEGIN_QUERY(query, r, true);
@@ -497,15 +503,17 @@ static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32
     int valid[16] __attribute__((aligned(64)));
     for (uint32_t k = 0; k < 16; k++) {
       uint32_t i = first + k < n ? first + k : n - 1;
-      /* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only cameras can be that
-       * far away, because the extent of the world is limited (shapes.c). */
-      bool near = fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
+      bool near = is_near(r, i);
       valid[k] = first + k < n && near ? -1 : 0;
       q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];
       q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
       q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
       q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
       q.ray.time[k] = r->time ? r->time[i] : 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
+      if (!near) { /* Embree may check lanes that are not valid; this one hits nothing */
+        q.ray.org_x[k] = q.ray.org_y[k] = q.ray.org_z[k] = 0.0f;
+        q.ray.tnear[k] = q.ray.tfar[k] = INFINITY;
+      }
       q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -542,7 +550,7 @@ void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    INTERSECT1(world->accel.scene, &q);
+    if (is_near(rays, i)) INTERSECT1(world->accel.scene, &q);
     t[i] = query.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
   }
@@ -554,7 +562,7 @@ void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uin
   for (uint32_t i = 0; i < n; i++) {
     struct RTCRay q;
     fill_ray(&q, rays, i);
-    OCCLUDED1(world->accel.scene, &q);
+    if (is_near(rays, i)) OCCLUDED1(world->accel.scene, &q);
     occluded[i] = q.tfar < 0;
   }
 }

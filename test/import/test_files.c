@@ -234,10 +234,10 @@ static void missing(void **state) {
   write_file("m.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"parts\"");
   file_error("m.pbrt", VL_ERROR_IO, "%/m.pbrt:2:17: cannot read %/parts: is a folder");
   file_error("parts", VL_ERROR_IO, ":0:0: cannot read %/parts: is a folder");
-  write_file("scene.stl", "solid");
-  file_error("scene.stl", VL_ERROR_SCENE,
-             ":0:0: %/scene.stl: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .obj.gz, .ply, "
-             ".ply.gz)");
+  write_file("scene.fbx", "solid");
+  file_error("scene.fbx", VL_ERROR_SCENE,
+             ":0:0: %/scene.fbx: unknown kind of scene file (known: .pbrt, .pbrt.gz, .gltf, .glb, .obj, .obj.gz, .ply, "
+             ".ply.gz, .stl, .stl.gz, .off, .off.gz)");
 }
 
 static void packed(void **state) {

@@ -57,6 +57,7 @@ typedef struct Arguments {
   const char *operands[MAX_OPERANDS]; /* the first MAX_OPERANDS operands */
   const char *const *all_operands;    /* all operands; points into argv */
   int operand_count;
+  bool channels_later; /* --continue: --channels was given, but not for the film */
 } Arguments;
 
 /* A heading in the help page, before the option of that id. */

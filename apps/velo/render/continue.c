@@ -12,6 +12,7 @@
 /* Given options replace those of the film. Options that must not change are compared later. */
 static void take_options(Continue *c, const Arguments *given, const vlReceipt *receipt) {
   Arguments *a = &c->arguments;
+  a->channels_later = given->values[RENDER_CHANNELS].given && !a->values[RENDER_CHANNELS].given;
   for (const Option *option = render_options; option->name; option++)
     if (given->values[option->id].given) a->values[option->id] = given->values[option->id];
   if (given->values[RENDER_TIME].given && !given->values[RENDER_SPP].given) a->values[RENDER_SPP].given = false;

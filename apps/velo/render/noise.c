@@ -34,17 +34,23 @@ int noise_check(const Arguments *arguments) {
   return -1;
 }
 
-int noise_apply(const Arguments *arguments, const Outputs *outputs, vlSceneDefs *defs) {
+void noise_apply(const Arguments *arguments, const Outputs *outputs, vlSceneDefs *defs) {
   const OptionValue *v = arguments->values;
-  if (!v[RENDER_NOISE].given) return -1;
-  if (outputs->meter)
-    return report_usage("--noise is measured in display values, which need a fixed exposure: give --exposure EV");
+  if (!v[RENDER_NOISE].given) return;
   defs->film.errors = true;
   defs->render.noise = threshold_of(v[RENDER_NOISE].text);
   defs->render.noise_view = outputs->view;
   defs->render.noise_exposure = outputs->exposure;
   defs->render.noise_scale = defs->develop.exposure;
   if (!v[RENDER_SPP].given) defs->render.spp = defs->render.sequence ? defs->render.sequence : MOST_SAMPLES;
+}
+
+int noise_expose(const Outputs *outputs, bool many, vlRenderDef *render, vlRenderDef *whole) {
+  if (!(render->noise > 0)) return -1;
+  if (outputs->meter || (many && outputs->exposure != render->noise_exposure))
+    return report_usage(
+        "--noise is measured in display values: their exposure must be known before the render; give --exposure EV");
+  render->noise_exposure = whole->noise_exposure = outputs->exposure;
   return -1;
 }
 

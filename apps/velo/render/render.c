@@ -1,6 +1,7 @@
 /* render/render.c: `velo render`: load, build, make, render, develop, write. The first pass is written at once and
  * later ones at intervals, so that there is a progress image. A signal stops the render and keeps its whole passes.
  * Only a render that reached its samples or its time replaces an earlier image (outputs.h). */
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -339,6 +340,7 @@ static int meter_model(Render *render, const Arguments *arguments) {
   bool eight_bit = false;
   for (int i = 0; i < outputs->count && !eight_bit; i++) output_suffix(outputs->paths[i], &eight_bit);
   bool wanted = outputs->meter || !v[RENDER_EXPOSURE].given;
+  eight_bit |= v[RENDER_NOISE].given; /* its threshold is of display values, also in parts without an image */
   if (!render->opening.model || !eight_bit || !wanted || v[RENDER_DRY_RUN].given) return -1;
   const vlCamera *camera = &render->job.camera;
   vlCamera first;
@@ -351,8 +353,13 @@ static int meter_model(Render *render, const Arguments *arguments) {
   }
   bool given = outputs->meter || render->opening.lamps;
   outputs->meter = false;
+  if (outputs->shared && !isnan(*outputs->shared)) {
+    outputs->exposure = *outputs->shared;
+    return -1;
+  }
   int status =
       exposure_meter_model(render->context, render->world, camera, render->job.defs, given ? 0 : 1, &outputs->exposure);
+  if (status < 0 && outputs->shared) *outputs->shared = outputs->exposure;
   if (status < 0 && (given || outputs->exposure != 0)) exposure_tell(outputs->exposure);
   return status;
 }
@@ -385,8 +392,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
                                    (has_layers(render) || render->film_plan.path)) ||
                                   render->denoised.outputs.count;
-  status = noise_apply(arguments, &render->outputs, render->job.defs);
-  if (status >= 0) return status;
+  noise_apply(arguments, &render->outputs, render->job.defs);
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
     render->job.defs->render.sequence = vl_film_file_sequence(render->resumed.file);
   render->film_plan.whole = *render->job.defs;
@@ -615,6 +621,8 @@ static int render_once(const Command *command, const Arguments *arguments, float
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0) status = meter_model(&render, arguments);
+  if (status < 0)
+    status = noise_expose(&render.outputs, render.many, &render.job.defs->render, &render.film_plan.whole.render);
   if (status < 0 && render.again.receipt) status = check_again(&render);
   if (status < 0 && arguments->values[RENDER_DRY_RUN].given) {
     job_describe(&render.job, render.context, render.scene, render.world, render.outputs.paths, render.outputs.count);

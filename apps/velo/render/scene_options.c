@@ -122,7 +122,9 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
     complete.rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
   if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete.strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
   complete.ground = v[RENDER_GROUND].given;
-  complete.backdrop = !v[RENDER_NO_GROUND].given && !v[RENDER_CHANNELS].given; /* ground truth is of the file alone */
+  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has. */
+  complete.backdrop =
+      opening->model && !v[RENDER_NO_GROUND].given && (!v[RENDER_CHANNELS].given || arguments->channels_later);
   complete.open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
   if (v[RENDER_FRAMING].given) complete.framing = (vlFraming)v[RENDER_FRAMING].integer;
   if (v[RENDER_UP].given)

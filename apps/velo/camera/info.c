@@ -139,8 +139,8 @@ static int run_info(const Command *command, const Arguments *arguments) {
 
 static const Option info_options[] = {
     {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of the file that is used, if the file has several: its name, or its number from 0", 0, 0, NULL},
+    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0,
+     0, NULL},
     {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

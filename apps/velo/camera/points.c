@@ -163,8 +163,8 @@ static const Option points_options[] = {
      "position of (0, 0) in the image: its top left corner (default; the centre of the first pixel is (0.5, 0.5)), or "
      "the centre of the first pixel, as in OpenCV:",
      0, 0, origin_choices},
-    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of the file that is used, if the file has several: its name, or its number from 0", 0, 0, NULL},
+    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several",
+     0, 0, NULL},
     {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
      "end at a line that is not numbers. Default: the line is reported and its result marked as not valid, the other "

@@ -356,8 +356,8 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
 
 static const Option vanishing_options[] = {
     {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of the file that is used, if the file has several: its name, or its number from 0", 0, 0, NULL},
+    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0, 0,
+     NULL},
     {V_UP, 0, "up", OPTION_TEXT, "x,y,z",
      "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0", 0, 0, NULL},
     {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE",

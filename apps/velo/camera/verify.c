@@ -221,15 +221,15 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 static const Option verify_options[] = {
     {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
      "camera file in any dialect of `velo camera convert`, or a scene file", 0, 0, NULL},
-    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of the file that is used, if the file has several: its name, or its number from 0", 0, 0, NULL},
+    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several",
+     0, 0, NULL},
     {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
      "compare the images with the equations of the camera in this file, to find out whether both files describe the "
      "same camera",
      0, 0, NULL},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME",
-     "camera of OTHER that is used, if it has several: its name, or its number from 0", 0, 0, NULL},
+     "camera of OTHER to use, by name or number from 0, if it has several", 0, 0, NULL},
     {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL,
      "give OTHER's camera the pose of FILE's camera (for files without a pose)", 0, 0, NULL},
     {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND",

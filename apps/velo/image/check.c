@@ -288,9 +288,9 @@ static const Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
      0, 1, NULL},
     {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE",
-     "the next image: check that forward.U and forward.V lead to the right pixels of it", 0, 0, NULL},
+     "the next image: check that forward.U and forward.V lead to the matching pixels of it", 0, 0, NULL},
     {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE",
-     "the previous image: check that backward.U and backward.V lead to the right pixels of it", 0, 0, NULL},
+     "the previous image: check that backward.U and backward.V lead to the matching pixels of it", 0, 0, NULL},
     {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

@@ -34,9 +34,9 @@ const Option render_options[] = {
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size in pixels; the field of view across the smaller side is kept", 1, 65536, NULL},
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1",
-     "crop window in pixels: only these are rendered; x1 and y1 are exclusive", 0, 0, NULL},
+     "crop window: render only these pixels; x1 and y1 are exclusive", 0, 0, NULL},
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
-     "crop window in fractions of the image, in pbrt's order", 0, 0, NULL},
+     "crop window in fractions of the image size, in pbrt's order", 0, 0, NULL},
     {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE",
      "write the film to this file, during the render and at its end; a render that is interrupted can be continued "
      "from it. Without -o no image is written",
@@ -51,7 +51,7 @@ const Option render_options[] = {
      "--film names another",
      0, 0, NULL},
     {RENDER_SHARD, 0, "shard", OPTION_TEXT, "I/N",
-     "render part I of N, counted from 1, of the image into --film; of a trajectory: every N-th frame", 0, 0, NULL},
+     "render part I of N (I from 1) of the image into --film; with --trajectory: every N-th frame", 0, 0, NULL},
     {RENDER_SHARD_BY, 0, "shard-by", OPTION_CHOICE, "WHAT",
      "how --shard divides the render: by samples (each part has some of the samples of all pixels), or by tiles of "
      "pixels:",
@@ -65,25 +65,22 @@ const Option render_options[] = {
      "name or number from 0",
      0, 0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera of the file of --camera that is used, if the file has several: its name, or its number from 0", 0, 0,
-     NULL},
+     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
     {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH",
      "image size for a file of --camera or --trajectory that does not give one; default: --resolution", 1, 65536, NULL},
-    {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME",
-     "glTF: the scene of the file that is rendered: its name, or its number from 0", 0, 0, NULL},
+    {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: scene to render, by name or number from 0", 0, 0, NULL},
     {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]",
-     "glTF: time of the animation in seconds, at which the shutter opens; with T1 it closes at T1, and moving objects "
-     "are blurred. Default: the model without animation",
+     "glTF: time of the animation in seconds, at which the shutter opens; T1: time at which it closes, for motion "
+     "blur. Default: the model without animation",
      0, 0, NULL},
     {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS",
      "time in seconds for which the shutter is open, from --at on", 0, 1e6, NULL},
     {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
-     "glTF: the animation that is played: its name, or its number from 0; several separated by commas, or all; "
-     "default: the first",
-     0, 0, NULL},
+     "glTF: animation to play, by name or number from 0; several separated by commas, or all; default: the first", 0, 0,
+     NULL},
     {RENDER_TURN, 0, "turn", OPTION_NUMBER, "DEGREES",
      "rotate the scene's camera about the vertical axis through the middle of the scene", -1e6, 1e6, NULL},
-    {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: the material variant that is used, by name", 0, 0, NULL},
+    {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant to use, by name", 0, 0, NULL},
     {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
      "environment map that lights the scene: studio, sky, white, none, or an image file (2:1: longitude and latitude; "
      "square: equal-area octahedral). Default: studio, if the file has none",
@@ -206,7 +203,7 @@ const Option render_options[] = {
      "seconds; default middle",
      0, 0, NULL},
     {RENDER_CRYPTO_RANKS, 0, "crypto-ranks", OPTION_INTEGER, "N",
-     "largest number of objects that a Cryptomatte stores per pixel; even; default 6", 2, 32, NULL},
+     "largest number of objects that a Cryptomatte stores per pixel, an even number; default 6", 2, 32, NULL},
     {RENDER_FLOW_CAMERA, 0, "flow-camera", OPTION_TEXT, "FILE",
      "scene or camera file with the camera of the next image. forward.U and forward.V are the displacement, in pixels, "
      "of each surface point from this image to that one; forward.hidden tells whether that camera sees the point. "

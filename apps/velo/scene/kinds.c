@@ -176,10 +176,11 @@ static const Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG
 const Command scene_kinds_command = {
     .name = "scene kinds",
     .usage = "[FAMILY] [options]",
-    .summary = "list the kinds of objects in pbrt files, and their parameters",
+    .summary = "list kinds of objects in pbrt files and their parameters",
     .text =
         "Without FAMILY, prints the names of the families. With FAMILY, prints a Markdown table of parameters for each "
         "kind of that family.",
+    .examples = "velo scene kinds\nvelo scene kinds lights",
     .options = options,
     .min_operands = 0,
     .max_operands = 1,

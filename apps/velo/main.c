@@ -24,9 +24,9 @@ enum { COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_overview(void) {
   printf("velo, a photorealistic renderer\n\nusage: velo COMMAND ...\n\n");
-  for (int i = 0; i < COMMANDS; i++) printf("  %-15s  %s\n", commands[i]->name, commands[i]->summary);
-  printf("  %-15s  %s\n", "help COMMAND", "the options of a command");
-  printf("  %-15s  %s\n\n", "--version", "the version");
+  for (int i = 0; i < COMMANDS; i++) printf("  %-16s  %s\n", commands[i]->name, commands[i]->summary);
+  printf("  %-16s  %s\n", "help COMMAND", "print the options of a command");
+  printf("  %-16s  %s\n\n", "--version", "print the version");
   printf(
       "exit codes: 0 done, 1 findings of scene check, image diff or check over a\n"
       "threshold, or out of memory, 2 wrong command line, 3 wrong scene or image,\n"
@@ -92,7 +92,7 @@ static const Option no_options[] = {{0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, 
 static const Command help_command = {
     .name = "help",
     .usage = "[COMMAND]",
-    .summary = "the options of a command",
+    .summary = "print the options of a command",
     .text =
         "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections,\n"
         "and examples. For image, scene, camera or film, prints this for each command of that group.",

@@ -63,7 +63,7 @@ check help "$VELO" help
 # Every page fits 80 columns and has two examples.
 "$VELO" help >pages.txt
 wide=$(awk 'length($0) > 80' pages.txt)
-for command in render 'scene info' 'scene check' 'scene convert' 'image info' 'image diff' 'image convert' 'image check' 'image denoise' 'camera project' \
+for command in render 'scene info' 'scene check' 'scene convert' 'scene upgrade' 'scene kinds' 'image info' 'image diff' 'image convert' 'image check' 'image denoise' 'camera project' \
   'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' 'film info' 'film merge' 'film develop' help; do
   run "$VELO" help $command
   wide="$wide$(printf '%s\n' "$out" | awk 'length($0) > 80')"
@@ -106,6 +106,7 @@ expect_text help_render_lists_options "--cropwindow"
 check render_help "$VELO" render --help
 check help_image "$VELO" help image
 check help_image_diff "$VELO" help image diff
+expect_text help_keeps_the_columns_of_tables "  mse        mean squared error"
 check version "$VELO" --version
 expect_text version_text "velo 0."
 

@@ -162,24 +162,26 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static const Option convert_options[] = {
-    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT", "what IN is; default: by its content:", 0, 0, dialect_choices},
+    {CONVERT_FROM, 0, "from", OPTION_CHOICE, "DIALECT", "dialect of IN; default: recognised by its content:", 0, 0,
+     dialect_choices},
     {CONVERT_TO, 0, "to", OPTION_CHOICE, "DIALECT",
-     "what OUT becomes; default: .json velo, .yaml opencv, .gltf gltf,\n.xml mitsuba, .usda usd, .pbrt pbrt, "
-     "transforms.json nerf,\ncameras.txt colmap:",
+     "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, .pbrt pbrt, "
+     "transforms.json nerf, cameras.txt colmap:",
      0, 0, dialect_choices},
-    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera of IN to use, by name or number from 0, if it has several",
+     0, 0, NULL},
     {CONVERT_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
-     "leave out a field that OUT cannot hold; may be given several\ntimes", 0, 0, NULL},
+     "leave out a field that OUT's dialect cannot hold; may be given several times", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_convert_command = {
     .name = "camera convert",
     .usage = "IN OUT [options]",
-    .summary = "a camera from one tool's file into another's",
+    .summary = "convert a camera file to another tool's format",
     .text =
-        "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted; what OUT's dialect\n"
-        "cannot hold is refused by name.",
+        "Reads the camera IN and writes it as OUT. Pixel origin and axes are converted. A field that OUT's\n"
+        "dialect cannot hold is an error that names it (--drop leaves it out).",
     .examples =
         "velo camera convert camera.yaml camera.json\n"
         "velo camera convert room.pbrt camera.yaml",

@@ -6,7 +6,7 @@
 #include "velo/velo.h"
 
 extern const Choice dialect_choices[];
-#define CAMERA_SIZE_HELP "the image's size, for a file that has none"
+#define CAMERA_SIZE_HELP "image size for a file that does not give one"
 
 /* Returns whether the file's name is that of a scene, whose camera is then read. */
 bool camera_is_scene(const char *path);

@@ -138,18 +138,19 @@ static int run_info(const Command *command, const Arguments *arguments) {
 }
 
 static const Option info_options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
-    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0,
+     0, NULL},
     {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_info_command = {
     .name = "camera info",
     .usage = "FILE [options]",
-    .summary = "all equivalent parameters of a camera",
+    .summary = "print all equivalent parameters of a camera",
     .text =
-        "FILE is a camera in any dialect of `velo camera convert`, or a scene. Without a sensor of its own the\n"
-        "camera is given one 36 mm wide.",
+        "FILE is a camera file in any dialect of `velo camera convert`, or a scene. If it gives no sensor width,\n"
+        "a width of 36 mm is assumed.",
     .examples =
         "velo camera info camera.yaml\n"
         "velo camera info --json room.pbrt",

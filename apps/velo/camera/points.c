@@ -157,28 +157,29 @@ static int run_unproject(const Command *command, const Arguments *arguments) {
 }
 
 static const Option points_options[] = {
-    {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
-     0, 0, NULL},
+    {POINTS_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "camera file in any dialect of `velo camera convert`, or a scene file", 0, 0, NULL},
     {POINTS_ORIGIN, 0, "pixel-origin", OPTION_CHOICE, "WHERE",
-     "what (0, 0) is: the image's corner (default; the first pixel's\n"
-     "centre is (0.5, 0.5)), or the first pixel's centre, as in OpenCV:",
+     "position of (0, 0) in the image: its top left corner (default; the centre of the first pixel is (0.5, 0.5)), or "
+     "the centre of the first pixel, as in OpenCV:",
      0, 0, origin_choices},
-    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
+    {POINTS_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several",
+     0, 0, NULL},
     {POINTS_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {POINTS_STRICT, 0, "strict", OPTION_FLAG, NULL,
-     "end at a line that is not numbers; default: it is reported, its\nresult is not valid, the rest goes on, and the "
-     "exit code is 3",
+     "end at a line that is not numbers. Default: the line is reported and its result marked as not valid, the other "
+     "lines are read, and the exit code is 3",
      0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_project_command = {
     .name = "camera project",
     .usage = "--camera FILE POINTS.csv [options]",
-    .summary = "points of the world to pixels",
+    .summary = "map world points to pixels",
     .text =
-        "POINTS.csv (- is stdin) has a line x,y,z for each point of the world. Prints u,v,z,valid,inside:\n"
-        "column and row in the image's plane, depth along the view axis, 1 where the camera's equations map the\n"
-        "point (there unproject gives its ray back), and 1 where that place is in the image.",
+        "POINTS.csv (- is stdin) has one line x,y,z per world point. Prints u,v,z,valid,inside for each: column\n"
+        "and row in the image plane; depth along the view axis; valid, 1 if the camera's equations map the point\n"
+        "(then unproject returns its ray); inside, 1 if u,v is in the image.",
     .examples =
         "velo camera project --camera camera.yaml points.csv\n"
         "velo camera project --camera room.pbrt points.csv",
@@ -191,10 +192,10 @@ const Command camera_project_command = {
 const Command camera_unproject_command = {
     .name = "camera unproject",
     .usage = "--camera FILE PIXELS.csv [options]",
-    .summary = "pixels to rays in the world",
+    .summary = "map pixels to rays in world space",
     .text =
-        "PIXELS.csv (- is stdin) has a line u,v for each place in the image. Prints ox,oy,oz,dx,dy,dz,valid:\n"
-        "where the ray starts, its direction of length 1, and 1 where the camera sees anything.",
+        "PIXELS.csv (- is stdin) has one line u,v per point of the image. Prints ox,oy,oz,dx,dy,dz,valid for each:\n"
+        "the ray's origin; its direction, of length 1; valid, 1 if the camera has a ray there.",
     .examples =
         "velo camera unproject --camera camera.yaml pixels.csv\n"
         "velo camera unproject --camera room.pbrt pixels.csv",

@@ -355,35 +355,41 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
 }
 
 static const Option vanishing_options[] = {
-    {V_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
-    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
-    {V_UP, 0, "up", OPTION_TEXT, "x,y,z", "what the horizon is at right angles to; default 0,1,0", 0, 0, NULL},
-    {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE", "draw over this image; needs -o", 0, 0, NULL},
-    {V_OUT, 'o', "output", OPTION_TEXT, "RESULT", "the drawing (.png .jpg .tga); with --from: a camera file", 0, 0,
+    {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0, 0,
      NULL},
-    {V_LINES, 0, "lines", OPTION_INTEGER, "N", "planes of lines to each vanishing point, 0 to 360; default 24", 0, 360,
-     NULL},
-    {V_GRID, 0, "grid", OPTION_TEXT, "SPACING[,HEIGHT]", "draw the ground's grid, too, at this height along up", 0, 0,
-     NULL},
-    {V_FROM, 0, "from", OPTION_TEXT, "x1,y1 x2,y2 [x3,y3]", "the other way: the camera that has these vanishing points",
-     0, 0, NULL},
-    {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy", "its principal point; default with two points: the centre", 0,
-     0, NULL},
-    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "its image's size, or of a FILE that has none", 1, 1 << 24, NULL},
+    {V_UP, 0, "up", OPTION_TEXT, "x,y,z",
+     "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0", 0, 0, NULL},
+    {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE",
+     "draw vanishing points, lines and horizon over this image; needs -o", 0, 0, NULL},
+    {V_OUT, 'o', "output", OPTION_TEXT, "RESULT",
+     "file to write: the drawing (.png .jpg .tga); with --from: a camera file", 0, 0, NULL},
+    {V_LINES, 0, "lines", OPTION_INTEGER, "N",
+     "number of planes with lines to each vanishing point, 0 to 360; default 24", 0, 360, NULL},
+    {V_GRID, 0, "grid", OPTION_TEXT, "SPACING[,HEIGHT]",
+     "also draw a grid on the ground plane, with this spacing, at this height along the up direction", 0, 0, NULL},
+    {V_FROM, 0, "from", OPTION_TEXT, "x1,y1 x2,y2 [x3,y3]",
+     "compute the camera that has these vanishing points, in pixels", 0, 0, NULL},
+    {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy",
+     "with --from: the camera's principal point; default with two points: the centre of the image", 0, 0, NULL},
+    {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for --from, or for a FILE without one", 1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
-     "which axes the points are of, - for a negative end: xz (default\nof two), xyz (of three), -zx, ...", 0, 0, NULL},
-    {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "of that camera file; default: by its name:", 0, 0, dialect_choices},
+     "with --from: the axes to which the points belong, with - before an axis for its negative end: xz (default of two "
+     "points), xyz (of three), -zx, ...",
+     0, 0, NULL},
+    {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "with --from: dialect of RESULT; default: by its name:", 0, 0,
+     dialect_choices},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_vanishing_command = {
     .name = "camera vanishing",
     .usage = "FILE | --from x1,y1 x2,y2 [x3,y3] --size WxH [options]",
-    .summary = "vanishing points and horizon; the camera back from them",
+    .summary = "compute vanishing points, or a camera from them",
     .text =
-        "Prints where lines along the world's axes vanish in the image of FILE's camera (any dialect, or a\n"
-        "scene), pixels from the image's corner, and the horizon; --overlay draws them: lines along x red,\n"
-        "y green, z blue, the horizon yellow. With --from it finds focal length, principal point and rotation\n"
-        "from two vanishing points and a known principal point, or from three.",
+        "Prints the vanishing points of the world's axes in the image of FILE's camera (a camera file of any\n"
+        "dialect, or a scene), in pixels from the image's corner, and the horizon. --overlay draws them: lines\n"
+        "along x red, y green, z blue, the horizon yellow. With --from, computes focal length, principal point\n"
+        "and rotation from two vanishing points and a known principal point, or from three vanishing points.",
     .examples =
         "velo camera vanishing room.pbrt\n"
         "velo camera vanishing --from 10,200 900,210 --size 640x480",

@@ -219,35 +219,41 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 }
 
 static const Option verify_options[] = {
-    {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "the camera, in any dialect of `velo camera convert`, or a scene",
+    {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
+     "camera file in any dialect of `velo camera convert`, or a scene file", 0, 0, NULL},
+    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several",
      0, 0, NULL},
-    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "which of several cameras, by name or number from 0", 0, 0, NULL},
     {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
-     "compare the images with this camera file's equations: do both\nmean the same camera?", 0, 0, NULL},
-    {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME", "which camera of OTHER", 0, 0, NULL},
-    {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL, "OTHER is put where FILE is (for files without a pose)",
+     "compare the images with the equations of the camera in this file, to find out whether both files describe the "
+     "same camera",
      0, 0, NULL},
-    {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND", "default chessboard; charuco has markers that are read:", 0, 0,
+    {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME",
+     "camera of OTHER to use, by name or number from 0, if it has several", 0, 0, NULL},
+    {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL,
+     "give OTHER's camera the pose of FILE's camera (for files without a pose)", 0, 0, NULL},
+    {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND",
+     "pattern on the board; charuco: a chessboard with markers, which are decoded; default chessboard:", 0, 0,
      target_choices},
-    {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N", "places of the board, spread over the image (default 16)", 1,
-     VERIFY_POSES, NULL},
-    {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples a pixel (default 144)", 1, 65536, NULL},
-    {VERIFY_SEED, 0, "seed", OPTION_INTEGER, "N", "other places, other samples (default 1)", 0, 4294967295.0, NULL},
-    {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that passes, in pixels (default 0.05)", 0,
-     1e9, NULL},
-    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv there", 0, 0, NULL},
-    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {VERIFY_POSE_COUNT, 0, "poses", OPTION_INTEGER, "N",
+     "number of poses of the board, spread over the image; default 16", 1, VERIFY_POSES, NULL},
+    {VERIFY_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel; default 144", 1, 65536, NULL},
+    {VERIFY_SEED, 0, "seed", OPTION_INTEGER, "N",
+     "seed of the random numbers; another seed gives other poses and samples; default 1", 0, 4294967295.0, NULL},
+    {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that is accepted, in pixels; default 0.05",
+     0, 1e9, NULL},
+    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv to this folder", 0, 0, NULL},
+    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command camera_verify_command = {
     .name = "camera verify",
     .usage = "--camera FILE [options]",
-    .summary = "render a chessboard through a camera, measure its corners",
+    .summary = "render a chessboard through a camera and measure its corners",
     .text =
-        "Renders a board in many poses through the camera, finds the corners in the images to a hundredth of\n"
-        "a pixel, and compares them with where the camera's equations, written a second time, put them. Exit\n"
-        "code 1 when one is off by more than the threshold, or corners are missing.",
+        "Renders a board in many poses through the camera, finds the corners in the images to a hundredth of a\n"
+        "pixel, and compares them with an independent implementation of the camera's equations. Exit code 1 if\n"
+        "the error of a corner is above the threshold, or corners are missing.",
     .examples =
         "velo camera verify --camera camera.yaml\n"
         "velo camera verify --camera room.pbrt",

@@ -11,7 +11,6 @@ enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
  * counts as a blank, two end a paragraph. A line that begins with a blank is printed unchanged. */
 static void print_wrapped(const char *text, int indent, int column) {
   while (*text) {
-    size_t blanks = strspn(text, " "), n = strcspn(text, " \n");
     if (*text == '\n') {
       bool paragraph = text[1] == '\n' || text[1] == ' ';
       if (paragraph) {
@@ -21,11 +20,13 @@ static void print_wrapped(const char *text, int indent, int column) {
       text += text[1] == '\n' ? 2 : 1;
       continue;
     }
-    if (blanks && column > 0) {
-      text += blanks;
+    if (*text == ' ') {
+      size_t skipped = column == 0 ? strcspn(text, "\n") : strspn(text, " ");
+      if (column == 0) column = printf("%.*s", (int)skipped, text);
+      text += skipped;
       continue;
     }
-    n = blanks + strcspn(text + blanks, " \n");
+    size_t n = strcspn(text, " \n");
     if (column > indent && column + 1 + (int)n > HELP_WIDTH) {
       printf("\n");
       column = 0;

@@ -31,7 +31,7 @@ typedef struct Option {
   const char *name; /* without dashes; null ends the list */
   OptionKind kind;
   const char *value; /* placeholder in the help page; null for flags */
-  const char *help;  /* lines separated by \n */
+  const char *help;  /* the help page wraps it */
   double min, max;
   const Choice *choices;
 } Option;

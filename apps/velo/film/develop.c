@@ -96,20 +96,23 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 
 static const Option develop_options[] = {
     {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "image to write; may be given several times. The suffix chooses\nthe format, as for velo render", 0, 0, NULL},
-    {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
-     view_choices},
-    {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "brighter by 2^EV (.png .jpg .tga), or auto", 0, 0, NULL},
-    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+     "image file to write; may be given several times. The suffix chooses the format, as for velo render", 0, 0, NULL},
+    {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME",
+     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
+    {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
+     "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so that the geometric mean of "
+     "the luminance becomes 18 % grey",
+     0, 0, NULL},
+    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command film_develop_command = {
     .name = "film develop",
     .usage = "FILE -o IMAGE [options]",
-    .summary = "make images of a film file",
+    .summary = "write the images of a film file",
     .text =
-        "Writes the image of a film, also of one that is not complete; an .exr also has its standard\n"
-        "errors and its spectrum, where the film has their sums. Ground truth needs the scene:\n"
+        "Writes the image of a film file, which may be incomplete. An .exr also has the standard errors and\n"
+        "the spectrum, if the film has their sums. Ground truth requires the scene:\n"
         "velo render --continue FILE -o IMAGE.exr --channels LIST.",
     .examples = "velo film develop room.film -o room.exr\nvelo film develop room.film -o room.png --view agx",
     .options = develop_options,

@@ -144,15 +144,16 @@ static int run_info(const Command *command, const Arguments *arguments) {
 
 static const Option info_options[] = {
     {INFO_MISSING, 0, "missing", OPTION_FLAG, NULL,
-     "print the commands that render what is not there, and the one that\nmerges it, for a shell", 0, 0, NULL},
-    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "read all sums, too: finds every damage of the file", 0, 0, NULL},
+     "print, as shell commands, the renders of the missing samples or pixels, and the merge of the results", 0, 0,
+     NULL},
+    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "also read all sums, which detects any damage of the file", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command film_info_command = {
     .name = "film info",
     .usage = "FILE [options]",
-    .summary = "what a film file holds, and what is missing",
-    .text = "Prints the size of a film, its samples and what made it.",
+    .summary = "print what a film file contains, and what is missing",
+    .text = "Prints the size of a film, its samples, and the command and scene that made it.",
     .examples = "velo film info room.film\nvelo film info --missing room.film | sh",
     .options = info_options,
     .min_operands = 1,

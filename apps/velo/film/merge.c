@@ -27,7 +27,7 @@ static int run_merge(const Command *command, const Arguments *arguments) {
 }
 
 static const Option merge_options[] = {
-    {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "the film to write; may be one of the parts", 0, 0, NULL},
+    {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "film file to write; may be one of the parts", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command film_merge_command = {
@@ -35,8 +35,8 @@ const Command film_merge_command = {
     .usage = "FILE... -o FILE",
     .summary = "merge the parts of a render into one film",
     .text =
-        "Merges films of one render that have different samples or pixels. Order and grouping do not\n"
-        "matter, and a part that is given twice counts once: the result has the bytes of a single render.",
+        "Merges film files of one render that have different samples or pixels. The order of the files does\n"
+        "not matter, and a file that is given twice counts once: the result has the bytes of a single render.",
     .examples = "velo film merge part-*.film -o room.film\nvelo film merge room.film late.film -o room.film",
     .options = merge_options,
     .min_operands = 1,

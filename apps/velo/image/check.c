@@ -287,23 +287,23 @@ static int run_check(const Command *command, const Arguments *arguments) {
 static const Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
      0, 1, NULL},
-    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE", "the next image: check that forward.U, .V lead to its pixels", 0, 0,
-     NULL},
-    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE", "the image before: the same of backward.U, .V", 0, 0,
-     NULL},
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE",
+     "the next image: check that forward.U and forward.V lead to the matching pixels of it", 0, 0, NULL},
+    {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE",
+     "the previous image: check that backward.U and backward.V lead to the matching pixels of it", 0, 0, NULL},
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command image_check_command = {
     .name = "image check",
     .usage = "FILE.exr [options]",
-    .summary = "do ground truth channels agree with the camera in the header?",
+    .summary = "check ground truth channels against the camera in the header",
     .text =
         "Computes depths, positions, rays and pixels of FILE's ground truth channels from each other and from\n"
-        "the camera in its header, in double precision, and prints the largest relative errors. Positions and\n"
-        "depths are measured against the largest of |P|, |origin| and distance, pixels against the larger side\n"
-        "of the image. Cryptomatte's ids are looked up in its manifest, its coverages compared with alpha.\n"
-        "Exit code 1 when an error is above the threshold.",
+        "the camera in its header, in double precision, and prints the largest relative errors. Errors of\n"
+        "positions and depths are relative to the largest of |P|, |origin| and distance, those of pixels to the\n"
+        "larger side of the image. Cryptomatte ids are compared with the manifest, and coverages with alpha.\n"
+        "Exit code 1 if an error is above the threshold.",
     .examples =
         "velo image check channels.exr\n"
         "velo image check --json channels.exr",

@@ -187,15 +187,17 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static const Option convert_options[] = {
-    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "only these pixels, x1 and y1 exclusive", 0, 0, NULL},
-    {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
-     view_choices},
-    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
-    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
-    {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "one channel alone, such as Z", 0, 0, NULL},
+    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "write only these pixels; x1 and y1 are exclusive", 0, 0,
+     NULL},
+    {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME",
+     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
+    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV",
+     -64, 64, NULL},
+    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+    {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z", 0, 0, NULL},
     {CONVERT_SCALE, 0, "scale", OPTION_NUMBER, "FACTOR",
-     "with --channel: times this, rounded to 16-bit whole numbers\n(.png); depth in RGB-D sequences: 5000 or 1000 per "
-     "metre",
+     "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in RGB-D data sets has 5000 or "
+     "1000 per metre",
      1e-9, 1e9, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

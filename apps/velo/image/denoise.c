@@ -81,18 +81,19 @@ vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
 
 static const Option denoise_options[] = {
     {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "the denoised image; .exr .hdr .pfm (linear), .png .jpg .tga (display)", 0, 0, NULL},
+     "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)", 0, 0, NULL},
     {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
-     "velo: its own; oidn: Intel Open Image Denoise, where it is installed:", 0, 0, denoiser_choices},
+     "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:", 0, 0, denoiser_choices},
     {DENOISE_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
-     "the library of Open Image Denoise; default: the system's", 0, 0, NULL},
-    {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME", "how light becomes display values (.png .jpg .tga):", 0, 0,
-     view_choices},
-    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "brighter by 2^EV (.png .jpg .tga)", -64, 64, NULL},
-    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, ".exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+     "path of the library of Open Image Denoise; default: the system's", 0, 0, NULL},
+    {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME",
+     "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
+    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV",
+     -64, 64, NULL},
+    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {DENOISE_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "workers; default: one for each processor. The image does not\ndepend on it", 1, 1024, NULL},
-    {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "how long it took", 0, 0, NULL},
+     "number of worker threads; default: one for each processor. The image does not depend on it", 1, 1024, NULL},
+    {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command image_denoise_command = {
@@ -100,8 +101,8 @@ const Command image_denoise_command = {
     .usage = "FILE -o RESULT [options]",
     .summary = "write a denoised copy of a rendered image",
     .text =
-        "Writes the image FILE without most of its noise, as RESULT. FILE is an .exr of velo render\n"
-        "--channels error,features. The denoised image is biased; FILE is not changed.",
+        "Removes most of the noise of the image FILE and writes the result. FILE is an .exr that was rendered\n"
+        "with velo render --channels error,features. The denoised image is biased; FILE is not changed.",
     .examples =
         "velo render room.pbrt --spp 16 --channels error,features -o room.exr\n"
         "velo image denoise room.exr -o clean.png",

@@ -142,24 +142,29 @@ static int run_diff(const Command *command, const Arguments *arguments) {
 }
 
 static const Option diff_options[] = {
-    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write the FLIP differences in false colour", 0, 0, NULL},
+    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write an image of the FLIP differences in false colours", 0, 0,
+     NULL},
     {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
-     "exit with 1 when the measure is over VALUE (psnr: under it;\nmeanratio: farther than VALUE from 1); may be "
-     "repeated",
+     "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther than VALUE from 1); may "
+     "be given several times",
      0, 0, NULL},
-    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command image_diff_command = {
     .name = "image diff",
     .usage = "REFERENCE IMAGE [options]",
-    .summary = "how far an image is from a reference",
+    .summary = "measure the difference between an image and a reference",
     .text =
-        "Measures of IMAGE against REFERENCE over R, G, B (or Y), linear:\n"
-        "  mse        mean squared error          relmse     the same, relative to reference^2 + 0.01\n"
-        "  psnr       dB, for a peak of 1         flip       mean FLIP, 67 pixels per degree\n"
-        "  meanratio  of mean luminances          maxabs     largest difference of a value\n"
-        "  differing  pixels that differ at all   notfinite  pixels with inf or nan, left out above",
+        "Prints differences between IMAGE and REFERENCE in linear R, G, B (or Y):\n"
+        "  mse        mean squared error\n"
+        "  relmse     mean of squared errors, each divided by reference^2 + 0.01\n"
+        "  psnr       peak signal-to-noise ratio in dB, for a peak of 1\n"
+        "  flip       mean FLIP error at 67 pixels per degree\n"
+        "  meanratio  ratio of the mean luminances, IMAGE divided by REFERENCE\n"
+        "  maxabs     largest absolute difference of a value\n"
+        "  differing  number of pixels that are not equal\n"
+        "  notfinite  number of pixels with inf or nan; the other measures omit them",
     .examples =
         "velo image diff reference.exr room.exr\n"
         "velo image diff reference.png room.png --threshold flip=0.01 -o heat.png",

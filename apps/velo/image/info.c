@@ -252,14 +252,16 @@ static int run_info(const Command *command, const Arguments *arguments) {
 }
 
 static const Option info_options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command image_info_command = {
     .name = "image info",
     .usage = "FILE [options]",
-    .summary = "format, size, channels and attributes of an image",
-    .text = "Prints what FILE is and holds. Matrices are in OpenEXR's order (row vectors).",
+    .summary = "print format, size, channels and attributes of an image",
+    .text =
+        "Prints the format, size, channels and header attributes of FILE. Matrices are in OpenEXR's order (row "
+        "vectors).",
     .examples =
         "velo image info room.exr\n"
         "velo image info --json room.exr",

@@ -656,10 +656,10 @@ const Command render_command = {
     .usage = "FILE [options]",
     .summary = "render a scene: .pbrt .gltf .glb .obj .ply .stl .off",
     .text =
-        "Renders FILE. Options override what the file says. After the first pass, and then every ten\n"
-        "seconds or so, the image is written as it is to NAME.part.EXT; when the render is done it\n"
-        "replaces NAME.EXT. Ctrl-C ends the render and leaves what is done in NAME.part.EXT, and in\n"
-        "--film FILE, from which --continue goes on.",
+        "Renders FILE. Options override the settings in the file. After the first pass, and then about every\n"
+        "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes NAME.EXT.\n"
+        "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film file of --film,\n"
+        "which --continue continues.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
         "velo render model.glb --resolution 1280x720 --time 5m -o model.png",

@@ -182,12 +182,12 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
-    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "every finding; without, the first 10 of each kind", 0, 0, NULL},
-    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read textures (they are looked for all the same)", 0,
-     0, NULL},
-    {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "what velo does not understand yet is a note, not an error",
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "print every finding; default: the first 10 of each kind", 0, 0, NULL},
+    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read texture images; missing ones are still reported",
      0, 0, NULL},
+    {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "parts of the scene that velo does not understand are notes, not errors", 0, 0, NULL},
     SCENE_SEARCH_OPTION(CHECK_SEARCH),
     SCENE_SANDBOX_OPTION(CHECK_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
@@ -195,14 +195,14 @@ static const Option options[] = {
 const Command scene_check_command = {
     .name = "scene check",
     .usage = "FILE [options]",
-    .summary = "the scene doctor: what is wrong or probably not meant",
+    .summary = "find errors and likely mistakes in a scene",
     .text =
-        "Reads a scene past its mistakes and says all that it finds, each with its place and kind:\n"
-        "missing and broken files, whatever else is wrong; unused and overwritten names; solids of\n"
-        "glass that are open or inside out; media that overlap; faces without area; textures over uv\n"
-        "that a mesh does not have; surfaces that give back more light than they get; a camera inside\n"
-        "of a solid; lights of power 0. Renders nothing.\n\n"
-        "exit codes: 0 nothing but notes; 1 warnings; 3, 4, 5 an error, with which velo render would end",
+        "Reads a scene, continues after errors, and prints all findings, each with its kind and its place\n"
+        "in the file: missing, damaged and invalid files; unused and overwritten names; solids of glass\n"
+        "that are open or inside out; media that overlap; faces without area; textures over uv on a mesh\n"
+        "without uv; surfaces that reflect more light than they receive; a camera inside a solid; lights\n"
+        "of power 0. Renders nothing.\n\n"
+        "exit codes: 0 only notes or no findings; 1 warnings; 3, 4, 5 an error that would end velo render",
     .examples =
         "velo scene check room.pbrt\n"
         "velo scene check --json --no-images model.glb",

@@ -22,21 +22,22 @@ enum {
 };
 
 static const Option convert_options[] = {
-    {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL, "what B cannot hold is an error; nothing is written", 0, 0, NULL},
+    {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL,
+     "anything that B's format cannot hold is an error, and nothing is written", 0, 0, NULL},
     {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,
-     "add the camera and light that A lacks, as velo render does;\nalways, where B is a .pbrt", 0, 0, NULL},
+     "add the camera and light that A lacks, as velo render does; always done if B is a .pbrt file", 0, 0, NULL},
     {CONVERT_PROVE, 0, "prove", OPTION_FLAG, NULL,
-     "render A and B, 256 pixels wide, and print how much brighter each\nmaterial became: after / before, in red, "
-     "green and blue",
+     "render A and B, 256 pixels wide, and print for each material the ratio of its brightness, B divided by A, in "
+     "red, green and blue",
      0, 0, NULL},
-    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: this camera, by name or number from 0", 0, 0, NULL},
-    {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS", "glTF: the moment of its animation; default: as modelled", 0, 1e9,
-     NULL},
+    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: camera to write, by name or number from 0", 0, 0, NULL},
+    {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS",
+     "glTF: time of the animation in seconds; default: the model without animation", 0, 1e9, NULL},
     {CONVERT_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
-     "glTF: this animation, by name or number from 0; several with commas; all", 0, 0, NULL},
-    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: this variant of its materials", 0, 0, NULL},
+     "glTF: animation to play, by name or number from 0; several separated by commas, or all", 0, 0, NULL},
+    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant to use, by name", 0, 0, NULL},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "what velo does not understand yet is a warning, not an error", 0, 0, NULL},
+     "parts of the scene that velo does not understand are warnings, not errors", 0, 0, NULL},
     SCENE_SEARCH_OPTION(CONVERT_SEARCH),
     SCENE_SANDBOX_OPTION(CONVERT_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
@@ -96,10 +97,10 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 const Command scene_convert_command = {
     .name = "scene convert",
     .usage = "A B [options]",
-    .summary = "write a scene as another format: .gltf, .glb, .pbrt",
+    .summary = "write a scene in another format: .gltf, .glb, .pbrt",
     .text =
-        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of its suffix. What B's format\n"
-        "cannot hold exactly is reported: one line per kind, with the number of times.",
+        "Reads A (.pbrt, .gltf, .glb, .obj, .ply) and writes it as B, in the format of B's suffix. What that\n"
+        "format cannot hold exactly is reported: one line per kind, with the number of occurrences.",
     .examples =
         "velo scene convert room.pbrt room.glb\n"
         "velo scene convert model.gltf model.pbrt",

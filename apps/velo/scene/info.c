@@ -347,8 +347,9 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "one JSON object on stdout", 0, 0, NULL},
-    {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "leave out what velo does not understand yet", 0, 0, NULL},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "leave out parts of the scene that velo does not understand, instead of ending with an error", 0, 0, NULL},
     SCENE_SEARCH_OPTION(INFO_SEARCH),
     SCENE_SANDBOX_OPTION(INFO_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
@@ -356,11 +357,11 @@ static const Option options[] = {
 const Command scene_info_command = {
     .name = "scene info",
     .usage = "FILE [options]",
-    .summary = "what a scene holds: counts, bounds, camera, lights",
+    .summary = "print what a scene contains: counts, bounds, camera, lights",
     .text =
-        "Reads a scene and prints what it describes; builds and renders nothing. The power of a light is the "
-        "luminance\n"
-        "that it sends out, over area and solid angle; of distant and infinite ones into a sphere round the scene.",
+        "Reads a scene and prints its contents, without building or rendering it. The power of a light is the\n"
+        "luminance that it emits, integrated over area and solid angle; of distant and infinite lights, the\n"
+        "part that enters a sphere around the scene.",
     .examples =
         "velo scene info room.pbrt\n"
         "velo scene info --json model.glb",

@@ -169,15 +169,18 @@ static int run(const Command *command, const Arguments *arguments) {
   return fflush(stdout) != 0 || ferror(stdout) ? report_failure(STATUS_IO, "cannot write to stdout") : STATUS_OK;
 }
 
-static const Option options[] = {
-    {KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL, "words for a fuzzer, one per line", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+static const Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,
+                                  "print the names as a dictionary for a fuzzer, one per line", 0, 0, NULL},
+                                 {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command scene_kinds_command = {
     .name = "scene kinds",
     .usage = "[FAMILY] [options]",
-    .summary = "what pbrt files may say: kinds of things, their parameters",
-    .text = "Without FAMILY: the families. With one: a Markdown table for each of its kinds.",
+    .summary = "list kinds of objects in pbrt files and their parameters",
+    .text =
+        "Without FAMILY, prints the names of the families. With FAMILY, prints a Markdown table of parameters for each "
+        "kind of that family.",
+    .examples = "velo scene kinds\nvelo scene kinds lights",
     .options = options,
     .min_operands = 0,
     .max_operands = 1,

@@ -92,10 +92,11 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL, "what has no counterpart is an error; nothing is written", 0, 0,
+    {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL,
+     "anything without a counterpart in pbrt-v4 is an error, and nothing is written", 0, 0, NULL},
+    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL, "print every change; default: the first 5 with the same text", 0, 0,
      NULL},
-    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL, "every change; without, the first 5 with the same text", 0, 0, NULL},
-    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL, "only what has no counterpart", 0, 0, NULL},
+    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL, "print only what has no counterpart in pbrt-v4", 0, 0, NULL},
     SCENE_SEARCH_OPTION(UPGRADE_SEARCH),
     SCENE_SANDBOX_OPTION(UPGRADE_SANDBOX),
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
@@ -105,10 +106,10 @@ const Command scene_upgrade_command = {
     .usage = "OLD NEW [options]",
     .summary = "rewrite a pbrt-v3 scene as a pbrt-v4 scene",
     .text =
-        "Reads the pbrt-v3 scene OLD with the files that it includes and writes the pbrt-v4 scene NEW.\n"
-        "Comments, layout and numbers stay. Files that change are written beside NEW; names of files\n"
-        "keep working from there. Maps of infinite lights become equal-area maps (.exr). Prints each\n"
-        "change and whatever has no counterpart, with its place in OLD.",
+        "Reads the pbrt-v3 scene OLD and the files that it includes, and writes the pbrt-v4 scene NEW.\n"
+        "Comments, layout and numbers are kept. Included files that change are written to NEW's folder, and\n"
+        "file names are adapted to it. Images of infinite lights become equal-area octahedral maps (.exr).\n"
+        "Prints each change, and everything that has no counterpart in pbrt-v4, with its place in OLD.",
     .examples =
         "velo scene upgrade old/room.pbrt room.pbrt\n"
         "velo scene upgrade --strict scene.pbrt scene-v4.pbrt",

@@ -29,121 +29,152 @@ static const char *const directions[] = {"down", "up", "right", "left", NULL};
 
 /* ---- pbrt's cameras ---------------------------------------------------------------------------------------------- */
 
-#define SHUTTER                                                          \
-  NUMBER("shutteropen", shutter_open, "the shutter opens", .unit = "s"), \
-      NUMBER("shutterclose", shutter_close, "it closes", VL_DEFAULT(1), .unit = "s")
-#define PBRT                                                                                                          \
-  WORD("frameaspectratio", DOUBLE, screen_min_x, "width over height of the screen; unset: the film's", .unit = NULL), \
-      BLOCK("screenwindow", screen_min_x, "float", "x0, x1, y0, y1 of the film on the screen at distance 1, y up"),   \
-      NUMBER("lensradius", lens_radius, "of a thin lens, scene units; 0: a pinhole", VL_FROM(0)),                     \
-      WORD("focaldistance", DOUBLE, focus_distance, "the plane in focus, scene units", VL_DEFAULT(1e6)), SHUTTER
+#define SHUTTER                                                                        \
+  NUMBER("shutteropen", shutter_open, "time at which the shutter opens", .unit = "s"), \
+      NUMBER("shutterclose", shutter_close, "time at which the shutter closes", VL_DEFAULT(1), .unit = "s")
+#define PBRT                                                                                                         \
+  WORD("frameaspectratio", DOUBLE, screen_min_x,                                                                     \
+       "width of the screen window divided by its height; unset: that of the film", .unit = NULL),                   \
+      BLOCK("screenwindow", screen_min_x, "float",                                                                   \
+            "screen window: x0, x1, y0, y1 of the image on the plane at distance 1, y up"),                          \
+      NUMBER("lensradius", lens_radius, "radius of the thin lens, scene units; 0: a pinhole", VL_FROM(0)),           \
+      WORD("focaldistance", DOUBLE, focus_distance, "distance to the plane in focus, scene units", VL_DEFAULT(1e6)), \
+      SHUTTER
 
 static const vlParameter pbrt_perspective_parameters[] = {
-    NUMBER("fov", fov, "across the film's smaller side", VL_DEFAULT(90 * DEGREES), ANGLE), PBRT};
-VL_KIND_ROW(pbrt_perspective, .name = "perspective", .description = "pbrt's pinhole or thin lens")
+    NUMBER("fov", fov, "field of view across the smaller side of the image", VL_DEFAULT(90 * DEGREES), ANGLE), PBRT};
+VL_KIND_ROW(pbrt_perspective, .name = "perspective",
+            .description = "pbrt's perspective camera: a pinhole or a thin lens")
 
 static const vlParameter pbrt_orthographic_parameters[] = {PBRT};
-VL_KIND_ROW(pbrt_orthographic, .name = "orthographic", .description = "parallel rays")
+VL_KIND_ROW(pbrt_orthographic, .name = "orthographic", .description = "orthographic projection")
 
-#define IGNORED(name) WORD(name, DOUBLE, fov, "ignored, as pbrt does", .unit = NULL)
+#define IGNORED(name) WORD(name, DOUBLE, fov, "ignored, as in pbrt", .unit = NULL)
 static const vlParameter spherical_parameters[] = {
-    WORD("mapping", CHOICE, projection, "the projection", .choices = spherical_mappings),
+    WORD("mapping", CHOICE, projection, "map from directions to the image", .choices = spherical_mappings),
     SHUTTER,
     IGNORED("lensradius"),
     IGNORED("focaldistance"),
     IGNORED("frameaspectratio"),
-    BLOCK("screenwindow", screen_min_x, "float", "ignored, as pbrt does"),
+    BLOCK("screenwindow", screen_min_x, "float", "ignored, as in pbrt"),
 };
-VL_KIND_ROW(spherical, .name = "spherical", .description = "pbrt's camera of the whole sphere")
+VL_KIND_ROW(spherical, .name = "spherical", .description = "pbrt's camera that sees in all directions")
 
 static const vlParameter realistic_parameters[] = {
-    WORD("lensfile", STRING, lens.optics, "required: a table of the lens's surfaces", .text = NULL),
-    WORD("aperturediameter", DOUBLE, lens.optics, "of the stop", VL_DEFAULT(1), .unit = "mm"),
-    WORD("focusdistance", DOUBLE, lens.optics, "the plane in focus from the film, scene units", VL_DEFAULT(10)),
-    WORD("aperture", STRING, lens.optics, "circular, gaussian, square, pentagon, star or an image file", .text = NULL),
+    WORD("lensfile", STRING, lens.optics, "required: a file with the table of the lens's surfaces", .text = NULL),
+    WORD("aperturediameter", DOUBLE, lens.optics, "diameter of the aperture stop", VL_DEFAULT(1), .unit = "mm"),
+    WORD("focusdistance", DOUBLE, lens.optics, "distance from the film to the plane in focus, scene units",
+         VL_DEFAULT(10)),
+    WORD("aperture", STRING, lens.optics,
+         "shape of the aperture: circular, gaussian, square, pentagon, star or an image file", .text = NULL),
     SHUTTER,
 };
-VL_KIND_ROW(realistic, .name = "realistic", .description = "a lens of many elements")
+VL_KIND_ROW(realistic, .name = "realistic", .description = "a lens of many elements, simulated surface by surface")
 
 /* ---- velo's words ------------------------------------------------------------------------------------------------ */
 
-#define POSE                                                                                    \
-  VECTOR("eye", eye, "position", 0, 0), VECTOR("lookat", lookat, "a point ahead", 0, 0, 0, -1), \
-      VECTOR("up", up, "a direction that is up in the image", VL_PARAMETER_VECTOR, 0, 1, 0),    \
-      NUMBER("roll", roll, "about the view direction, clockwise as seen from behind", ANGLE),   \
-      VECTOR("eyeclose", eye_close, "eye when the shutter closes", VL_PARAMETER_UNSET, 0),      \
-      VECTOR("lookatclose", lookat_close, "lookat then", VL_PARAMETER_UNSET, 0),                \
-      VECTOR("upclose", up_close, "up then", VL_PARAMETER_UNSET | VL_PARAMETER_VECTOR, 0),      \
-      OPTIONAL_ANGLE("rollclose", roll_close, "roll then")
-#define INTRINSICS                                                                                                \
-  OPTIONAL("d", view_distance, "view distance; focal length in pixels = zoom d / pixelsize", .unit = NULL),       \
-      OPTIONAL("zoom", zoom, "see d; unset: 1", .unit = NULL),                                                    \
-      OPTIONAL("pixelsize", pixel_size, "see d; unset: 1", .unit = NULL),                                         \
-      OPTIONAL_ANGLE("fov", fov, "field of view along fovaxis"),                                                  \
-      PARAMETER(CHOICE, "fovaxis", fov_axis, "what fov spans", .choices = axes, VL_DEFAULT(VL_FOV_SMALLER)),      \
-      OPTIONAL("focallength", focal_mm, "focal length; with sensorwidth", .unit = "mm"),                          \
-      OPTIONAL("sensorwidth", sensor_width_mm, "width of the sensor", .unit = "mm"),                              \
-      OPTIONAL("fx", fx, "focal length", .unit = "pixels"), OPTIONAL("fy", fy, "focal length", .unit = "pixels"), \
-      OPTIONAL("cx", cx, "principal point from the left; unset: the centre", .unit = "pixels"),                   \
-      OPTIONAL("cy", cy, "principal point from the top; unset: the centre", .unit = "pixels"),                    \
-      OPTIONAL("skew", skew, "of the pixel grid", .unit = "pixels")
-#define TIME                                                                                                       \
-  SHUTTER, WORD("shuttercurve", CHOICE, shutter_points, "how the shutter opens and closes", .choices = curves),    \
-      WORD("shutterrise", DOUBLE, shutter_points, "share of the time in which a trapezoid rises", VL_DEFAULT(0.1), \
-           VL_RANGE(0, 0.5)),                                                                                      \
-      BLOCK("shutterpoints", shutter_at, "float", "2 to 16 pairs: share of the time, how far open"),               \
-      NUMBER("readout", readout, "from the first row's exposure to the last's", .unit = "s"),                      \
-      PARAMETER(CHOICE, "readoutdirection", readout_direction, "of the rolling shutter", .choices = directions)
-#define STEREO                                                                                       \
-  PARAMETER(CHOICE, "stereo", stereo.mode, "two eyes", .choices = stereo_modes),                     \
-      PARAMETER(CHOICE, "stereoeye", stereo_eye, "which of them", .choices = stereo_eyes),           \
-      NUMBER("interocular", stereo.interocular, "between the eyes, scene units", VL_DEFAULT(0.065)), \
-      OPTIONAL("convergence", stereo.convergence, "depth where axes or windows meet, scene units", .unit = NULL)
-#define FILM                                                                                  \
-  NUMBER("exposuretime", exposure_time, "factor on the image", VL_DEFAULT(1)),                \
-      NUMBER("near", near_plane, "nearest depth that is seen, scene units", .unit = NULL),    \
-      NUMBER("far", far_plane, "farthest, scene units", VL_DEFAULT((double)__builtin_inff()), \
+#define POSE                                                                                                         \
+  VECTOR("eye", eye, "position of the camera", 0, 0),                                                                \
+      VECTOR("lookat", lookat, "a point on the view axis", 0, 0, 0, -1),                                             \
+      VECTOR("up", up, "the direction that points up in the image", VL_PARAMETER_VECTOR, 0, 1, 0),                   \
+      NUMBER("roll", roll, "rotation of the camera about the view axis, clockwise as seen from behind", ANGLE),      \
+      VECTOR("eyeclose", eye_close, "eye at the end of the camera's motion, when the shutter closes; unset: eye",    \
+             VL_PARAMETER_UNSET, 0),                                                                                 \
+      VECTOR("lookatclose", lookat_close, "lookat when the shutter closes; unset: lookat", VL_PARAMETER_UNSET, 0),   \
+      VECTOR("upclose", up_close, "up when the shutter closes; unset: up", VL_PARAMETER_UNSET | VL_PARAMETER_VECTOR, \
+             0),                                                                                                     \
+      OPTIONAL_ANGLE("rollclose", roll_close, "roll when the shutter closes; unset: roll")
+#define INTRINSICS                                                                                                     \
+  OPTIONAL("d", view_distance, "view distance; the focal length in pixels is zoom * d / pixelsize", .unit = NULL),     \
+      OPTIONAL("zoom", zoom, "factor on d; unset: 1", .unit = NULL),                                                   \
+      OPTIONAL("pixelsize", pixel_size, "side of a pixel in the unit of d; unset: 1", .unit = NULL),                   \
+      OPTIONAL_ANGLE("fov", fov, "field of view along fovaxis"),                                                       \
+      PARAMETER(CHOICE, "fovaxis", fov_axis, "the extent of the image that fov spans", .choices = axes,                \
+                VL_DEFAULT(VL_FOV_SMALLER)),                                                                           \
+      OPTIONAL("focallength", focal_mm, "focal length; requires sensorwidth", .unit = "mm"),                           \
+      OPTIONAL("sensorwidth", sensor_width_mm, "width of the sensor, for focallength", .unit = "mm"),                  \
+      OPTIONAL("fx", fx, "horizontal focal length", .unit = "pixels"),                                                 \
+      OPTIONAL("fy", fy, "vertical focal length", .unit = "pixels"),                                                   \
+      OPTIONAL("cx", cx, "column of the principal point from the image's left edge; unset: the centre",                \
+               .unit = "pixels"),                                                                                      \
+      OPTIONAL("cy", cy, "row of the principal point from the image's top edge; unset: the centre", .unit = "pixels"), \
+      OPTIONAL("skew", skew, "skew coefficient of the camera matrix", .unit = "pixels")
+#define TIME                                                                                                     \
+  SHUTTER,                                                                                                       \
+      WORD("shuttercurve", CHOICE, shutter_points,                                                               \
+           "shape of the shutter curve: how far the shutter is open over time", .choices = curves),              \
+      WORD("shutterrise", DOUBLE, shutter_points, "trapezoid: fraction of the shutter's time in which it opens", \
+           VL_DEFAULT(0.1), VL_RANGE(0, 0.5)),                                                                   \
+      BLOCK("shutterpoints", shutter_at, "float",                                                                \
+            "shutter curve, 2 to 16 pairs: fraction of the shutter's time, and opening"),                        \
+      NUMBER("readout", readout, "rolling shutter: time from the first row's exposure to the last one's",        \
+             .unit = "s"),                                                                                       \
+      PARAMETER(CHOICE, "readoutdirection", readout_direction,                                                   \
+                "direction in which the rolling shutter reads the sensor", .choices = directions)
+#define STEREO                                                                                                     \
+  PARAMETER(CHOICE, "stereo", stereo.mode, "arrangement of the two cameras (eyes) of a stereo pair",               \
+            .choices = stereo_modes),                                                                              \
+      PARAMETER(CHOICE, "stereoeye", stereo_eye, "which eyes are rendered", .choices = stereo_eyes),               \
+      NUMBER("interocular", stereo.interocular, "distance between the eyes, scene units", VL_DEFAULT(0.065)),      \
+      OPTIONAL("convergence", stereo.convergence, "depth where the eyes' axes or image windows meet, scene units", \
+               .unit = NULL)
+#define FILM                                                                                                         \
+  NUMBER("exposuretime", exposure_time, "exposure: factor on the image's values", VL_DEFAULT(1)),                    \
+      NUMBER("near", near_plane, "depth of the near clipping plane, scene units", .unit = NULL),                     \
+      NUMBER("far", far_plane, "depth of the far clipping plane, scene units", VL_DEFAULT((double)__builtin_inff()), \
              .flags = VL_PARAMETER_INFINITE)
-#define PINHOLE \
-  POSE, INTRINSICS, TIME, STEREO, FILM, PARAMETER(BOOL, "vignetting", lens.vignetting, "darker towards the corners")
-#define LENS                                                                                                \
-  NUMBER("lensradius", lens_radius, "scene units; 0: a pinhole", VL_FROM(0)),                               \
-      OPTIONAL("focusdistance", focus_distance, "the plane in focus, scene units; unset: infinity",         \
-               .alias = "focaldistance"),                                                                   \
-      OPTIONAL("fnumber", lens.f_number, "focal length over the lens's diameter, in place of lensradius",   \
-               .unit = NULL),                                                                               \
-      NUMBER("unitmm", lens.unit_mm, "a scene unit", VL_DEFAULT(1000), .unit = "mm"),                       \
-      VECTOR("focuspoint", lens.focus_point, "a point of the world in focus", VL_PARAMETER_UNSET, 0),       \
-      BLOCK("focuspixel", lens.focus_pixel, "float", "x, y: what this pixel sees is in focus"),             \
-      PARAMETER(COUNT, "blades", lens.blades, "of the aperture; 0: round"),                                 \
-      NUMBER("bladerotation", lens.rotation, "of the aperture", ANGLE),                                     \
-      NUMBER("apertureratio", lens.ratio, "width over height of the aperture (anamorphic)", VL_DEFAULT(1)), \
-      NUMBER("tiltx", lens.tilt_x, "of the plane in focus about x", ANGLE),                                 \
-      NUMBER("tilty", lens.tilt_y, "about y", ANGLE),                                                       \
-      NUMBER("lenstiltx", lens.lens_tilt_x, "of the lens about x (Scheimpflug)", ANGLE),                    \
-      NUMBER("lenstilty", lens.lens_tilt_y, "about y", ANGLE),                                              \
-      OPTIONAL("iso", lens.iso, "with fnumber and seconds: exposure as a camera has it", .unit = NULL),     \
-      OPTIONAL("seconds", lens.seconds, "see iso", .unit = "s"),                                            \
-      BLOCK("aperture", lens.aperture, "string", "circle, gaussian, square, pentagon, star or an image file")
-#define MODEL PINHOLE, LENS, OPTIONAL_ANGLE("maxangle", max_angle, "the image circle's radius; unset: all there is")
-#define COEFFICIENTS BLOCK("coefficients", distortion_coefficients, "float", "of the distortion, in OpenCV's order")
+#define PINHOLE                                      \
+  POSE, INTRINSICS, TIME, STEREO, FILM,              \
+      PARAMETER(BOOL, "vignetting", lens.vignetting, \
+                "natural vignetting: the image darkens with cos^4 of the angle from the axis")
+#define LENS                                                                                                           \
+  NUMBER("lensradius", lens_radius, "radius of the lens, scene units; 0: a pinhole", VL_FROM(0)),                      \
+      OPTIONAL("focusdistance", focus_distance, "distance to the plane in focus, scene units; unset: infinity",        \
+               .alias = "focaldistance"),                                                                              \
+      OPTIONAL("fnumber", lens.f_number, "f-number: focal length divided by the lens's diameter; replaces lensradius", \
+               .unit = NULL),                                                                                          \
+      NUMBER("unitmm", lens.unit_mm, "length of one scene unit", VL_DEFAULT(1000), .unit = "mm"),                      \
+      VECTOR("focuspoint", lens.focus_point, "a world-space point that the plane in focus contains",                   \
+             VL_PARAMETER_UNSET, 0),                                                                                   \
+      BLOCK("focuspixel", lens.focus_pixel, "float", "x, y of a pixel: the surface that it shows is in focus"),        \
+      PARAMETER(COUNT, "blades", lens.blades, "number of corners of a polygonal aperture; 0: round"),                  \
+      NUMBER("bladerotation", lens.rotation, "rotation of the aperture", ANGLE),                                       \
+      NUMBER("apertureratio", lens.ratio,                                                                              \
+             "height of the aperture divided by its width; 2 for typical anamorphic lenses", VL_DEFAULT(1)),           \
+      NUMBER("tiltx", lens.tilt_x, "tilt of the plane in focus about the camera's x axis", ANGLE),                     \
+      NUMBER("tilty", lens.tilt_y, "tilt of the plane in focus about the camera's y axis", ANGLE),                     \
+      NUMBER("lenstiltx", lens.lens_tilt_x, "tilt of the lens about the camera's x axis (Scheimpflug principle)",      \
+             ANGLE),                                                                                                   \
+      NUMBER("lenstilty", lens.lens_tilt_y, "tilt of the lens about the camera's y axis", ANGLE),                      \
+      OPTIONAL("iso", lens.iso, "sensitivity: the exposure is seconds * iso / (120 fnumber^2)", .unit = NULL),         \
+      OPTIONAL("seconds", lens.seconds, "exposure time for iso; unset: the shutter's time", .unit = "s"),              \
+      BLOCK("aperture", lens.aperture, "string",                                                                       \
+            "shape of the aperture: circle, gaussian, square, pentagon, star or an image file")
+#define MODEL                                                                                                          \
+  PINHOLE, LENS,                                                                                                       \
+      OPTIONAL_ANGLE("maxangle", max_angle,                                                                            \
+                     "angle from the axis to the edge of the image circle; unset: the projection's limit, or half of " \
+                     "a fisheye's fov")
+#define COEFFICIENTS \
+  BLOCK("coefficients", distortion_coefficients, "float", "distortion coefficients, in OpenCV's order")
 #define SHAPE(name, index, line, ...) OPTIONAL(name, shape[index], line, __VA_ARGS__)
 
 static const vlParameter pinhole_parameters[] = {PINHOLE};
-VL_KIND_ROW(pinhole, .name = "pinhole", .description = "the perspective, by eye, lookat and up")
+VL_KIND_ROW(pinhole, .name = "pinhole", .description = "a pinhole camera, posed by eye, lookat and up")
 static const vlParameter thin_lens_parameters[] = {PINHOLE, LENS};
-VL_KIND_ROW(thin_lens, .name = "thinlens", .description = "the same with a lens")
+VL_KIND_ROW(thin_lens, .name = "thinlens", .description = "a perspective camera with a thin lens")
 static const vlParameter fisheye_parameters[] = {
-    MODEL, WORD("mapping", CHOICE, projection, "from angle to radius", .choices = mappings)};
-VL_KIND_ROW(fisheye, .name = "fisheye", .description = "four mappings from angle to radius")
+    MODEL, WORD("mapping", CHOICE, projection, "map from the angle to the axis to the radius in the image",
+                .choices = mappings)};
+VL_KIND_ROW(fisheye, .name = "fisheye", .description = "a fisheye lens with one of four mappings")
 static const vlParameter opencv_parameters[] = {MODEL, COEFFICIENTS};
-VL_KIND_ROW(opencv, .name = "opencv", .description = "OpenCV's pinhole with distortion")
+VL_KIND_ROW(opencv, .name = "opencv", .description = "OpenCV's pinhole camera with lens distortion")
 static const vlParameter opencv_fisheye_parameters[] = {MODEL, COEFFICIENTS};
-VL_KIND_ROW(opencv_fisheye, .name = "opencvfisheye", .description = "OpenCV's fisheye (Kannala and Brandt)")
+VL_KIND_ROW(opencv_fisheye, .name = "opencvfisheye", .description = "OpenCV's fisheye camera (Kannala and Brandt)")
 static const vlParameter colmap_parameters[] = {
-    MODEL, WORD("model", STRING, projection, "COLMAP's name of the model", .text = "PINHOLE"),
-    BLOCK("parameters", distortion_coefficients, "float", "of the model, in COLMAP's order")};
-VL_KIND_ROW(colmap, .name = "colmap", .description = "a camera model of COLMAP's")
+    MODEL, WORD("model", STRING, projection, "name of the camera model in COLMAP", .text = "PINHOLE"),
+    BLOCK("parameters", distortion_coefficients, "float", "parameters of the camera model, in COLMAP's order")};
+VL_KIND_ROW(colmap, .name = "colmap", .description = "one of COLMAP's camera models")
 
 /* ---- one per projection; those without a name belong to a camera above ------------------------------------------- */
 
@@ -155,31 +186,39 @@ VL_KIND_ROW_EMPTY(stereographic, .description = "the camera fisheye")
 VL_KIND_ROW_EMPTY(sine, .description = "the camera fisheye")
 VL_KIND_ROW_EMPTY(optics, .description = "the camera realistic")
 static const vlParameter equirectangular_parameters[] = {
-    MODEL, BLOCK("longitude", screen_min_x, "float", "limits, degrees; -180 180"),
-    BLOCK("latitude", screen_min_y, "float", "limits, degrees; -90 90")};
-VL_KIND_ROW(equirectangular, .name = "equirectangular", .description = "longitude and latitude")
+    MODEL,
+    BLOCK("longitude", screen_min_x, "float", "smallest and largest longitude in the image, degrees; unset: -180 180"),
+    BLOCK("latitude", screen_min_y, "float", "smallest and largest latitude in the image, degrees; unset: -90 90")};
+VL_KIND_ROW(equirectangular, .name = "equirectangular", .description = "panorama: x is the longitude, y the latitude")
 static const vlParameter equal_area_parameters[] = {MODEL};
-VL_KIND_ROW(equal_area, .name = "equalarea", .description = "the sphere in a square, octahedral")
+VL_KIND_ROW(equal_area, .name = "equalarea",
+            .description = "panorama: equal-area octahedral map of the sphere to a square")
 static const vlParameter cylindrical_parameters[] = {MODEL};
-VL_KIND_ROW(cylindrical, .name = "cylindrical", .description = "longitude and the latitude's tangent")
-static const vlParameter cube_parameters[] = {MODEL,
-                                              WORD("layout", CHOICE, shape[0], "of the faces", .choices = layouts)};
-VL_KIND_ROW(cube, .name = "cube", .description = "six faces")
+VL_KIND_ROW(cylindrical, .name = "cylindrical",
+            .description = "panorama: x is the longitude, y the tangent of the latitude")
+static const vlParameter cube_parameters[] = {
+    MODEL, WORD("layout", CHOICE, shape[0], "arrangement of the six faces", .choices = layouts)};
+VL_KIND_ROW(cube, .name = "cube", .description = "panorama: the six faces of a cube")
 static const vlParameter panini_parameters[] = {
-    MODEL, SHAPE("panini", 0, "d: how far behind the cylinder's axis; unset: 1", VL_RANGE(0, 1e3))};
+    MODEL,
+    SHAPE("panini", 0, "d: distance of the projection centre from the cylinder's axis; unset: 1", VL_RANGE(0, 1e3))};
 VL_KIND_ROW(panini, .name = "panini", .description = "the general Panini projection")
-static const vlParameter fov_parameters[] = {MODEL,
-                                             SHAPE("omega", 0, "required", VL_RANGE(1e-6, 3.14), .unit = "radians")};
+static const vlParameter fov_parameters[] = {
+    MODEL, SHAPE("omega", 0, "required: the model's field-of-view parameter", VL_RANGE(1e-6, 3.14), .unit = "radians")};
 VL_KIND_ROW(fov, .name = "fov", .description = "the FOV model (Devernay and Faugeras)")
-static const vlParameter division_parameters[] = {MODEL, SHAPE("lambda", 0, "required", VL_RANGE(-1e3, 1e3))};
+static const vlParameter division_parameters[] = {
+    MODEL, SHAPE("lambda", 0, "required: the model's distortion parameter", VL_RANGE(-1e3, 1e3))};
 VL_KIND_ROW(division, .name = "division", .description = "the division model (Fitzgibbon)")
-static const vlParameter unified_parameters[] = {MODEL, COEFFICIENTS, SHAPE("xi", 0, "required", VL_RANGE(0, 1e3))};
+static const vlParameter unified_parameters[] = {
+    MODEL, COEFFICIENTS, SHAPE("xi", 0, "required: the model's mirror parameter", VL_RANGE(0, 1e3))};
 VL_KIND_ROW(unified, .name = "unified", .description = "the unified model (Mei)")
-static const vlParameter eucm_parameters[] = {MODEL, SHAPE("alpha", 0, "required", VL_RANGE(0, 1)),
-                                              SHAPE("beta", 1, "required", VL_RANGE(1e-6, 1e6))};
+static const vlParameter eucm_parameters[] = {
+    MODEL, SHAPE("alpha", 0, "required: the model's parameter alpha", VL_RANGE(0, 1)),
+    SHAPE("beta", 1, "required: the model's parameter beta", VL_RANGE(1e-6, 1e6))};
 VL_KIND_ROW(eucm, .name = "eucm", .description = "the enhanced unified model (Khomutenko)")
-static const vlParameter double_sphere_parameters[] = {MODEL, SHAPE("xi", 0, "required", VL_RANGE(-0.999, 0.999)),
-                                                       SHAPE("alpha", 1, "required", VL_RANGE(0, 1))};
+static const vlParameter double_sphere_parameters[] = {
+    MODEL, SHAPE("xi", 0, "required: the model's parameter xi", VL_RANGE(-0.999, 0.999)),
+    SHAPE("alpha", 1, "required: the model's parameter alpha", VL_RANGE(0, 1))};
 VL_KIND_ROW(double_sphere, .name = "doublesphere", .description = "the double sphere model (Usenko)")
 
 #define CAMERAS(X) VL_CAMERA_KINDS(X) VL_PROJECTION_KINDS(X)

@@ -18,7 +18,7 @@
 #define COMMON                                                                                                       \
   SIZE("xresolution", film.width, 1280, "width of the whole image"),                                                 \
       SIZE("yresolution", film.height, 720, "height of the whole image"),                                            \
-      PARAMETER(BLOCK, "filename", output, "the image file", .text = "string", .flags = VL_PARAMETER_RULE),          \
+      PARAMETER(BLOCK, "filename", output, "name of the image file", .text = "string", .flags = VL_PARAMETER_RULE),  \
       PARAMETER(BLOCK, "pixelbounds", film.crop, "x0, x1, y0, y1 of the pixels that are rendered; x1, y1 exclusive", \
                 .text = "integer", .flags = VL_PARAMETER_RULE),                                                      \
       PARAMETER(BLOCK, "cropwindow", film.crop,                                                                      \
@@ -30,13 +30,14 @@
        .flags = RULE,                                                                                                \
        .value = {35},                                                                                                \
        .unit = "mm",                                                                                                 \
-       .description = "diagonal of the sensor of realistic cameras"},                                                \
+       .description = "diagonal of the sensor; used by realistic cameras"},                                          \
       EXPOSURE("iso", 100, "sensitivity: the image is multiplied by iso / 100"),                                     \
-      EXPOSURE("exposuretime", 1, "factor on the image"), EXPOSURE("imagingratio", 1, "factor on the image"),        \
+      EXPOSURE("exposuretime", 1, "exposure time: the image is multiplied by it"),                                   \
+      EXPOSURE("imagingratio", 1, "imaging ratio: the image is multiplied by it"),                                   \
       PARAMETER(STRING, "sensor", film.sensor, "spectral response: cie1931, or a measured camera (vl_sensor_name)",  \
                 .text = NULL, .flags = VL_PARAMETER_RULE),                                                           \
       PARAMETER(DOUBLE, "whitebalance", film.white_balance,                                                          \
-                "daylight of this temperature, 1000 to 100000, becomes white; 0: no white balance",                  \
+                "colour temperature, 1000 to 100000, of the daylight that becomes white; 0: no white balance",       \
                 .flags = VL_PARAMETER_RULE, .unit = "K"),                                                            \
       PARAMETER(FLOAT, "maxcomponentvalue", film.max_component,                                                      \
                 "samples with a larger component are scaled down to it", VL_DEFAULT(INFINITY), VL_FROM(0),           \
@@ -46,25 +47,26 @@
   }
 
 static const vlParameter rgb_parameters[] = {COMMON};
-VL_KIND_ROW(rgb, .name = "rgb", .description = "an image of red, green and blue")
+VL_KIND_ROW(rgb, .name = "rgb", .description = "an RGB image")
 
 static const char *const systems[] = {"camera", "world", NULL};
 static const vlParameter gbuffer_parameters[] = {
     COMMON,
-    PARAMETER(CHOICE, "coordinatesystem", gbuffer, "space of the channels", .choices = systems,
-              .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND),
+    PARAMETER(CHOICE, "coordinatesystem", gbuffer, "coordinate system of the channels' points and normals",
+              .choices = systems, .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND),
 };
-VL_KIND_ROW(gbuffer, .name = "gbuffer", .description = "an rgb image with channels of ground truth")
+VL_KIND_ROW(gbuffer, .name = "gbuffer", .description = "an RGB image with ground truth channels")
 
 #define WAVELENGTH(name, member, usual, text) \
   PARAMETER(DOUBLE, name, member, text, VL_DEFAULT(usual), VL_RANGE(360, 830), .unit = "nm")
 static const vlParameter spectral_parameters[] = {
     COMMON,
-    PARAMETER(COUNT, "nbuckets", film.buckets, "number of buckets of wavelengths", VL_DEFAULT(16), VL_RANGE(1, 1000)),
+    PARAMETER(COUNT, "nbuckets", film.buckets, "number of intervals (buckets) of wavelength", VL_DEFAULT(16),
+              VL_RANGE(1, 1000)),
     WAVELENGTH("lambdamin", film.lambda_min, 360, "start of the first bucket"),
     WAVELENGTH("lambdamax", film.lambda_max, 830, "end of the last bucket"),
 };
-VL_KIND_ROW(spectral, .name = "spectral", .description = "an rgb image with a spectrum in buckets")
+VL_KIND_ROW(spectral, .name = "spectral", .description = "an RGB image with a spectrum, in intervals of wavelength")
 
 #define ROW(NAME, name) [VL_FILM_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_film_family, VL_FILM_KINDS, ROW, "films", "film", "Film")

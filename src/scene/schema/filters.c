@@ -4,42 +4,43 @@
 
 #define PARAMETER(name, member, text, ...) VL_PARAMETER(FLOAT, vlPixelFilter, name, member, text, __VA_ARGS__)
 #define PIXELS(...) VL_DEFAULT(__VA_ARGS__), .unit = "pixels", .flags = VL_PARAMETER_ABOVE_LOW
-#define RADII(size)                                                                \
-  PARAMETER("xradius", radius_x, "half its width", PIXELS(size), VL_RANGE(0, 64)), \
-      PARAMETER("yradius", radius_y, "half its height", PIXELS(size), VL_RANGE(0, 64))
+#define RADII(size)                                                                            \
+  PARAMETER("xradius", radius_x, "half of the filter's width", PIXELS(size), VL_RANGE(0, 64)), \
+      PARAMETER("yradius", radius_y, "half of the filter's height", PIXELS(size), VL_RANGE(0, 64))
 
 static const vlParameter box_parameters[] = {RADII(0.5)};
-VL_KIND_ROW(box, .name = "box", .traits = VL_TRAIT_PBRT_NAME, .description = "the mean over a rectangle")
+VL_KIND_ROW(box, .name = "box", .traits = VL_TRAIT_PBRT_NAME, .description = "constant weight in a rectangle")
 
 static const vlParameter triangle_parameters[] = {RADII(2)};
-VL_KIND_ROW(triangle, .name = "triangle", .traits = VL_TRAIT_PBRT_NAME, .description = "falls linearly from the centre")
+VL_KIND_ROW(triangle, .name = "triangle", .traits = VL_TRAIT_PBRT_NAME,
+            .description = "weight that falls linearly from the centre to 0 at the edge")
 
 static const vlParameter gaussian_parameters[] = {
     RADII(1.5),
-    PARAMETER("sigma", sigma, "standard deviation", PIXELS(0.5), VL_RANGE(0, 1e6)),
+    PARAMETER("sigma", sigma, "standard deviation of the Gaussian", PIXELS(0.5), VL_RANGE(0, 1e6)),
 };
 VL_KIND_ROW(gaussian, .name = "gaussian", .traits = VL_TRAIT_PBRT_NAME,
-            .description = "a Gaussian, less its value at the radius")
+            .description = "a Gaussian minus its value at the radius, so that it ends at 0")
 
 static const vlParameter mitchell_parameters[] = {
     RADII(2),
-    PARAMETER("B", b, "B of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
-    PARAMETER("C", c, "C of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
+    PARAMETER("B", b, "parameter B of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
+    PARAMETER("C", c, "parameter C of Mitchell and Netravali", VL_DEFAULT(1.0 / 3.0), VL_RANGE(-10, 10)),
 };
 VL_KIND_ROW(mitchell, .name = "mitchell", .traits = VL_TRAIT_PBRT_NAME,
             .description = "the cubic filter of Mitchell and Netravali")
 
 static const vlParameter lanczos_parameters[] = {
     RADII(4),
-    PARAMETER("tau", tau, "how many periods of the sinc the window spans", VL_DEFAULT(3), VL_RANGE(0, 1e6),
+    PARAMETER("tau", tau, "number of periods of the sinc in the window", VL_DEFAULT(3), VL_RANGE(0, 1e6),
               .flags = VL_PARAMETER_ABOVE_LOW),
 };
 VL_KIND_ROW(lanczos, .name = "sinc", .alias = "lanczos", .traits = VL_TRAIT_PBRT_NAME,
-            .description = "a sinc in a window that is a sinc, too (Lanczos)")
+            .description = "a sinc, windowed by a wider sinc (Lanczos)")
 
 static const vlParameter blackman_harris_parameters[] = {RADII(2)};
 VL_KIND_ROW(blackman_harris, .name = "blackmanharris", .alias = "blackman-harris",
-            .description = "the window of Blackman and Harris")
+            .description = "the Blackman-Harris window")
 
 #define ROW(NAME, name) [VL_PIXEL_FILTER_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_pixel_filter_family, VL_PIXEL_FILTER_KINDS, ROW, "filters", "pixel filter", "PixelFilter")

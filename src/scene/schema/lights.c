@@ -16,70 +16,78 @@
 #define INTENSITY COLOR("I", "intensity; its luminance is 1 before scale")
 #define RADIANCE COLOR("L", "radiance; its luminance is 1 before scale")
 #define SCALE PARAMETER(FLOAT, "scale", scale, "factor on the intensity or radiance", VL_DEFAULT(1))
-#define POWER                                                                                            \
-  PARAMETER(DOUBLE, "power", power, "of the whole light, times scale; in place of its own", .unit = "W", \
-            .flags = VL_PARAMETER_UNSET)
-#define ILLUMINANCE                                                                                                    \
-  PARAMETER(DOUBLE, "illuminance", illuminance, "of a surface that faces the light, times scale; in place of its own", \
+#define POWER                                                                                                    \
+  PARAMETER(DOUBLE, "power", power, "total power: the light is scaled to emit it, and then multiplied by scale", \
+            .unit = "W", .flags = VL_PARAMETER_UNSET)
+#define ILLUMINANCE                                                                                                   \
+  PARAMETER(DOUBLE, "illuminance", illuminance,                                                                       \
+            "illuminance of a surface that faces the light: the light is scaled to it, and then multiplied by scale", \
             .unit = "lx", .flags = VL_PARAMETER_UNSET)
 #define FROM(text) PARAMETER(FLOAT3, "from", from, text, .unit = NULL)
 /* The position of kinds that files place by their transform alone. */
-#define POSITION PARAMETER(FLOAT3, NULL, from, "position", .unit = NULL)
+#define POSITION PARAMETER(FLOAT3, NULL, from, "position of the light", .unit = NULL)
 #define TO(text) PARAMETER(FLOAT3, "to", to, text, VL_DEFAULT(0, 0, 1))
-#define IMAGE(line)                                                                        \
-  PARAMETER(FILE, "filename", path, line, .unit = NULL),                                   \
-      PARAMETER(BLOCK, NULL, image, "the image itself, in place of a file", .unit = NULL), \
-      PARAMETER(BLOCK, NULL, space, "colour space of an image that names none itself", .unit = NULL)
+#define IMAGE(line)                                                                          \
+  PARAMETER(FILE, "filename", path, line, .unit = NULL),                                     \
+      PARAMETER(BLOCK, NULL, image, "an image in memory, in place of a file", .unit = NULL), \
+      PARAMETER(BLOCK, NULL, space, "colour space of an image that does not name its own", .unit = NULL)
 
-static const vlParameter point_parameters[] = {INTENSITY, SCALE, POWER, FROM("position")};
-VL_KIND_ROW(point, .name = "point", .description = "a point that emits in all directions",
+static const vlParameter point_parameters[] = {INTENSITY, SCALE, POWER, FROM("position of the light")};
+VL_KIND_ROW(point, .name = "point", .description = "a point that emits equally in all directions",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA)
 
 static const vlParameter spot_parameters[] = {
     INTENSITY,
     SCALE,
     POWER,
-    FROM("position"),
-    TO("a point on the axis"),
-    PARAMETER(FLOAT, "coneangle", cone_angle, "from the axis to where the light ends", ANGLE(30 * DEGREES),
+    FROM("position of the light"),
+    TO("a point on the cone's axis, towards which the light points"),
+    PARAMETER(FLOAT, "coneangle", cone_angle, "angle between the axis and the edge of the cone", ANGLE(30 * DEGREES),
               VL_RANGE(0, 180 * DEGREES + 1e-6), .flags = VL_PARAMETER_ABOVE_LOW),
-    PARAMETER(FLOAT, "conedeltaangle", cone_delta, "width of the edge inside of the cone", ANGLE(5 * DEGREES),
-              VL_FROM(0)),
-    PARAMETER(BOOL, NULL, cone_squared, "the edge is t^2 in the cosine, as glTF's; else 3t^2 - 2t^3", VL_DEFAULT(0)),
+    PARAMETER(FLOAT, "conedeltaangle", cone_delta, "angle inside the cone's edge over which the intensity falls to 0",
+              ANGLE(5 * DEGREES), VL_FROM(0)),
+    PARAMETER(BOOL, NULL, cone_squared,
+              "true: the falloff is t^2, t linear in the cosine, as in glTF; false: 3t^2 - 2t^3, as in pbrt",
+              VL_DEFAULT(0)),
 };
 VL_KIND_ROW(spot, .name = "spot", .description = "a point that emits into a cone",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_AIMS)
 
-static const vlParameter distant_parameters[] = {RADIANCE, SCALE, ILLUMINANCE, FROM("start of the light's direction"),
-                                                 TO("end of the light's direction")};
-VL_KIND_ROW(distant, .name = "distant", .description = "light of one direction, from infinitely far away",
+static const vlParameter distant_parameters[] = {RADIANCE, SCALE, ILLUMINANCE,
+                                                 FROM("start point of the vector along which the light travels"),
+                                                 TO("end point of the vector along which the light travels")};
+VL_KIND_ROW(distant, .name = "distant", .description = "light from infinitely far away, with one direction everywhere",
             .traits = VL_LIGHT_TRAIT_FAR | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_AIMS)
 
 static const vlParameter infinite_parameters[] = {
     RADIANCE,
     SCALE,
     ILLUMINANCE,
-    IMAGE("an equal-area octahedral map of the radiance, square; in place of L"),
-    PARAMETER(BLOCK, "portal", portal, "4 corners of a rectangle in the world through which alone the light comes",
+    IMAGE("a square image, an equal-area octahedral map of the radiance; replaces L"),
+    PARAMETER(BLOCK, "portal", portal,
+              "portal: 4 world-space corners of the rectangle through which the light enters the scene",
               .text = "point3"),
 };
-VL_KIND_ROW(infinite, .name = "infinite", .description = "light from all around", .traits = VL_LIGHT_TRAIT_FAR)
+VL_KIND_ROW(infinite, .name = "infinite",
+            .description = "light from all directions, from outside the scene (an environment map)",
+            .traits = VL_LIGHT_TRAIT_FAR)
 
 static const vlParameter goniometric_parameters[] = {
     INTENSITY, SCALE, POWER, POSITION,
-    IMAGE("required: an equal-area octahedral map of the factor on the intensity, square")};
-VL_KIND_ROW(goniometric, .name = "goniometric", .description = "a point whose intensity an image gives by direction",
+    IMAGE("required: a square image, an equal-area octahedral map of factors on the intensity")};
+VL_KIND_ROW(goniometric, .name = "goniometric",
+            .description = "a point whose intensity over directions comes from an image",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_IMAGE)
 
 static const vlParameter projection_parameters[] = {
     SCALE,
     POWER,
     POSITION,
-    IMAGE("required: the image, whose values are the intensity"),
-    PARAMETER(FLOAT, "fov", fov, "angle across the image's smaller side", ANGLE(90 * DEGREES), VL_RANGE(0, 3.1415),
-              .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_BELOW_HIGH),
+    IMAGE("required: the projected image; its values are the intensity"),
+    PARAMETER(FLOAT, "fov", fov, "angle that the smaller side of the image spans", ANGLE(90 * DEGREES),
+              VL_RANGE(0, 3.1415), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_BELOW_HIGH),
 };
-VL_KIND_ROW(projection, .name = "projection", .description = "a point that throws an image along its z axis, y up",
+VL_KIND_ROW(projection, .name = "projection", .description = "a point that projects an image along its z axis, y up",
             .traits = VL_LIGHT_TRAIT_AT_POINT | VL_LIGHT_TRAIT_DELTA | VL_LIGHT_TRAIT_IMAGE)
 
 #define ROW(NAME, name) [VL_LIGHT_##NAME] = &name##_row,
@@ -144,12 +152,13 @@ static const vlParameter diffuse_parameters[] = {
               .flags = VL_PARAMETER_RGB, .role = VL_PARAMETER_ILLUMINANT),
     PARAMETER(FLOAT, "scale", scale, "factor on the radiance", VL_DEFAULT(1)),
     PARAMETER(BOOL, "twosided", two_sided, "both sides of the surface emit", VL_DEFAULT(0)),
-    PARAMETER(DOUBLE, "power", power, "of each face, times scale; in place of its own", .unit = "W",
-              .flags = VL_PARAMETER_UNSET),
-    PARAMETER(FILE, "filename", image, "image of the radiance over uv; in place of L", .text = NULL),
-    PARAMETER(TEXTURE, NULL, texture, "an image texture of the radiance over uv; in place of L", .unit = NULL),
+    PARAMETER(DOUBLE, "power", power, "power of each face: its emission is scaled to it, and then multiplied by scale",
+              .unit = "W", .flags = VL_PARAMETER_UNSET),
+    PARAMETER(FILE, "filename", image, "image file of the radiance over uv; replaces L", .text = NULL),
+    PARAMETER(TEXTURE, NULL, texture, "image texture of the radiance over uv; replaces L", .unit = NULL),
 };
-VL_KIND_ROW(diffuse, .name = "diffuse", .description = "a surface of the same radiance in all directions", .traits = 0)
+VL_KIND_ROW(diffuse, .name = "diffuse", .description = "a surface that emits the same radiance in all directions",
+            .traits = 0)
 
 #define EMISSION_KINDS(X) X(DIFFUSE, diffuse)
 #define EMISSION_ROW(NAME, name) &name##_row,

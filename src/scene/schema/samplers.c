@@ -4,11 +4,15 @@
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)
 #define SAMPLES(count) \
-  PARAMETER(COUNT, "pixelsamples", render.spp, "samples of each pixel", VL_DEFAULT(count), VL_FROM(1)), SEED
+  PARAMETER(COUNT, "pixelsamples", render.spp, "samples per pixel", VL_DEFAULT(count), VL_FROM(1)), SEED
 /* Flags of a parameter that the importer reads by a rule of its own. */
 #define RULE VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND
-#define SEED PARAMETER(COUNT, "seed", render.seed, "another number, other noise", .flags = RULE)
-#define SIDE(name) PARAMETER(COUNT, name, render.spp, "cells of the pixel along one axis", .flags = RULE, VL_FROM(1))
+#define SEED \
+  PARAMETER(COUNT, "seed", render.seed, "seed of the random numbers; another seed gives other noise", .flags = RULE)
+#define SIDE(name)                                                                                       \
+  PARAMETER(COUNT, name, render.spp,                                                                     \
+            "number of cells of a pixel along this axis; xsamples * ysamples are the samples per pixel", \
+            .flags = RULE, VL_FROM(1))
 static const char *const randomizations[] = {"none", "permutedigits", "fastowen", "owen", NULL};
 #define RANDOMIZATION                                                                                             \
   {                                                                                                               \
@@ -17,11 +21,11 @@ static const char *const randomizations[] = {"none", "permutedigits", "fastowen"
   }
 
 static const vlParameter independent_parameters[] = {SAMPLES(4)};
-VL_KIND_ROW(independent, .name = "independent", .alias = "random", .description = "random numbers",
+VL_KIND_ROW(independent, .name = "independent", .alias = "random", .description = "independent uniform random points",
             .traits = VL_SAMPLER_TRAIT_OPEN | VL_TRAIT_PBRT_NAME)
 
 static const vlParameter regular_parameters[] = {SAMPLES(16)};
-VL_KIND_ROW(regular, .name = "regular", .description = "the centres of a grid's cells")
+VL_KIND_ROW(regular, .name = "regular", .description = "the centres of the cells of a grid over the pixel")
 
 static const vlParameter stratified_parameters[] = {
     SAMPLES(16),
@@ -32,17 +36,18 @@ static const vlParameter stratified_parameters[] = {
      .type = VL_PARAMETER_BOOL,
      .value = {1},
      .flags = RULE,
-     .description = "false: the sampler regular"},
+     .description = "false: samples are at the cells' centres, as with the sampler regular"},
 };
 VL_KIND_ROW(stratified, .name = "stratified", .alias = "jittered",
-            .description = "a random point in each cell of a grid", .traits = VL_TRAIT_PBRT_NAME)
+            .description = "one random point in each cell of a grid over the pixel", .traits = VL_TRAIT_PBRT_NAME)
 
 static const vlParameter nrooks_parameters[] = {SAMPLES(16)};
-VL_KIND_ROW(nrooks, .name = "nrooks", .alias = "n-rooks", .description = "one in each row and column of a fine grid")
+VL_KIND_ROW(nrooks, .name = "nrooks", .alias = "n-rooks",
+            .description = "one point in each row and each column of an N x N grid, N samples per pixel")
 
 static const vlParameter multi_jittered_parameters[] = {SAMPLES(16)};
 VL_KIND_ROW(multi_jittered, .name = "multijittered", .alias = "multi-jittered",
-            .description = "stratified and n-rooks at once")
+            .description = "points that are stratified and n-rooks at the same time")
 
 static const vlParameter hammersley_parameters[] = {SAMPLES(16)};
 VL_KIND_ROW(hammersley, .name = "hammersley", .description = "the Hammersley point set")
@@ -52,12 +57,13 @@ VL_KIND_ROW(halton, .name = "halton", .description = "the Halton sequence",
             .traits = VL_SAMPLER_TRAIT_OPEN | VL_TRAIT_PBRT_NAME)
 
 static const vlParameter sobol_parameters[] = {SAMPLES(16), RANDOMIZATION};
-VL_KIND_ROW(sobol, .name = "sobol", .alias = "paddedsobol", .description = "Sobol points, pairs of dimensions padded",
+VL_KIND_ROW(sobol, .name = "sobol", .alias = "paddedsobol",
+            .description = "padded Sobol' points: each pair of dimensions is scrambled independently",
             .traits = VL_SAMPLER_TRAIT_OPEN | VL_TRAIT_PBRT_NAME)
 
 static const vlParameter zsobol_parameters[] = {SAMPLES(16), RANDOMIZATION};
 VL_KIND_ROW(zsobol, .name = "zsobol", .alias = "pmj02bn",
-            .description = "Sobol points along a Morton curve over the image, whose error is blue noise",
+            .description = "Sobol' points in the order of a Morton curve over the image; the error is blue noise",
             .traits = VL_SAMPLER_TRAIT_OPEN | VL_TRAIT_PBRT_NAME)
 
 #define ROW(NAME, name) [VL_SAMPLER_##NAME] = &name##_row,

@@ -16,33 +16,35 @@
     .type = VL_PARAMETER_##TYPE, .name = file_name, .member = #place, .offset = offsetof(vlShapeDef, place), \
     .flags = VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND, .description = text, __VA_ARGS__                    \
   }
-#define ALPHA PARAMETER(FLOAT_INPUT, "alpha", alpha, "coverage, 0 to 1", VL_DEFAULT(1), .flags = VL_PARAMETER_RULE)
-#define RADIUS                                                                              \
-  PARAMETER(FLOAT, "radius", radius, "radius", .unit = "length", VL_DEFAULT(1), VL_FROM(0), \
+#define ALPHA                                                                                             \
+  PARAMETER(FLOAT_INPUT, "alpha", alpha, "alpha: opacity of the surface, 0 (a hole) to 1", VL_DEFAULT(1), \
+            .flags = VL_PARAMETER_RULE)
+#define RADIUS                                                                                           \
+  PARAMETER(FLOAT, "radius", radius, "radius of the shape", .unit = "length", VL_DEFAULT(1), VL_FROM(0), \
             .flags = VL_PARAMETER_ABOVE_LOW)
-#define PHI_MAX                                                                                                    \
-  PARAMETER(FLOAT, "phimax", phi_max, "angle about z that the shape covers", .unit = "degrees", .factor = DEGREES, \
-            VL_DEFAULT(360 * DEGREES), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW)
+#define PHI_MAX                                                                                         \
+  PARAMETER(FLOAT, "phimax", phi_max, "angle about the z axis that the shape spans", .unit = "degrees", \
+            .factor = DEGREES, VL_DEFAULT(360 * DEGREES), VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW)
 
 static const vlParameter triangles_parameters[] = {
     ALPHA,
-    ARRAY("P", positions, "point3 array", "vertices"),
-    ARRAY("indices", indices, "integer array", "3 vertices per triangle; unset: one triangle"),
-    ARRAY("N", normals, "normal array", "shading normal per vertex"),
-    ARRAY("S", tangents, "vector3 array", "tangent per vertex"),
-    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
-    ARRAY(NULL, tangent_signs, NULL, "per vertex: the bitangent is sign * n x tangent"),
-    ARRAY(NULL, more_uvs, NULL, "further sets of texture coordinates, 1 to 3"),
-    ARRAY(NULL, colors, NULL, "linear RGB and coverage per vertex"),
-    ARRAY(NULL, positions_close, NULL, "vertices at times[1]"),
-    ARRAY(NULL, normals_close, NULL, "normals at times[1]"),
-    ARRAY(NULL, times, NULL, "times of the two sets of vertices, seconds"),
-    PARAMETER(BOOL, NULL, one_sided, "rays pass through back faces", VL_DEFAULT(0)),
+    ARRAY("P", positions, "point3 array", "vertex positions"),
+    ARRAY("indices", indices, "integer array", "3 vertex indices per triangle; unset: one triangle"),
+    ARRAY("N", normals, "normal array", "shading normal of each vertex"),
+    ARRAY("S", tangents, "vector3 array", "tangent of each vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates of each vertex"),
+    ARRAY(NULL, tangent_signs, NULL, "sign of each vertex; the bitangent is sign * (n x tangent)"),
+    ARRAY(NULL, more_uvs, NULL, "sets 1 to 3 of texture coordinates; uv is set 0"),
+    ARRAY(NULL, colors, NULL, "colour of each vertex: linear RGB and alpha"),
+    ARRAY(NULL, positions_close, NULL, "vertex positions at times[1]"),
+    ARRAY(NULL, normals_close, NULL, "shading normals at times[1]"),
+    ARRAY(NULL, times, NULL, "times of the two sets of vertex positions, seconds"),
+    PARAMETER(BOOL, NULL, one_sided, "true: rays pass through back faces", VL_DEFAULT(0)),
     PARAMETER(FLOAT_INPUT, "displacement", displacement,
-              "in files of plymesh: a float texture that moves the surface along its normals", .unit = "length",
-              .flags = VL_PARAMETER_RULE),
+              "only of plymesh in files: a float texture that displaces the surface along its normals",
+              .unit = "length", .flags = VL_PARAMETER_RULE),
     PARAMETER(FLOAT, "edgelength", edge_length,
-              "in files of plymesh: displaced triangles are divided until no edge is longer",
+              "only of plymesh in files: displaced triangles are subdivided until no edge is longer than this",
               .alias = "displacement.edgelength", .unit = "length", VL_DEFAULT(1), VL_FROM(0),
               .flags = VL_PARAMETER_ABOVE_LOW),
 };
@@ -51,10 +53,11 @@ VL_KIND_ROW(triangles, .name = "trianglemesh", .description = "a mesh of triangl
 
 static const vlParameter bilinear_parameters[] = {
     ALPHA,
-    ARRAY("P", positions, "point3 array", "vertices"),
-    ARRAY("indices", indices, "integer array", "4 vertices per patch: p00 p10 p01 p11; unset: one patch"),
-    ARRAY("N", normals, "normal array", "shading normal per vertex"),
-    ARRAY("uv", uvs, "point2 array", "texture coordinates per vertex"),
+    ARRAY("P", positions, "point3 array", "vertex positions"),
+    ARRAY("indices", indices, "integer array",
+          "4 vertex indices per patch, in the order p00 p10 p01 p11; unset: one patch"),
+    ARRAY("N", normals, "normal array", "shading normal of each vertex"),
+    ARRAY("uv", uvs, "point2 array", "texture coordinates of each vertex"),
 };
 VL_KIND_ROW(bilinear, .name = "bilinearmesh", .description = "a mesh of bilinear patches",
             .traits = VL_SHAPE_TRAIT_MESH | VL_SHAPE_TRAIT_EMITS)
@@ -62,11 +65,11 @@ VL_KIND_ROW(bilinear, .name = "bilinearmesh", .description = "a mesh of bilinear
 static const vlParameter sphere_parameters[] = {
     ALPHA,
     RADIUS,
-    LENGTH("zmin", z_min, "lower end along z; unset in a file: -radius", -1),
-    LENGTH("zmax", z_max, "upper end along z; unset in a file: radius", 1),
+    LENGTH("zmin", z_min, "z of the lower end; unset in a file: -radius", -1),
+    LENGTH("zmax", z_max, "z of the upper end; unset in a file: radius", 1),
     PHI_MAX,
-    ARRAY(NULL, centers, NULL, "centres of many whole spheres in one shape"),
-    ARRAY(NULL, radii, NULL, "radii of those spheres"),
+    ARRAY(NULL, centers, NULL, "centres of several whole spheres in one shape"),
+    ARRAY(NULL, radii, NULL, "radii of the spheres whose centres are given"),
 };
 VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
@@ -74,18 +77,19 @@ VL_KIND_ROW(sphere, .name = "sphere", .description = "a sphere or a part of one"
 static const vlParameter disk_parameters[] = {
     ALPHA,
     RADIUS,
-    PARAMETER(FLOAT, "innerradius", inner_radius, "radius of the hole; less than radius", .unit = "length", VL_FROM(0)),
-    LENGTH("height", height, "position along z", 0),
+    PARAMETER(FLOAT, "innerradius", inner_radius, "radius of the hole in the middle; less than radius",
+              .unit = "length", VL_FROM(0)),
+    LENGTH("height", height, "z of the disk", 0),
     PHI_MAX,
 };
-VL_KIND_ROW(disk, .name = "disk", .description = "a disk perpendicular to z, or a part of one",
+VL_KIND_ROW(disk, .name = "disk", .description = "a disk perpendicular to the z axis, or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
 
 static const vlParameter cylinder_parameters[] = {
-    ALPHA,   RADIUS, LENGTH("zmin", z_min, "lower end along z", -1), LENGTH("zmax", z_max, "upper end along z", 1),
+    ALPHA,   RADIUS, LENGTH("zmin", z_min, "z of the lower end", -1), LENGTH("zmax", z_max, "z of the upper end", 1),
     PHI_MAX,
 };
-VL_KIND_ROW(cylinder, .name = "cylinder", .description = "a cylinder about z, open, or a part of one",
+VL_KIND_ROW(cylinder, .name = "cylinder", .description = "an open cylinder about the z axis, or a part of one",
             .traits = VL_SHAPE_TRAIT_QUADRIC | VL_SHAPE_TRAIT_EMITS)
 
 static const char *const curve_kinds[] = {"flat", "cylinder", "ribbon", NULL};
@@ -94,19 +98,22 @@ static const char *const curve_bases[] = {"bezier", "bspline", NULL};
 static const vlParameter curves_parameters[] = {
     ALPHA,
     PARAMETER(CHOICE, "type", curve,
-              "flat: faces each ray; cylinder: the same with a tube's normals; ribbon: perpendicular to N",
+              "flat: turned towards each ray; cylinder: likewise, with a tube's normals; ribbon: perpendicular to N",
               .choices = curve_kinds),
-    ARRAY("P", positions, "point3 array", "control points; in the def 4 Bezier points per segment"),
-    IN_FILES(CHOICE, "basis", positions, "of the curve", .choices = curve_bases),
-    IN_FILES(COUNT, "degree", positions, "of the curve", VL_DEFAULT(3), VL_RANGE(2, 3)),
+    ARRAY("P", positions, "point3 array", "control points; vlShapeDef has 4 Bezier control points per segment"),
+    IN_FILES(CHOICE, "basis", positions, "basis of the curve's polynomials", .choices = curve_bases),
+    IN_FILES(COUNT, "degree", positions, "degree of the curve's polynomials", VL_DEFAULT(3), VL_RANGE(2, 3)),
     ARRAY(NULL, widths, NULL, "widths at both ends of each segment"),
-    IN_FILES(FLOAT, "width", widths, "width of the whole curve", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    IN_FILES(FLOAT, "width0", widths, "width at the start; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    IN_FILES(FLOAT, "width1", widths, "width at the end; unset: width", VL_DEFAULT(1), VL_FROM(0), .unit = "length"),
-    ARRAY("N", normals, "normal array", "normals of ribbons, at both ends of each segment"),
+    IN_FILES(FLOAT, "width", widths, "width of the curve, constant along it", VL_DEFAULT(1), VL_FROM(0),
+             .unit = "length"),
+    IN_FILES(FLOAT, "width0", widths, "width at the start of the curve; unset: width", VL_DEFAULT(1), VL_FROM(0),
+             .unit = "length"),
+    IN_FILES(FLOAT, "width1", widths, "width at the end of the curve; unset: width", VL_DEFAULT(1), VL_FROM(0),
+             .unit = "length"),
+    ARRAY("N", normals, "normal array", "ribbons: normals at both ends of each segment"),
     PARAMETER(COUNT, "splitdepth", split_depth,
-              "segments are split into 2^splitdepth pieces, splitdepth at most 10; affects speed only", VL_DEFAULT(3),
-              .flags = VL_PARAMETER_RULE),
+              "each segment is split into 2^splitdepth pieces, splitdepth at most 10; affects only the speed",
+              VL_DEFAULT(3), .flags = VL_PARAMETER_RULE),
 };
 VL_KIND_ROW(curves, .name = "curve", .description = "cubic curves with a width, such as hairs", .traits = 0)
 

@@ -6,7 +6,6 @@
 #include "import/import.h"
 #include "import/labels.h"
 #include "import/ply/ply.h"
-#include "import/points.h"
 #include "import/repair.h"
 
 void vl_import_plain_settings(vlScene *scene) {

@@ -2,20 +2,11 @@
 #ifndef IMPORT_PLAIN_H
 #define IMPORT_PLAIN_H
 
+#include "import/points.h"
 #include "scene/scene.h"
 
 /* Marks camera and lights as missing, so that vl_scene_complete adds them. */
 void vl_import_plain_settings(vlScene *scene);
-
-/* A mesh of triangles with the default material. All arrays are blocks of the scene's context, which the call takes,
- * also on failure. */
-typedef struct vlPlainMesh {
-  uint32_t vertices, triangles;
-  float *positions, *normals, *uvs; /* 3, 3, 2 per vertex; normals and uvs may be null */
-  float *colors;                    /* 4 per vertex, linear, or null */
-  float *face_colors;               /* 3 per triangle, linear, or null; colors go before */
-  uint32_t *indices;                /* 3 per triangle */
-} vlPlainMesh;
 
 /* Adds the mesh to the scene. Without triangles its vertices are points: discs across their normals; without normals
  * small balls. The median distance to the fourth neighbour is their radius, within 1/2000 and 1/50 of the diagonal.

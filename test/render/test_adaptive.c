@@ -1,40 +1,19 @@
 /* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is filled up to the film
  * of a plain render; a threshold that every block is below stops all at the first comparison; wrong defs. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include "velo/velo.h"
+#include "loaded.h"
 
 #define ONE(NAME, name) +1
 enum { WIDTH = 72, HEIGHT = 40, TRACERS = VL_TRACER_KINDS(ONE) };
-static vlContext *context;
-static vlWorld *world;
-static vlCamera camera;
+static Loaded loaded;
 
 static int begin(void **state) {
   (void)state;
-  vlContextDef def = vl_default_context_def();
-  vlScene *scene = NULL;
-  vlError error;
-  def.threads = 2;
-  if (vl_context_create(&def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK) return 1;
-  vlResult result = vl_scene_load(scene, VELO_SOURCE_DIR "/scenes/features/two_way.pbrt", NULL, &error);
-  vlCameraDef camera_def = vl_scene_defs(scene)->camera;
-  camera_def.width = WIDTH, camera_def.height = HEIGHT;
-  if (result == VL_OK) result = vl_camera_make(&camera_def, &camera, NULL, &error);
-  if (result == VL_OK) result = vl_world_build(scene, NULL, &world, &error);
-  vl_scene_destroy(scene);
-  return result != VL_OK;
+  return !load_world(&loaded, "features/two_way.pbrt", WIDTH, HEIGHT);
 }
 
 static int end(void **state) {
   (void)state;
-  vl_world_destroy(world);
-  vl_context_destroy(context);
+  unload_world(&loaded);
   return 0;
 }
 
@@ -42,7 +21,7 @@ static vlFilm *make_film(bool errors) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   vlFilm *film;
   def.errors = errors;
-  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  assert_int_equal(vl_film_create(loaded.context, &def, &film), VL_OK);
   return film;
 }
 
@@ -72,13 +51,13 @@ static void filled(void **state) {
     vlFilm *parts = make_film(true), *whole = make_film(true);
     vlRenderDef def = render_def((vlTracer)tracer, 0.05, 40);
     vlRenderStats stats;
-    assert_int_equal(vl_render(world, &camera, parts, &def, &stats, NULL), VL_OK);
+    assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
     adaptive += stats.mean_spp < stats.spp;
     assert_int_equal(stats.blocks, 6);
     def.noise = 0;
-    assert_int_equal(vl_render(world, &camera, parts, &def, &stats, NULL), VL_OK);
+    assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
     assert_true(stats.mean_spp == 40 && stats.noisy_blocks == 0);
-    assert_int_equal(vl_render(world, &camera, whole, &def, NULL, NULL), VL_OK);
+    assert_int_equal(vl_render(loaded.world, &loaded.camera, whole, &def, NULL, NULL), VL_OK);
     if (!same(parts, whole)) fail_msg("tracer %d: the filled film differs", tracer);
     vl_film_destroy(parts);
     vl_film_destroy(whole);
@@ -91,12 +70,12 @@ static void first_comparison(void **state) {
   vlFilm *film = make_film(true);
   vlRenderDef def = render_def(VL_TRACER_PATH, 0.9, 1000);
   vlRenderStats stats;
-  assert_int_equal(vl_render(world, &camera, film, &def, &stats, NULL), VL_OK);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, &stats, NULL), VL_OK);
   assert_int_equal(stats.spp, 16);
   assert_true(stats.mean_spp == 16 && stats.noisy_blocks == 0);
   def.noise = 1e-9;
   def.spp = 24;
-  assert_int_equal(vl_render(world, &camera, film, &def, &stats, NULL), VL_OK);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, &stats, NULL), VL_OK);
   assert_true(stats.mean_spp == 24 && stats.noisy_blocks > 0);
   vl_film_destroy(film);
 }
@@ -106,15 +85,15 @@ static void wrong_defs(void **state) {
   vlFilm *plain = make_film(false), *film = make_film(true);
   vlError error;
   vlRenderDef def = render_def(VL_TRACER_PATH, 0.1, 4);
-  assert_int_equal(vl_render(world, &camera, plain, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, plain, &def, NULL, &error), VL_ERROR_ARGUMENT);
   def.noise = -1;
-  assert_int_equal(vl_render(world, &camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
   def.noise = 0.1;
   def.first_sample = 2;
-  assert_int_equal(vl_render(world, &camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
   def.first_sample = 0;
   def.noise_scale = 0;
-  assert_int_equal(vl_render(world, &camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_render(loaded.world, &loaded.camera, film, &def, NULL, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "noise"));
   vl_film_destroy(plain);
   vl_film_destroy(film);

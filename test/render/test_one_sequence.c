@@ -1,40 +1,19 @@
 /* A sample depends on the length of the sequence, not on the planned number of samples. So a film that is continued,
  * rendered in parts, or rendered for a given time equals the film of a single render. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#include "velo/velo.h"
+#include "loaded.h"
 
 #define ONE(NAME, name) +1
 enum { SIDE = 24, TRACERS = VL_TRACER_KINDS(ONE), SAMPLERS = VL_SAMPLER_KINDS(ONE) };
-static vlContext *context;
-static vlWorld *world;
-static vlCamera camera;
+static Loaded loaded;
 
 static int begin(void **state) {
   (void)state;
-  vlContextDef def = vl_default_context_def();
-  vlScene *scene = NULL;
-  vlError error;
-  def.threads = 2;
-  if (vl_context_create(&def, &context) != VL_OK || vl_scene_create(context, &scene) != VL_OK) return 1;
-  vlResult result = vl_scene_load(scene, VELO_SOURCE_DIR "/scenes/features/two_way.pbrt", NULL, &error);
-  vlCameraDef camera_def = vl_scene_defs(scene)->camera;
-  camera_def.width = camera_def.height = SIDE;
-  if (result == VL_OK) result = vl_camera_make(&camera_def, &camera, NULL, &error);
-  if (result == VL_OK) result = vl_world_build(scene, NULL, &world, &error);
-  vl_scene_destroy(scene);
-  return result != VL_OK;
+  return !load_world(&loaded, "features/two_way.pbrt", SIDE, SIDE);
 }
 
 static int end(void **state) {
   (void)state;
-  vl_world_destroy(world);
-  vl_context_destroy(context);
+  unload_world(&loaded);
   return 0;
 }
 
@@ -42,13 +21,13 @@ static vlFilm *make_film(void) {
   vlFilmDef def = vl_default_film_def(SIDE, SIDE);
   vlFilm *film;
   def.errors = true;
-  assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
+  assert_int_equal(vl_film_create(loaded.context, &def, &film), VL_OK);
   return film;
 }
 
 static vlResult render(vlFilm *film, vlRenderDef def, uint32_t spp) {
   def.spp = spp;
-  return vl_render(world, &camera, film, &def, NULL, NULL);
+  return vl_render(loaded.world, &loaded.camera, film, &def, NULL, NULL);
 }
 
 static bool same(const vlFilm *a, const vlFilm *b) {

@@ -1,6 +1,6 @@
-/* render/render.c: `velo render`: load, build, make, render, develop, write. The first pass is written at once and
- * later ones at intervals, so that there is a progress image. A signal stops the render and keeps its whole passes.
- * Only a render that reached its samples or its time replaces an earlier image (outputs.h). */
+/* render/render.c: `velo render`: reads the options, loads the scene, builds the world, plans outputs and memory; then
+ * run.c renders one image, frames_render.c several. Only a render that reached its samples or its time replaces an
+ * earlier image (outputs.h). */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,169 +9,12 @@
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
-#include "render/again.h"
 #include "render/animate.h"
-#include "render/attributes.h"
-#include "render/channels.h"
-#include "render/continue.h"
-#include "render/denoised.h"
 #include "render/exposure.h"
-#include "render/film_keeper.h"
-#include "render/frames.h"
-#include "render/job.h"
 #include "render/lens_options.h"
-#include "render/memory.h"
 #include "render/noise.h"
-#include "render/outputs.h"
-#include "render/progress.h"
-#include "render/scene_options.h"
+#include "render/run.h"
 #include "render/shard.h"
-
-/* Seconds between two progress images. Writing them takes at most 1 / WRITE_SHARE of the time. */
-enum { WRITE_EVERY = 10, WRITE_SHARE = 20 };
-
-typedef struct Render {
-  vlContext *context;
-  vlScene *scene;
-  vlWorld *world;
-  vlFilm *film;
-  Job job;
-  Outputs outputs;
-  char default_output[600];
-  Progress progress;
-  uint32_t begun_spp;            /* samples per pixel of a film that is continued */
-  uint32_t written_spp;          /* samples per pixel of the last progress image */
-  bool part_named;               /* the paths of the NAME.part.EXT files were reported */
-  double last_write, write_cost; /* seconds: when, and for how long, a progress image was written */
-  double first_pass;             /* seconds of the first pass, one sample; 0: not done */
-  double start, render_start;    /* start of the command, start of the first pass; seconds */
-  double time_limit;             /* --time, seconds; 0: none */
-  Channels channels;             /* of the ground truth */
-  Frames frames;                 /* of a trajectory, a rig or two eyes */
-  MemoryPlan memory;
-  Denoised denoised;
-  bool many; /* whether `frames` is used */
-  SceneOpening opening;
-  Again again;
-  Continue resumed;
-  FilmKeeper keeper;
-  FilmPlan film_plan;
-  ReceiptPlan receipt;
-} Render;
-
-/* ---- files ------------------------------------------------------------------------------------------------------- */
-
-static int write_image(Render *render, OutputStage stage) {
-  vlDevelopDef develop = vl_default_develop_def();
-  develop.exposure = render->job.defs->develop.exposure;
-  vlImage *image = NULL;
-  uint32_t spp = vl_film_spp(render->film);
-  vlResult result = vl_film_develop(render->film, &develop, &image);
-  if (result == VL_OK) result = attributes_set(image, &render->job, spp);
-  const ReceiptImage which = {.samples = spp};
-  if (result == VL_OK) result = receipt_set(render->context, &render->job, &which, image);
-  if (result == VL_OK) result = channels_describe(&render->channels, image);
-  int status = STATUS_OK;
-  if (result == VL_OK)
-    status = outputs_write(render->context, &render->outputs, image, spp, stage);
-  else if (stage == OUTPUT_PROGRESS)
-    report_warning("progress image: %s", vl_result_name(result));
-  else
-    status = report_reason(result, render->outputs.paths[0], "the image and its header cannot be made");
-  vl_image_destroy(image);
-  return status;
-}
-
-static bool has_layers(const Render *render) {
-  for (int i = 0; i < render->outputs.count && channels_any(&render->channels); i++)
-    if (output_holds_layers(render->outputs.paths[i])) return true;
-  return false;
-}
-
-/* Formats the list of files: "a.exr, b.png". */
-static void list_files(const Render *render, OutputStage stage, char *text, size_t size) {
-  char part[5000];
-  text[0] = 0;
-  for (int i = 0; i < render->outputs.count; i++) {
-    size_t n = strlen(text);
-    snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
-  }
-  if (render->denoised.outputs.count && stage != OUTPUT_PROGRESS) {
-    size_t n = strlen(text);
-    snprintf(text + n, size - n, ", %s", output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
-  }
-}
-
-/* Reported once, when the render outlasts its first progress images. */
-static void name_parts(Render *render, const vlProgress *now) {
-  char files[1200];
-  if (render->part_named || now->remaining < WRITE_EVERY) return;
-  render->part_named = true;
-  list_files(render, OUTPUT_PROGRESS, files, sizeof files);
-  report_note("the image so far is in %s", files);
-}
-
-static uint64_t image_pixels(const Render *render) {
-  const uint32_t *crop = render->job.defs->film.crop;
-  return (uint64_t)(crop[2] - crop[0]) * (crop[3] - crop[1]);
-}
-
-/* Returns the smallest number of samples per pixel that suffices for every output. A denoiser needs more samples, for
- * its standard errors. */
-static uint32_t least_samples(const Render *render) {
-  return render->denoised.outputs.count ? 2 : 1;
-}
-
-/* Estimated seconds between the last pass and the end of the command. */
-static double finish_seconds(const Render *render) {
-  const vlFilmDef *film = &render->job.defs->film;
-  uint32_t spp = vl_film_spp(render->film);
-  double seconds = render->write_cost + film_keeper_seconds(&render->keeper, vl_film_memory(film));
-  if (has_layers(render))
-    seconds += channels_seconds(&render->channels, film->buckets, spp, render->first_pass, render->write_cost);
-  if (render->denoised.outputs.count)
-    seconds += denoised_seconds(image_pixels(render), spp, render->first_pass, render->write_cost,
-                                vl_context_threads(render->context));
-  return seconds;
-}
-
-/* Sets the render's time limit so that the whole command ends after --time. */
-static void limit_time(Render *render) {
-  if (!(render->time_limit > 0)) return;
-  double left = render->time_limit - (render->render_start - render->start) - finish_seconds(render);
-  render->job.defs->render.time_limit = left > 1e-3 ? left : 1e-3;
-  if (vl_film_spp(render->film) < least_samples(render)) render->job.defs->render.time_limit = 0;
-}
-
-static void write_progress_image(Render *render, const vlProgress *now) {
-  if (render->outputs.count == 0) return;
-  double start = monotonic_seconds(), wait = WRITE_SHARE * render->write_cost;
-  bool ends = now->spp_done >= now->spp_total || now->remaining <= 2 * render->write_cost;
-  if (ends && render->time_limit > 0) return; /* the final image follows soon */
-  if (now->spp_done >= now->spp_total) return;
-  if (render->written_spp && start - render->last_write < (wait > WRITE_EVERY ? wait : WRITE_EVERY)) return;
-  write_image(render, OUTPUT_PROGRESS);
-  name_parts(render, now);
-  render->written_spp = vl_film_spp(render->film);
-  render->last_write = monotonic_seconds();
-  render->write_cost = render->last_write - start;
-}
-
-static void write_checkpoint(Render *render, const vlProgress *now) {
-  if (now->spp_done < now->spp_total) film_keeper_checkpoint(&render->keeper, render->film);
-}
-
-static bool on_progress(void *user, const vlProgress *now) {
-  Render *render = user;
-  progress_show(&render->progress, now);
-  if (now->pass_done && !signals_pending()) {
-    if (!(render->first_pass > 0)) render->first_pass = now->elapsed;
-    write_checkpoint(render, now);
-    write_progress_image(render, now);
-    limit_time(render);
-  }
-  return !signals_pending();
-}
 
 /* A model becomes a .png, unless something is asked for that only .exr holds. */
 static const char *default_suffix(const Render *render, const Arguments *arguments) {
@@ -217,14 +60,6 @@ static void warn_of_alpha(const Render *render) {
   for (int i = 0; i < render->outputs.count && render->outputs.transparent; i++)
     if (!output_holds_alpha(render->outputs.paths[i]))
       report_warning("--transparent: %s cannot hold alpha, only .png and .exr can", render->outputs.paths[i]);
-}
-
-static int render_channels(Render *render) {
-  if (!has_layers(render)) return STATUS_OK;
-  Channels *channels = &render->channels;
-  int status = channels_render(channels, render->context, render->world, &render->job, render->film);
-  for (int k = 0; k < CHANNEL_LAYERS; k++) render->outputs.layers[k] = channels->layers[k];
-  return status;
 }
 
 /* ---- steps: each returns -1 to go on, else the exit code --------------------------------------------------------- */
@@ -390,7 +225,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = channels_load(&render->channels, render->context, &render->job);
   if (status >= 0) return status;
   render->job.defs->film.errors = ((render->channels.bits & VL_CHANNEL_ERROR || render->channels.gbuffer) &&
-                                   (has_layers(render) || render->film_plan.path)) ||
+                                   (run_has_layers(render) || render->film_plan.path)) ||
                                   render->denoised.outputs.count;
   noise_apply(arguments, &render->outputs, render->job.defs);
   if (render->resumed.file && job_sequence_is_planned(&render->job, arguments))
@@ -426,7 +261,7 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
   uint64_t most = limit->given ? (uint64_t)limit->integer : 0;
   memory_plan(&render->memory, render->context, render->world, &render->job, &render->outputs, &render->channels,
               render->many ? &render->frames : NULL);
-  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(image_pixels(render)));
+  if (render->denoised.outputs.count) memory_add(&render->memory, "denoising", denoised_memory(run_pixels(render)));
   if (report_is_json()) memory_report_json(&render->memory, most);
   if (arguments->values[RENDER_VERBOSE].given) {
     char list[400], total[32];
@@ -435,157 +270,6 @@ static int reckon_memory(Render *render, const Arguments *arguments) {
     report_note("memory: %sB are needed: %s", total, list);
   }
   return memory_check(&render->memory, most);
-}
-
-static void report_not_finite(const vlRenderStats *stats) {
-  if (stats->not_finite)
-    report_warning("%llu samples were not finite or negative and were left out; the first one at pixel %u, %u",
-                   (unsigned long long)stats->not_finite, stats->worst_x, stats->worst_y);
-}
-
-static void report_memory(const Render *render) {
-  char peak[32], needed[32];
-  format_count(peak, sizeof peak, (double)memory_peak());
-  format_count(needed, sizeof needed, (double)render->memory.total);
-  if (report_is_verbose()) report_note("memory: %sB at most, %sB were reckoned", peak, needed);
-}
-
-static void report_result(const Render *render, const vlRenderStats *stats, OutputStage stage, int status) {
-  const Outputs *outputs = &render->outputs;
-  uint64_t rays = stats->camera_rays + stats->bounce_rays + stats->shadow_rays;
-  uint32_t spp = vl_film_spp(render->film);
-  if (report_is_json()) {
-    char part[5000];
-    Json json = report_json_begin("result");
-    json_integer(&json, "status", status);
-    json_bool(&json, "finished", stage == OUTPUT_FINISHED);
-    json_integer(&json, "spp", spp);
-    json_number(&json, "mean_spp", stats->mean_spp);
-    json_integer(&json, "noisy_blocks", stats->noisy_blocks);
-    json_number(&json, "seconds", stats->seconds);
-    json_integer(&json, "paths", (int64_t)stats->paths);
-    json_integer(&json, "camera_rays", (int64_t)stats->camera_rays);
-    json_integer(&json, "bounce_rays", (int64_t)stats->bounce_rays);
-    json_integer(&json, "shadow_rays", (int64_t)stats->shadow_rays);
-    json_integer(&json, "not_finite", (int64_t)stats->not_finite);
-    json_integer(&json, "memory_needed", (int64_t)render->memory.total);
-    json_integer(&json, "memory_peak", (int64_t)memory_peak());
-    json_begin(&json, "files", '[');
-    for (int i = 0; i < outputs->count && spp; i++)
-      json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
-    if (render->denoised.outputs.count && spp)
-      json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
-    if (render->film_plan.path && spp) json_text(&json, NULL, render->film_plan.path);
-    json_end(&json, ']');
-    report_json_end(&json);
-    return;
-  }
-  char time[32], speed[32], ray_count[32], files[1200];
-  format_seconds(time, sizeof time, stats->seconds);
-  format_count(speed, sizeof speed, stats->seconds > 0 ? (double)stats->paths / stats->seconds : 0);
-  format_count(ray_count, sizeof ray_count, (double)rays);
-  list_files(render, stage, files, sizeof files);
-  report_note("%u spp in %s, %s paths/s, %s rays; wrote %s%s%s", spp, time, speed, ray_count, files,
-              *files && render->film_plan.path ? ", " : "", render->film_plan.path ? render->film_plan.path : "");
-  report_memory(render);
-}
-
-/* The first pass, with --denoise the second one too, is always completed. */
-static void report_late(const Render *render, uint32_t spp) {
-  double elapsed = monotonic_seconds() - render->start;
-  char wanted[32], taken[32];
-  if (!(render->time_limit > 0) || spp > render->begun_spp + least_samples(render) ||
-      elapsed < 1.05 * render->time_limit || signals_pending())
-    return;
-  format_seconds(wanted, sizeof wanted, render->time_limit);
-  format_seconds(taken, sizeof taken, elapsed);
-  report_warning("%u spp and writing it took %s, --time was %s", spp - render->begun_spp, taken, wanted);
-}
-
-/* Writes the final image with its ground truth. A stopped render is written before its ground truth is rendered, which
- * another signal may interrupt. *stage: the stage of the last write. */
-static int write_last(Render *render, OutputStage *stage) {
-  int written = STATUS_OK;
-  if (*stage == OUTPUT_STOPPED && has_layers(render)) written = write_image(render, *stage);
-  int status = render_channels(render);
-  if (status > 128) {
-    *stage = OUTPUT_STOPPED;
-    memset(render->outputs.layers, 0, sizeof render->outputs.layers);
-    report_note("interrupted before the ground truth was done: the image has none");
-  } else if (status != STATUS_OK) {
-    return status;
-  }
-  for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++) {
-    char part[5000];
-    if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
-      written = channels_write_ids(&render->channels, NULL, render->world,
-                                   output_written(&render->outputs, i, *stage, part, sizeof part));
-  }
-  int code = write_image(render, *stage);
-  render->denoised.outputs.meter = render->outputs.meter;
-  if (code == STATUS_OK && status == STATUS_OK)
-    code = denoised_write(&render->denoised, render->context, render->world, &render->job, render->film, *stage);
-  return code != STATUS_OK ? code : written != STATUS_OK ? written : status;
-}
-
-/* Makes the film, or reads the film to continue. */
-static int open_film(Render *render) {
-  const char *from = render->resumed.path;
-  int status = film_keeper_start(&render->keeper, &render->film_plan, render->film_plan.path, render->context,
-                                 &render->job, NULL);
-  if (status < 0 && from)
-    status = continue_film(from, render->receipt.arguments, render->keeper.receipt, render->context, render->job.defs,
-                           &render->film);
-  if (status >= 0 || render->film) return status;
-  vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
-  return result == VL_OK ? -1 : job_no_film(&render->job, result);
-}
-
-/* The receipt of a render that ended at its time limit states the samples that it reached. */
-static int plan_reached(Render *render, uint32_t end) {
-  if (!(render->time_limit > 0) || end >= render->job.defs->render.spp) return -1;
-  render->job.defs->render.spp = render->film_plan.whole.render.spp = end;
-  return film_keeper_describe(&render->keeper, &render->film_plan, render->context, &render->job, NULL);
-}
-
-static int render_and_write(Render *render) {
-  Job *job = &render->job;
-  vlError error = {0};
-  vlRenderStats stats = {0};
-  int opened = open_film(render);
-  if (opened >= 0) return opened;
-  render->time_limit = job->defs->render.time_limit;
-  render->begun_spp = vl_film_spp(render->film);
-  render->render_start = monotonic_seconds();
-  progress_start(&render->progress, render->time_limit);
-  limit_time(render);
-  job->defs->render.progress = on_progress;
-  job->defs->render.progress_user = render;
-  signals_remember();
-  vlResult result = vl_render(render->world, &job->camera, render->film, &job->defs->render, &stats, &error);
-  report_status_line(NULL);
-  report_not_finite(&stats);
-  noise_report(&job->defs->render, &stats);
-  if (result != VL_OK && result != VL_CANCELLED) return report_error(&error, result, job->path);
-
-  uint32_t spp = vl_film_spp(render->film);
-  OutputStage stage = result == VL_OK ? OUTPUT_FINISHED : OUTPUT_STOPPED;
-  if (!spp) {
-    report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
-    return 128 + signals_pending();
-  }
-  if (stage == OUTPUT_STOPPED) report_note("interrupted after %u of %u spp", spp, job->defs->render.spp);
-  if (stage == OUTPUT_FINISHED && (opened = plan_reached(render, job->defs->render.first_sample + spp)) >= 0)
-    return opened;
-  int kept = film_keeper_finish(&render->keeper, render->film);
-  /* The image's receipt states the samples that its blocks needed at most; the film's states the limit. */
-  if (job->defs->render.noise > 0) job->defs->render.spp = spp;
-  int status = render->outputs.count ? write_last(render, &stage) : STATUS_OK;
-  if (kept != STATUS_OK && (status == STATUS_OK || status > 128)) status = kept;
-  if (status == STATUS_OK) report_late(render, spp);
-  if (signals_pending() && status == STATUS_OK) status = 128 + signals_pending();
-  if (status == STATUS_OK || status > 128) report_result(render, &stats, stage, status);
-  return status;
 }
 
 /* With --again: whether the image will be the same. */
@@ -632,7 +316,7 @@ static int render_once(const Command *command, const Arguments *arguments, float
   }
   if (status < 0 && render.many)
     status = frames_render(&render.frames, render.context, render.world, &render.outputs, &render.channels);
-  if (status < 0) status = render_and_write(&render);
+  if (status < 0) status = run_image(&render);
   frames_free(&render.frames);
   channels_free(&render.channels);
   film_keeper_free(&render.keeper);

@@ -1,0 +1,53 @@
+/* render/run.h: the state of `velo render`, and its last step: the render of one image and its files. */
+#ifndef APP_RENDER_RUN_H
+#define APP_RENDER_RUN_H
+
+#include "render/again.h"
+#include "render/channels.h"
+#include "render/continue.h"
+#include "render/denoised.h"
+#include "render/film_keeper.h"
+#include "render/frames.h"
+#include "render/job.h"
+#include "render/memory.h"
+#include "render/outputs.h"
+#include "render/progress.h"
+#include "render/scene_options.h"
+
+typedef struct Render {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  vlFilm *film;
+  Job job;
+  Outputs outputs;
+  char default_output[600];
+  Progress progress;
+  uint32_t begun_spp;            /* samples per pixel of a film that is continued */
+  uint32_t written_spp;          /* samples per pixel of the last progress image */
+  bool part_named;               /* the paths of the NAME.part.EXT files were reported */
+  double last_write, write_cost; /* seconds: when, and for how long, a progress image was written */
+  double first_pass;             /* seconds of the first pass, one sample; 0: not done */
+  double start, render_start;    /* start of the command, start of the first pass; seconds */
+  double time_limit;             /* --time, seconds; 0: none */
+  Channels channels;             /* of the ground truth */
+  Frames frames;                 /* of a trajectory, a rig or two eyes */
+  MemoryPlan memory;
+  Denoised denoised;
+  bool many; /* whether `frames` is used */
+  SceneOpening opening;
+  Again again;
+  Continue resumed;
+  FilmKeeper keeper;
+  FilmPlan film_plan;
+  ReceiptPlan receipt;
+} Render;
+
+/* Whether an output holds ground truth. */
+bool run_has_layers(const Render *render);
+/* The number of pixels that are rendered. */
+uint64_t run_pixels(const Render *render);
+/* Renders the image, writes its files and reports the result. Returns the exit code. */
+int run_image(Render *render);
+
+#endif

@@ -1,5 +1,5 @@
-/* test/camera/test_lens.c: the lens of a camera: areas of aperture shapes, the tilted plane of focus, f-number, focus
- * on a point, exposure, vignetting, clipping planes, rejected values. */
+/* test/camera/test_lens.c: the lens of a camera: areas of aperture shapes, the tilted plane of focus, the Scheimpflug
+ * principle, f-number, focus on a point, exposure, vignetting, clipping planes, rejected values. */
 #include "camera/context.h"
 
 #include "camera/lens.h"
@@ -190,6 +190,118 @@ static void tilted_plane_is_sharp(void **state) {
       double size = 1 + fabs(along);
       assert_true(fabs(r.ox + t * r.dx - p[0]) < 1e-12 * size && fabs(r.oy + t * r.dy - p[1]) < 1e-12 * size);
     }
+  }
+}
+
+/* A thin lens of focal length f through the origin, its axis along the unit vector n: the image of p. Lines stay lines,
+ * so the images of two points of a ray are two points of its other half. */
+static void tilted_image(double f, const double n[3], const double p[3], double image[3]) {
+  double scale = f / (f - (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
+  for (int a = 0; a < 3; a++) image[a] = scale * p[a];
+}
+
+/* Where the ray through p and q meets the film, z = -d, behind that lens, as a slope of the ray through its middle. */
+static void on_film(double f, const double n[3], double d, const double p[3], const double q[3], double slope[2]) {
+  double a[3], b[3];
+  tilted_image(f, n, p, a);
+  tilted_image(f, n, q, b);
+  double t = (-d - a[2]) / (b[2] - a[2]);
+  for (int k = 0; k < 2; k++) slope[k] = -(a[k] + t * (b[k] - a[k])) / d;
+}
+
+static double determinant(const double m[3][3]) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+/* The plane p.a = 1 through three points, by Cramer's rule. */
+static void plane_through(const double points[3][3], double a[3]) {
+  for (int k = 0; k < 3; k++) {
+    double m[3][3];
+    memcpy(m, points, sizeof m);
+    for (int i = 0; i < 3; i++) m[i][k] = 1;
+    a[k] = determinant(m) / determinant(points);
+  }
+}
+
+enum { HINGES = 200, SPREAD = 32 };
+
+static vlCamera tilted_lens(uint64_t *seed, double *focus, double n[3]) {
+  vlCameraDef def = vl_default_camera_def(600, 400);
+  def.focal_mm = 50, def.sensor_width_mm = 36, def.lens.f_number = 2, def.lens.unit_mm = 10;
+  def.focus_distance = *focus = next_between(seed, 8, 40);
+  def.lens.lens_tilt_x = next_between(seed, 0.02, 0.2), def.lens.lens_tilt_y = next_between(seed, -0.2, 0.2);
+  n[0] = sin(def.lens.lens_tilt_y), n[1] = sin(def.lens.lens_tilt_x);
+  n[2] = sqrt(1 - n[0] * n[0] - n[1] * n[1]);
+  return make_or_fail(&def);
+}
+
+/* The Scheimpflug principle, by Gaussian optics of a lens that is really tilted: all rays of a film point meet, the
+ * points where they meet lie in a plane, and this plane, the lens's and the film's share one line. */
+static void three_planes_share_a_line(void **state) {
+  (void)state;
+  uint64_t seed = 31;
+  for (int k = 0; k < HINGES; k++) {
+    double focus, n[3], f = 5, meet[3][3], plane[3], blur = 0;
+    vlCamera camera = tilted_lens(&seed, &focus, n);
+    double d = 1 / (n[2] / f - 1 / focus);
+    vlCameraCompiled c;
+    vl_camera_compile(&camera, &c);
+    for (int point = 0; point < 3; point++) {
+      double angle = 2.1 * point + 0.3;
+      vlCameraLocal pin = {0, 0, 0.3 * cos(angle), 0.25 * sin(angle), 1};
+      vlCameraLocal one = vl_lens_refract(&c, pin, (vlLensPoint){-1, 0}),
+                    two = vl_lens_refract(&c, pin, (vlLensPoint){1, 0});
+      double t = (two.ox - one.ox) / (one.dx / one.dz - two.dx / two.dz); /* the depth at which both have the same x */
+      meet[point][0] = one.ox + t * one.dx / one.dz, meet[point][1] = one.oy + t * one.dy / one.dz, meet[point][2] = t;
+      for (int i = 0; i < SPREAD; i++) {
+        vlLensPoint l = {(float)cos(i), (float)sin(i)};
+        vlCameraLocal r = vl_lens_refract(&c, pin, l);
+        double p[3] = {r.ox, r.oy, 0}, q[3] = {r.ox + 3 * r.dx / r.dz, r.oy + 3 * r.dy / r.dz, 3}, slope[2];
+        on_film(f, n, d, p, q, slope);
+        blur = fmax(blur, hypot(slope[0] - pin.dx, slope[1] - pin.dy) * camera.fx);
+      }
+    }
+    if (!(blur < 1e-9)) fail_msg("lens %d: %g pixels", k, blur);
+    plane_through(meet, plane);
+    /* the point of the line that is nearest to the axis, and the line's direction */
+    double away = d * n[2] / (n[0] * n[0] + n[1] * n[1]),
+           at = plane[0] * n[0] * away + plane[1] * n[1] * away - plane[2] * d;
+    double along = (plane[0] * n[1] - plane[1] * n[0]) / hypot(n[0], n[1]);
+    if (!(fabs(at - 1) < 1e-9 && fabs(along) < 1e-9)) fail_msg("lens %d: %g, %g", k, at - 1, along);
+    /* the hinge rule: at z = 0 the plane is f / sin t away */
+    assert_true(fabs(hypot(plane[0], plane[1]) * f - hypot(n[0], n[1])) < 1e-9);
+  }
+}
+
+/* The circle of confusion of a point q: its edge is where the tilted lens's ray through the aperture's edge meets the
+ * film. Its radius is fx R |q.a - 1| / z, but for the factor 1 / (1 - o.a) of an aperture that is not in the lens's
+ * plane. It is nothing in the plane in focus. */
+static void blur_off_the_tilted_plane(void **state) {
+  (void)state;
+  uint64_t seed = 32;
+  for (int k = 0; k < HINGES; k++) {
+    double focus, n[3], f = 5, largest = 0;
+    vlCamera camera = tilted_lens(&seed, &focus, n);
+    double d = 1 / (n[2] / f - 1 / focus), a[3] = {n[0] / f, n[1] / f, 1 / focus};
+    vlCameraCompiled c;
+    vl_camera_compile(&camera, &c);
+    double qx = next_between(&seed, -0.3, 0.3), qy = next_between(&seed, -0.2, 0.2);
+    double sharp = 1 / (a[0] * qx + a[1] * qy + a[2]), z = k % 4 == 0 ? sharp : sharp * next_between(&seed, 0.5, 2);
+    double q[3] = {qx * z, qy * z, z}, off = z / sharp - 1;
+    for (int i = 0; i < SPREAD; i++) {
+      vlLensPoint l = {(float)cos(i), (float)sin(i)};
+      double o[3] = {camera.lens_radius * l.x, camera.lens_radius * l.y, 0}, slope[2];
+      on_film(f, n, d, o, q, slope);
+      vlCameraLocal r = vl_lens_refract(&c, (vlCameraLocal){0, 0, slope[0], slope[1], 1}, l);
+      double miss = hypot(r.ox + z * r.dx / r.dz - q[0], r.oy + z * r.dy / r.dz - q[1]);
+      if (!(miss < 1e-10 * z)) fail_msg("lens %d: misses by %g of %g", k, miss, z);
+      double radius = hypot(slope[0] - qx, slope[1] - qy) * camera.fx;
+      double expected = camera.fx * camera.lens_radius * fabs(off) / z / (1 - a[0] * o[0] - a[1] * o[1]);
+      assert_true(fabs(radius - expected) < 1e-6 + 1e-7 * expected); /* l is a float */
+      largest = fmax(largest, radius);
+    }
+    assert_true(k % 4 == 0 ? largest < 1e-6 : largest > 20 * fabs(off) / z);
   }
 }
 
@@ -414,6 +526,8 @@ int main(void) {
       cmocka_unit_test(named_images),
       cmocka_unit_test(shapes_are_turned_and_squeezed),
       cmocka_unit_test(tilted_plane_is_sharp),
+      cmocka_unit_test(three_planes_share_a_line),
+      cmocka_unit_test(blur_off_the_tilted_plane),
       cmocka_unit_test(batches_hold_the_lens),
       cmocka_unit_test(f_number_and_focus_point),
       cmocka_unit_test(exposure_by_the_cameras_numbers),

@@ -1,5 +1,6 @@
-/* test/camera/test_optics.c: lenses of many elements: focal length and focus against the equations, rays against an
- * independent trace by Snell's law, brightness against the pupil's area, projection and unprojection, files. */
+/* test/camera/test_optics.c: lenses of many elements: focal length, focus and magnification against the equations, rays
+ * against an independent trace by Snell's law, brightness against the pupil's area, projection and unprojection, files.
+ */
 #include "camera/context.h"
 
 #include <stdio.h>
@@ -273,6 +274,54 @@ static void both_ways(void **state) {
   }
 }
 
+/* Paraxial rays (height, angle) through the surfaces from the scene's side, written apart from the library; metres.
+ * Focal length, and the principal planes' z, the first surface at 0. */
+static double paraxial(const vlOptics *o, double *front, double *rear) {
+  double m[2][2] = {{1, 0}, {0, 1}}, before = 1, length = 0;
+  for (uint32_t i = 0; i < o->count; i++) {
+    const vlLensSurface *g = &o->given[i];
+    double behind = g->radius == 0 ? before : g->ior == 0 ? 1 : g->ior;
+    double power = g->radius == 0 ? 0 : (behind - before) / (g->radius / 1000);
+    double step = i + 1 < o->count ? g->thickness / 1000 : 0;
+    for (int k = 0; k < 2; k++) {
+      m[1][k] -= power * m[0][k]; /* index times angle */
+      m[0][k] += step / behind * m[1][k];
+    }
+    before = behind, length += step;
+  }
+  double f = -1 / m[1][0];
+  *front = f * (1 - m[1][1]), *rear = length - f * (1 - m[0][0]);
+  return f;
+}
+
+/* Chief rays near the axis have the magnification f / (s - f) of the thin lens equation, s from the front principal
+ * plane; further out, the difference is the lens's distortion. */
+static void magnification_is_the_thin_lens_equation(void **state) {
+  (void)state;
+  const double distances[] = {0.4, 1, 3, 50};
+  for (int k = 0; k < 8; k++) {
+    double distance = distances[k / 2], front, rear;
+    vlOptics *o = load(k % 2 ? double_gauss : single, 4, distance, NULL);
+    vlCamera camera = camera_with(o, 720, 480);
+    double f = paraxial(o, &front, &rear);
+    assert_true(fabs(o->info.focal_length - f) < 1e-9);
+    double object = distance - o->info.length + front, pitch = 0.035 / hypot(720, 480), got[3];
+    /* the film is in focus: 1 / object + 1 / image = 1 / f */
+    double image = o->info.length - rear;
+    if (!(fabs(1 / object + 1 / image - 1 / f) < 1e-6)) fail_msg("%g: not in focus", distance);
+    const double fields[] = {1e-5, 0.06, 0.12}; /* height / distance */
+    for (int i = 0; i < 3; i++) {
+      double height = distance * fields[i], point[3] = {1 + height, 2, 3 - distance}, pixel[2];
+      assert_true(vl_camera_project(&camera, point, pixel, NULL));
+      got[i] = (pixel[0] - 360) * pitch / height * (object - f) / f - 1;
+    }
+    if (!(fabs(got[0]) < 1e-8)) fail_msg("%g: magnification off by %g", distance, got[0]);
+    assert_true(fabs(got[2]) < (k % 2 ? 0.003 : 0.01));
+    assert_true(fabs(got[2] / got[1] - 4) < 0.2); /* third order: it grows as the square of the height */
+    vl_optics_destroy(o);
+  }
+}
+
 static void image_in_the_stop(void **state) {
   (void)state;
   vlAperture *square = NULL;
@@ -437,6 +486,7 @@ int main(void) {
       cmocka_unit_test(focuses_where_it_says),
       cmocka_unit_test(brightness),
       cmocka_unit_test(both_ways),
+      cmocka_unit_test(magnification_is_the_thin_lens_equation),
       cmocka_unit_test(image_in_the_stop),
       cmocka_unit_test(corners_of_the_opening_count),
       cmocka_unit_test(irradiance_in_the_middle),

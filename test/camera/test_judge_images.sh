@@ -10,4 +10,6 @@ fi
 export PYTHONDONTWRITEBYTECODE=1
 check "images are judged" $python "$VELO_SOURCE_DIR/test/camera/judge_images.py" "$VELO" "$work"
 printf '%s\n' "$out"
+check "blur is judged" $python "$VELO_SOURCE_DIR/test/camera/judge_blur.py" "$VELO" "$work"
+printf '%s\n' "$out"
 finish

@@ -134,8 +134,12 @@ json_int_t vl_gltf_put_material(vlExport *x, const vlShapeDef *d, bool *colors, 
 bool vl_gltf_is_hidden(const vlExport *x, const vlShapeDef *d);
 /* A textureInfo object for an image; null: none. */
 json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear);
+/* Writes an image file, of which these are the bytes. Returns its index in "images"; -1 after an error. */
+json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const char *suffix);
 bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror);
 bool vl_gltf_put_lights(vlExport *x, json_t *nodes);
+/* Gives the scene the sum of the infinite lights. mirror: the nodes have a parent that mirrors z. */
+bool vl_gltf_put_environment(vlExport *x, json_t *scene, bool mirror);
 
 bool vl_export_pbrt(vlExport *x);
 

@@ -199,7 +199,7 @@ for what in 'animations: one moment of them (1)' 'variants of materials: the cho
 done
 expect_code 3 rough_strict "$VELO" scene convert rough.gltf strict.glb --strict
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
-expect_text pbrt_gltf_tells 'not held: light from all around: left out (1)'
+expect_text pbrt_gltf_tells 'not held: bilinear patches: as two triangles each (1)'
 check pbrt_glb "$VELO" scene convert scene.pbrt scene.glb
 expect_code 3 strict "$VELO" scene convert scene.pbrt strict.glb --strict
 check strict_wrote_nothing test ! -e strict.glb
@@ -209,6 +209,67 @@ check gltf_glb_near "$VELO" image diff c.exr d.exr --threshold mse=0.01
 check gltf_gltf "$VELO" scene convert scene.gltf second.gltf
 check gltf_e "$VELO" render second.gltf --resolution 64x48 --spp 4 -o e.exr --quiet
 check gltf_same "$VELO" image diff d.exr e.exr --threshold maxabs=1e-5
+# An environment, its image turned about an odd axis and beside a uniform one, in a world that mirrors and in one that does
+# not: the image's background and its light are the same. A white environment has an irradiance of pi in every direction.
+python3 - <<'END'
+import struct
+n = 64
+with open("sky.pfm", "wb") as file:
+    file.write(b"PF\n%d %d\n-1\n" % (n, n))
+    for y in range(n):
+        for x in range(n):
+            sun = 600 if 40 <= x < 43 and 44 <= y < 47 else 0
+            file.write(struct.pack("<3f", 0.2 + x / n + sun, 0.3 + y / n / 2 + sun, 0.8 - x * y / n / n / 2 + sun / 2))
+END
+for mirror in 1 -1; do
+  cat >sky.pbrt <<END
+Scale $mirror 1 1
+LookAt 1 1.6 4  0 0.6 0  0 1 0
+Camera "perspective" "float fov" 70
+Film "rgb" "integer xresolution" 48 "integer yresolution" 36
+Sampler "sobol" "integer pixelsamples" 256
+WorldBegin
+AttributeBegin
+Rotate 37 0.2 1 0.3
+Rotate -90 1 0 0
+LightSource "infinite" "string filename" "sky.pfm" "float scale" 0.7
+AttributeEnd
+LightSource "infinite" "rgb L" [ 0.1 0.05 0.2 ]
+Material "diffuse" "rgb reflectance" [ 0.7 0.5 0.3 ]
+Shape "trianglemesh" "point3 P" [ -2 0 -2  2 0 -2  2 0 2  -2 0 2 ] "integer indices" [ 0 1 2 0 2 3 ]
+END
+  check "sky$mirror" "$VELO" scene convert sky.pbrt "sky$mirror.gltf"
+  expect_text "sky${mirror}_sum" 'several environments: their sum is one'
+  check "sky${mirror}_a" "$VELO" render sky.pbrt -o a.pfm --color rgb --quiet
+  check "sky${mirror}_b" "$VELO" render "sky$mirror.gltf" -o b.pfm --color rgb --spp 256 --resolution 48x36 --quiet
+  check "sky${mirror}_near" python3 - <<'END'
+import struct
+def means(name):
+    data = open(name, "rb").read()
+    v = struct.unpack("<%df" % (3 * 48 * 36), data[-12 * 48 * 36:])
+    return [sum(v[3 * (48 * y + x) + c] for y in range(b, b + 6) for x in range(a, a + 6)) / 36
+            for b in range(0, 36, 6) for a in range(0, 48, 6) for c in range(3)]
+off = sorted(abs(b / a - 1) for a, b in zip(means("a.pfm"), means("b.pfm")))
+print("mean %.4f, most %.4f" % (sum(off) / len(off), off[-1]))
+assert sum(off) / len(off) < 0.01 and off[-1] < 0.05, off[-9:]
+END
+done
+cat >white.pbrt <<'END'
+Camera "perspective"
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+Shape "trianglemesh" "point3 P" [ 0 0 2  1 0 2  0 1 2 ]
+END
+check white "$VELO" scene convert white.pbrt white.glb
+check white_irradiance python3 - <<'END'
+import json, math, struct
+data = open("white.glb", "rb").read()
+light = json.loads(data[20:20 + struct.unpack("<I", data[12:16])[0]])["extensions"]["EXT_lights_image_based"]["lights"][0]
+k = light["irradianceCoefficients"]
+assert len(k) == 9 and light["specularImageSize"] == 16 and light["intensity"] == 1, light
+assert all(abs(v * math.sqrt(1 / (4 * math.pi)) - math.pi) < 0.01 for v in k[0]), k[0]
+assert all(abs(v) < 0.01 for row in k[1:] for v in row), k
+END
 cat >t.mtl <<'END'
 newmtl a
 Kd 0.7 0.2 0.1
@@ -226,7 +287,7 @@ check obj_glb "$VELO" scene convert t.obj t.glb
 check obj_g "$VELO" render t.glb --no-ground --resolution 32x32 --spp 4 -o g.exr --quiet
 check obj_near "$VELO" image diff f.exr g.exr --threshold maxabs=1e-3
 expect_code 2 unknown_kind "$VELO" scene convert t.obj t.stl
-written="scene.gltf scene.glb second.gltf t.glb bare.glb bare.gltf rough.glb"
+written="sky1.gltf white.glb scene.gltf scene.glb second.gltf t.glb bare.glb bare.gltf rough.glb"
 if [ -d "$shared/scenes/gltf" ]; then
   for model in Box BoxTextured SimpleInstancing SpecularTest TextureTransformTest VertexColorTest Duck Cameras; do
     for file in "$shared/scenes/gltf/$model/$model".gl*; do

@@ -302,6 +302,7 @@ static bool put_scene(vlExport *x) {
   json_decref(roots);
   vl_free(x->context, mesh_of);
   json_object_set_new(x->root, "scene", json_integer(0));
+  fine = fine && vl_gltf_put_environment(x, scene, mirror);
   vl_gltf_put(x, "scenes", scene);
   return fine;
 }

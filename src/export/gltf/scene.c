@@ -110,9 +110,9 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
   for (size_t i = 0; i < x->scene->lights.count; i++) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
+    if (d->kind == VL_LIGHT_INFINITE) continue; /* vl_gltf_put_environment */
     if (d->kind >= sizeof types / sizeof *types || !types[d->kind]) {
-      vl_export_lose(x, d->kind == VL_LIGHT_INFINITE ? "light from all around: left out"
-                                                     : "lights of kinds that glTF has not: left out");
+      vl_export_lose(x, "lights of kinds that glTF has not: left out");
       continue;
     }
     vl_export_light_rgb(&d->color, rgb);

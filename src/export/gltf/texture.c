@@ -7,24 +7,15 @@
 
 #include "math/elementary.h"
 
-/* Index of the image in "images"; -1 after an error. */
-static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
-  const void *data = t->data ? t->data : (const void *)t->image;
-  for (size_t i = 0; i < x->images.count; i++) {
-    const vlExportImage *p = &x->images.items[i];
-    if (p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0))) return p->index;
-  }
-  char *bytes, name[300];
-  const char *suffix;
-  size_t size;
-  if (!vl_export_image(x, t, &bytes, &size, &suffix)) return -1;
+json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const char *suffix) {
+  char name[300];
   json_t *image = json_object();
   if (x->binary) {
     json_object_set_new(image, "bufferView", json_integer(vl_gltf_put_view(x, bytes, size, 0)));
     json_object_set_new(image, "mimeType", json_string(strcmp(suffix, ".png") == 0 ? "image/png" : "image/jpeg"));
   } else {
     char uri[900], *to = uri;
-    snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, x->images.count, suffix);
+    snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, json_array_size(json_object_get(x->root, "images")), suffix);
     for (const char *p = name; *p; p++) { /* escapes blanks and other characters not allowed in uris */
       bool plain =
           (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z') || (*p >= '0' && *p <= '9') || strchr("-._~", *p);
@@ -33,14 +24,27 @@ static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
     *to = 0;
     json_object_set_new(image, "uri", json_string(uri));
     if (!vl_export_file(x, name, bytes, size)) {
-      vl_free(x->context, bytes);
       json_decref(image);
       return -1;
     }
   }
+  return vl_gltf_put(x, "images", image);
+}
+
+/* Index of the image in "images"; -1 after an error. */
+static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
+  const void *data = t->data ? t->data : (const void *)t->image;
+  for (size_t i = 0; i < x->images.count; i++) {
+    const vlExportImage *p = &x->images.items[i];
+    if (p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0))) return p->index;
+  }
+  char *bytes;
+  const char *suffix;
+  size_t size;
+  if (!vl_export_image(x, t, &bytes, &size, &suffix)) return -1;
+  const json_int_t index = vl_gltf_put_file(x, bytes, size, suffix);
   vl_free(x->context, bytes);
-  vlExportImage *slot = VL_PUSH(x->context, &x->images);
-  json_int_t index = vl_gltf_put(x, "images", image);
+  vlExportImage *slot = index < 0 ? NULL : VL_PUSH(x->context, &x->images);
   if (slot) *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .index = index};
   return index;
 }

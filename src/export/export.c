@@ -31,7 +31,7 @@ void vl_export_lose(vlExport *x, const char *format, ...) {
   loss->count = 1;
 }
 
-static void lose_many(vlExport *x, uint32_t count, const char *text) {
+static void lose_many(vlExport *x, uint64_t count, const char *text) {
   if (!count) return;
   vl_export_lose(x, "%s", text);
   for (uint32_t i = 0; i < x->loss_count; i++)
@@ -51,6 +51,7 @@ void vl_export_lose_choices(vlExport *x) {
   lose_many(x, beyond_first(s, VL_CHOICE_CAMERA), "cameras: the chosen one");
   lose_many(x, s->skinned, "skins: vertices as they pose them");
   lose_many(x, s->morphed, "morph targets: vertices as they pose them");
+  for (size_t i = 0; i < s->unread.count; i++) lose_many(x, s->unread.items[i].count, s->unread.items[i].what);
 }
 
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {

@@ -56,6 +56,7 @@ void vl_scene_destroy(vlScene *scene) {
   VL_ARRAY_FREE(context, &scene->images);
   VL_ARRAY_FREE(context, &scene->files);
   VL_ARRAY_FREE(context, &scene->choices);
+  VL_ARRAY_FREE(context, &scene->unread);
   VL_ARRAY_FREE(context, &scene->frame_points);
   vl_free(context, scene);
 }

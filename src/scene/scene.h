@@ -32,6 +32,12 @@ typedef struct vlSceneChoice {
   vlChoiceInfo info;
 } vlSceneChoice;
 
+/* What the file has and the scene does not hold; exporters count it as lost. */
+typedef struct vlSceneUnread {
+  const char *what; /* as in vl_export_lose */
+  uint64_t count;
+} vlSceneUnread;
+
 struct vlScene {
   vlContext *context;
   vlError error;        /* the first error; code VL_OK: none */
@@ -58,6 +64,8 @@ struct vlScene {
   /* World points (3 numbers each) that an automatic camera frames in place of the shapes: those of a whole animation.
    */
   VL_ARRAY(double) frame_points;
+  VL_ARRAY(vlSceneUnread) unread;
+  const char *copyright; /* of the file, for those that are written from it; null: none */
   uint32_t skinned, morphed; /* numbers of meshes that the importer deformed by a skin, by morph targets */
   bool meshes_dropped;       /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };

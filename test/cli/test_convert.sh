@@ -197,6 +197,26 @@ check rough_glb "$VELO" scene convert rough.gltf rough.glb
 for what in 'animations: one moment of them (1)' 'variants of materials: the chosen one (1)' 'scenes: the chosen one (1)' 'morph targets: vertices as they pose them (1)'; do
   expect_text "lost_${what%% *}" "$what"
 done
+# So is what a file has and velo does not read: at three places each. The copyright is kept.
+python3 - <<'END'
+import json
+g = json.load(open("rough.gltf"))
+g["asset"].update(copyright="(c) somebody", extras={"title": "rough"})
+g["extras"], g["nodes"][0]["extras"] = {"a": {"extras": 1}}, [1]
+g["extensionsUsed"] = g.get("extensionsUsed", []) + ["ACME_glitter", "KHR_xmp_json_ld"]
+g["nodes"][0].setdefault("extensions", {})["ACME_glitter"] = {"extras": 2}
+g.setdefault("extensions", {}).update(ACME_glitter=[], KHR_xmp_json_ld={"packets": []})
+g["materials"][0].setdefault("extensions", {})["ACME_glitter"] = {}
+g["meshes"][0]["primitives"][0]["attributes"]["_TEMPERATURE"] = g["meshes"][0]["primitives"][0]["attributes"]["POSITION"]
+json.dump(g, open("rich.gltf", "w"))
+END
+for to in rich.glb rich.pbrt; do
+  check "$to" "$VELO" scene convert rich.gltf "$to"
+  for what in 'extras of applications: left out (3)' 'extension ACME_glitter: left out, velo does not read it (3)' 'extension KHR_xmp_json_ld: left out, velo does not read it (1)' 'vertex attribute _TEMPERATURE: left out (1)'; do
+    expect_text "${to}_${what%%:*}" "not held: $what"
+  done
+  check "${to}_copyright" grep -aq '(c) somebody' "$to"
+done
 expect_code 3 rough_strict "$VELO" scene convert rough.gltf strict.glb --strict
 check pbrt_gltf "$VELO" scene convert scene.pbrt scene.gltf
 expect_text pbrt_gltf_tells 'not held: bilinear patches: as two triangles each (1)'
@@ -207,6 +227,7 @@ check glb_c "$VELO" render scene.glb --resolution 64x48 --spp 4 -o c.exr --quiet
 check gltf_d "$VELO" render scene.gltf --resolution 64x48 --spp 4 -o d.exr --quiet
 check gltf_glb_near "$VELO" image diff c.exr d.exr --threshold mse=0.01
 check gltf_gltf "$VELO" scene convert scene.gltf second.gltf
+check own_extras_are_read test -z "$(grep 'extras of' <<<"$out")"
 check gltf_e "$VELO" render second.gltf --resolution 64x48 --spp 4 -o e.exr --quiet
 check gltf_same "$VELO" image diff d.exr e.exr --threshold maxabs=1e-5
 # An environment, its image turned about an odd axis and beside a uniform one, in a world that mirrors and in one that does

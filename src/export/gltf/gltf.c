@@ -361,6 +361,8 @@ static bool write_files(vlExport *x) {
 bool vl_export_gltf(vlExport *x) {
   x->root = json_pack("{s:{s:s,s:s}}", "asset", "version", "2.0", "generator", "velo");
   if (!x->root) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  if (x->scene->copyright)
+    json_object_set_new(json_object_get(x->root, "asset"), "copyright", json_string(x->scene->copyright));
   vl_export_lose_choices(x);
   return put_scene(x) && write_files(x);
 }

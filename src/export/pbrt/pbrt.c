@@ -204,6 +204,11 @@ static bool put_groups(vlExport *x) {
 bool vl_export_pbrt(vlExport *x) {
   const vlScene *s = x->scene;
   PUT("# written by velo\n");
+  if (s->copyright) { /* one line */
+    PUT("# ");
+    for (const char *p = s->copyright; *p; p++) PUT("%c", (unsigned char)*p < ' ' ? ' ' : *p);
+    PUT("\n");
+  }
   vl_export_lose_choices(x);
   if (s->defs.film.space != VL_SPACE_SRGB && (unsigned)s->defs.film.space < 4)
     PUT("ColorSpace \"%s\"\n", spaces[s->defs.film.space]);

@@ -40,7 +40,7 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, 
   vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path, .copy = SIZE_MAX};
   set_defaults(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
-  if (ok) vl_gltf_check_names(&g);
+  if (ok) vl_gltf_check_names(&g), vl_gltf_count_unread(&g);
   ok = ok && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) &&
        vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g) &&
        vl_gltf_choose_camera(&g);

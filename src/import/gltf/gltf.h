@@ -242,6 +242,9 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 /* validate.c: reads what the scene does not use, and reports what is wrong there by the log. Call last. */
 void vl_gltf_validate(vlGltf *g);
 
+/* unread.c: counts in the scene what the file has and velo does not read (vlScene.unread). */
+void vl_gltf_count_unread(vlGltf *g);
+
 /* choices.c: lists the file's scenes, cameras, animations and variants. Call after vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);
 double vl_gltf_animation_end(const vlGltf *g, size_t animation);

@@ -3,12 +3,10 @@
  * function, and a subclass is a struct whose first member is the struct of its base class.
  *
  *   lecture [NAME=VALUE...] >IMAGE.ppm          for example: lecture d=800 roll=10 >image.ppm
- *
  *   eye=300,400,500 lookat=0,0,-50 up=0,1,0 d=400 zoom=1 s=1 roll=0 exposure=1      the camera, as on the slides
  *   size=400x300 n=3      pixels; n x n samples for each            world=build      or still, spheres
  *   camera=pinhole        or orthographic, or axis: World::render_perspective (of eye, only z counts)
  *   tracer=raycast        or print: each ray `ox,oy,oz,dx,dy,dz` instead of an image
- *
  * To compile it: cc -std=c17 lecture.c -lm -o lecture */
 #include <math.h>
 #include <stdio.h>
@@ -121,7 +119,7 @@ static RGBColor Print_trace_ray(const World *world, Ray ray) {
 static void World_display_pixel(World *world, int r, int c, RGBColor L) {
   unsigned char *pixel = world->pixels + 3 * ((world->vp.vres - 1 - r) * world->vp.hres + c); /* r counts upwards */
   const double rgb[] = {L.x, L.y, L.z};
-  for (int k = 0; k < 3; k++) pixel[k] = (unsigned char)(255 * pow(fmin(rgb[k], 1), 1 / 2.2) + 0.5);
+  for (int k = 0; k < 3; k++) pixel[k] = (unsigned char)(255 * pow(fmin(fmax(rgb[k], 0), 1), 1 / 2.2) + 0.5);
 }
 
 /* ---- Camera and its subclasses ---- */
@@ -223,6 +221,7 @@ static void World_build(void) {
 static int read_argument(const char *a) { /* into the structs above; 0: there is no such argument */
   Camera *p = &pinhole.base;
   if (strncmp(a, "world=", 6) == 0) return world_name = a + 6, 1;
+  if (strcmp(a, "camera=pinhole") == 0 || strcmp(a, "tracer=raycast") == 0) return 1; /* as above */
   if (strcmp(a, "camera=orthographic") == 0) return p->render_scene = Orthographic_render_scene, 1;
   if (strcmp(a, "camera=axis") == 0) return p->render_scene = World_render_perspective, 1;
   if (strcmp(a, "tracer=print") == 0) return world.trace_ray = Print_trace_ray, 1;
@@ -237,14 +236,15 @@ static int read_argument(const char *a) { /* into the structs above; 0: there is
 int main(int argc, char **argv) {
   for (int i = 1; i < argc; i++)
     if (!read_argument(argv[i])) return fprintf(stderr, "lecture: unknown argument %s\n", argv[i]), 2;
-  world.vp.num_samples = sampler.n * sampler.n;
+  int hres = world.vp.hres, vres = world.vp.vres, n = sampler.n;
   World_build();
-  if (sampler.n < 1 || world.vp.hres < 1 || world.vp.vres < 1 || world.num_objects == 0)
-    return fprintf(stderr, "lecture: n and size begin at 1; the worlds are build, still, spheres\n"), 2;
-  world.pixels = malloc(3 * (size_t)world.vp.hres * (size_t)world.vp.vres);
+  if (hres < 1 || hres > 9999 || vres < 1 || vres > 9999 || n < 1 || n > 99 || world.num_objects == 0)
+    return fprintf(stderr, "lecture: size is 1x1 to 9999x9999, n 1 to 99, world build, still or spheres\n"), 2;
+  if (!(dot(pinhole.base.u, pinhole.base.u) > 0)) return fprintf(stderr, "lecture: no direction to look in\n"), 2;
+  world.vp.num_samples = n * n;
+  if (!(world.pixels = malloc(3 * (size_t)(hres * vres)))) return fputs("lecture: out of memory\n", stderr), 1;
   world.camera_ptr->render_scene(world.camera_ptr, &world);
   if (world.trace_ray == Print_trace_ray) return 0;
-  printf("P6 %d %d 255\n", world.vp.hres, world.vp.vres);
-  fwrite(world.pixels, 3, (size_t)world.vp.hres * (size_t)world.vp.vres, stdout);
-  return 0;
+  printf("P6 %d %d 255\n", hres, vres);
+  return fwrite(world.pixels, 3, (size_t)(hres * vres), stdout) == (size_t)(hres * vres) && fflush(stdout) == 0 ? 0 : 5;
 }

@@ -201,9 +201,13 @@ def the_program():
     report("at_most_250_lines", None if len(lines) <= 250 else "%d lines" % len(lines))
     includes = sorted(line.split()[1] for line in lines if line.startswith("#include"))
     report("only_the_c_library", None if includes == ["<math.h>", "<stdio.h>", "<stdlib.h>", "<string.h>"] else str(includes))
-    for word in ("d", "eye=1,2", "camera=none", "world=none", "n=0", "size=0x4"):
+    for word in ("d", "eye=1,2", "camera=none", "world=none", "n=0", "size=0x4", "size=99999x99999", "lookat=300,400,500"):
         code, out, err = run(PROGRAM, word)
         report("refused_" + word, None if code == 2 and not out and err.count("\n") == 1 else "exit code %d: %s" % (code, err))
+    code, _, err = run(PROGRAM, "eye=0,0,5", "lookat=0,0,0", "up=0,0,1")
+    report("refused_up_along_the_view_direction", None if code == 2 and err.count("\n") == 1 else "exit code %d: %s" % (code, err))
+    code, _, err = run("sh", "-c", '"$0" >/dev/full', PROGRAM)
+    report("full_disk", None if code == 5 else "exit code %d: %s" % (code, err))
 
 
 def main():

@@ -18,7 +18,7 @@ import zipfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FIRST_TIME = 315532800  # 1980-01-01, the first that a zip file can have
-LEFT_OUT = {".git", "__pycache__", "build", "render", ".cache"}
+LEFT_OUT = {"build", "render", ".cache", ".git"}  # at the top
 
 
 def source_time():
@@ -56,7 +56,8 @@ def source_files():
         return sorted(name for name in result.stdout.decode().split("\0") if name)
     names = []
     for folder, folders, files in os.walk(ROOT):
-        folders[:] = [f for f in folders if f not in LEFT_OUT and not f.startswith("obj-")]
+        top = folder == ROOT
+        folders[:] = [f for f in folders if f != "__pycache__" and not (top and (f in LEFT_OUT or f.startswith("obj-")))]
         names += [os.path.relpath(os.path.join(folder, file), ROOT) for file in files]
     return sorted(name for name in names if name != "PKG-INFO" and not name.endswith((".pyc", ".tmp")))
 

@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/manual.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "velo/velo.h"
@@ -27,11 +29,7 @@ static void print_overview(void) {
   for (int i = 0; i < COMMANDS; i++) printf("  %-16s  %s\n", commands[i]->name, commands[i]->summary);
   printf("  %-16s  %s\n", "help COMMAND", "print the options of a command");
   printf("  %-16s  %s\n\n", "--version", "print the version");
-  printf(
-      "exit codes: 0 done, 1 findings of scene check, image diff or check over a\n"
-      "threshold, or out of memory, 2 wrong command line, 3 wrong scene or image,\n"
-      "4 missing file, 5 reading or writing failed,\n"
-      "128 + signal stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM\n");
+  options_print_exit_statuses();
 }
 
 /* Returns the number of words of argv that name the command, or 0 if they name another command. */
@@ -87,20 +85,31 @@ static int unknown_command(int argc, char **argv) {
                       *near ? near : "; \"velo help\" lists the commands");
 }
 
-/* Only the help page of the program uses this table. */
-static const Option no_options[] = {{0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+/* Values of the options of `velo help`. */
+enum { HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
+
+static const Option help_options[] = {
+    {HELP_MAN, 0, "man", OPTION_FLAG, NULL, "print the manual page of COMMAND, or of velo, in the format of man(7)", 0,
+     0, NULL},
+    {HELP_COMPLETION, 0, "completion", OPTION_CHOICE, "SHELL", "print the completion script of a shell:", 0, 0,
+     shell_choices},
+    {HELP_COMMANDS, 0, "commands", OPTION_FLAG, NULL, "print the names of all commands, one per line", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
 static const Command help_command = {
     .name = "help",
-    .usage = "[COMMAND]",
+    .usage = "[COMMAND] [options]",
     .summary = "print the options of a command",
     .text =
         "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections,\n"
         "and examples. For image, scene, camera or film, prints this for each command of that group.",
-    .examples = "velo help render\nvelo help image diff",
-    .options = no_options,
+    .examples = "velo help render\nvelo help image diff\nvelo help --man render | man -l -",
+    .options = help_options,
+    .max_operands = MAX_OPERANDS,
 };
 
-static int help(int argc, char **argv) {
+/* Prints the help pages of one command or of a group of commands. */
+static int print_help(int argc, char **argv) {
   int words, count;
   const char *names[COMMANDS];
   const Command *command = find_command(argc, argv, &words);
@@ -117,6 +126,38 @@ static int help(int argc, char **argv) {
     }
   } else {
     return unknown_command(argc, argv);
+  }
+  return STATUS_OK;
+}
+
+/* `velo help`, argv without these words. */
+static int help(int argc, char **argv) {
+  static Arguments arguments;
+  int status = options_parse(&help_command, argc, argv, &arguments);
+  if (status >= 0) return status;
+  argc = arguments.operand_count; /* the operands now come first in argv */
+  const OptionValue *v = arguments.values;
+  if (v[HELP_MAN].given + v[HELP_COMPLETION].given + v[HELP_COMMANDS].given > 1)
+    return report_usage("help: --man, --completion and --commands exclude each other");
+  if (argc > 0 && (v[HELP_COMPLETION].given || v[HELP_COMMANDS].given))
+    return report_usage("help: --completion and --commands take no COMMAND");
+  const Command *all[COMMANDS + 1];
+  memcpy(all, commands, sizeof commands);
+  all[COMMANDS] = &help_command;
+  if (v[HELP_COMPLETION].given) {
+    completion_print((Shell)v[HELP_COMPLETION].integer, all, COMMANDS + 1, &help_command);
+  } else if (v[HELP_COMMANDS].given) {
+    for (int i = 0; i <= COMMANDS; i++) puts(all[i]->name);
+  } else if (v[HELP_MAN].given && argc == 0) {
+    manual_print_program(all, COMMANDS + 1);
+  } else if (v[HELP_MAN].given) {
+    int words;
+    const Command *command =
+        argc == 1 && strcmp(argv[0], "help") == 0 ? &help_command : find_command(argc, argv, &words);
+    if (!command) return unknown_command(argc, argv);
+    manual_print_command(command);
+  } else {
+    return print_help(argc, argv);
   }
   return STATUS_OK;
 }
@@ -158,7 +199,8 @@ static int run(int argc, char **argv) {
   if (strcmp(first, "--help") == 0 || strcmp(first, "-h") == 0) return help(argc - 2, argv + 2);
   int words;
   const Command *command = find_command(argc - 1, argv + 1, &words);
-  if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0)) return help(1, argv + 1);
+  if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0))
+    return print_help(1, argv + 1);
   if (!command) return unknown_command(argc - 1, argv + 1);
   static Arguments arguments;
   int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);

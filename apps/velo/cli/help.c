@@ -39,6 +39,21 @@ static void print_wrapped(const char *text, int indent, int column) {
   printf("\n");
 }
 
+const ExitStatus exit_statuses[] = {
+    {"0", "done"},
+    {"1", "findings of scene check, image diff or check over a threshold, or out of memory"},
+    {"2", "wrong command line"},
+    {"3", "wrong scene or image"},
+    {"4", "missing file"},
+    {"5", "reading or writing failed"},
+    {"128 + signal", "stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM"},
+    {NULL, NULL}};
+
+void options_print_exit_statuses(void) {
+  printf("exit codes:\n");
+  for (const ExitStatus *s = exit_statuses; s->code; s++) print_wrapped(s->meaning, 16, printf("  %-12s", s->code));
+}
+
 /* Prints "a, b (or c), d": the accepted names with aliases in parentheses. */
 static void print_choices(const Choice *choices) {
   char list[1200] = "";

@@ -82,6 +82,16 @@ typedef struct Command {
  * (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
 void options_print_help(const Command *command);
+
+typedef struct ExitStatus {
+  const char *code; /* null ends the list */
+  const char *meaning;
+} ExitStatus;
+
+extern const ExitStatus exit_statuses[];
+/* Prints the exit codes as a list. */
+void options_print_exit_statuses(void);
+
 /* For "render": "; did you mean \"render\"?". Empty when no name is near. Valid until the next call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
 /* The names that an option takes; null: any text. */

@@ -15,6 +15,7 @@
 #include "velo/film.h"
 #include "velo/focus.h"
 #include "velo/image.h"
+#include "velo/paths.h"
 #include "velo/receipt.h"
 #include "velo/render.h"
 #include "velo/scene.h"

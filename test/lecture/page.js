@@ -46,7 +46,7 @@ test("live_image", () => assert.equal(html("<!-- live: scene=s/a.pbrt sliders=d:
 test("live_table", () => {
   const text = html("<!-- live: scene=s/b.pbrt views=a,b -->\n| x | y |\n| --- | --- |\n| ![1](i/a.jpg) | ![2](i/b.jpg) |\n\n![3](i/c.jpg)");
   assert.equal(count(text, /<figure/g), 1);
-  assert.ok(text.startsWith(`<figure class="live" data-scene="s/b.pbrt" data-views="a,b"><img src="i/b.jpg" alt="2">`), text);
+  assert.ok(text.startsWith(`<figure class="live" data-scene="s/b.pbrt" data-views="a,b"><img src="i/b.jpg" alt="2"></figure>`), text);
   assert.deepEqual([...text.matchAll(/data-view="(\w+)"/g)].map((m) => m[1]), ["a", "b"]);
 });
 test("formula_mark", () => assert.equal(html("<!-- formula: fov -->\n> a"), `<blockquote class="formula" data-formula="fov"><p>a</p></blockquote>`));

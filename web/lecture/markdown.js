@@ -53,12 +53,13 @@ export function parseMark(text) {
   return values;
 }
 
-function figure(mark, alt, source, page) {
+// The figure of a table has no caption of its own: the table has the views' captions.
+function figure(mark, alt, source, page, caption = `<figcaption>${inline(alt, { ...page, views: [] })}</figcaption>`) {
   const data = LIVE_WORDS.filter((word) => word in mark).map((word) => ` data-${word}="${escapeHtml(mark[word])}"`);
   page.views = [];
   const tag = image(alt, source, page);
   page.views = mark.views ? mark.views.split(",") : [];
-  return `<figure class="live"${data.join("")}>${tag}<figcaption>${inline(alt, { ...page, views: [] })}</figcaption></figure>`;
+  return `<figure class="live"${data.join("")}>${tag}${caption}</figure>`;
 }
 
 function cells(line) {
@@ -117,7 +118,7 @@ function block(kind, lines, mark, page) {
   if (kind === 3) {
     if (!mark.live) return table(lines, page);
     const [, alt, source] = imageOfScene(lines, mark.live.scene);
-    return figure(mark.live, alt, source, page) + "\n" + table(lines, page);
+    return figure(mark.live, alt, source, page, "") + "\n" + table(lines, page);
   }
   if (kind === 4) {
     const formula = mark.formula ? ` class="formula" data-formula="${escapeHtml(mark.formula)}"` : "";

@@ -104,10 +104,10 @@ static bool put_dielectric(vlExport *x, const vlMaterialDef *m, const char *name
 
 static bool put_metal_part(vlExport *x, const vlMaterialDef *m, const char *name) {
   vlPbrtInput color, alpha;
-  if (!vl_pbrt_prepare_color(x, &m->reflectance, &color) ||
+  if (!vl_pbrt_prepare_metal(x, &m->reflectance, vl_export_mean_square(x, &m->principled.roughness), &color) ||
       !vl_pbrt_prepare_number(x, &m->principled.roughness, true, &alpha))
     return false;
-  vl_export_lose(x, "principled metals: as conductors of that reflectance");
+  vl_export_lose(x, "principled metals: as conductors of that mean reflectance");
   PUT("MakeNamedMaterial \"%s\" \"string type\" \"conductor\"", name);
   vl_pbrt_put_color(x, "reflectance", &color);
   vl_pbrt_put_number(x, "roughness", &alpha);

@@ -42,6 +42,9 @@ bool vl_pbrt_prepare_color(vlExport *x, const vlSpectrumInput *input, vlPbrtInpu
 bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, double eta, vlPbrtInput *result);
 /* The colour mixed with white: c (1 - white) + white. */
 bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white, vlPbrtInput *result);
+/* The reflectance of pbrt's conductor that reflects about as much light as a principled metal of this colour. alpha:
+ * the mean over its microfacets. */
+bool vl_pbrt_prepare_metal(vlExport *x, const vlSpectrumInput *input, float alpha, vlPbrtInput *result);
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input);
 void vl_pbrt_put_color(vlExport *x, const char *name, const vlPbrtInput *input);
 /* Prepares the input without changes to its values. depth: nesting of textures. */

@@ -6,6 +6,7 @@
 
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
+#include "math/fresnel.h"
 
 static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
   const void *data = t->data ? t->data : (const void *)t->image;
@@ -56,24 +57,60 @@ bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300
 /* How the values of an image are changed. */
 typedef struct Change {
   bool squared;
-  float turned_back; /* share of the light that a coat reflects back internally and that is compensated; 0: none */
-  float raised;      /* share of white in the colour */
+  float turned_back;  /* share of the light that a coat reflects back internally and that is compensated; 0: none */
+  float raised;       /* share of white in the colour */
+  const float *metal; /* the table of make_metal_table; null: none */
+  float lost;         /* metal: share of light that a white metal of this roughness loses between microfacets */
 } Change;
-static const Change as_is = {false, 0, 0};
+static const Change as_is = {0};
+
+/* The reflectance of pbrt's conductor whose mean, weighted by the cube of the cosine, is i / METAL_STEPS. Its Fresnel
+ * curve rises earlier than Schlick's where it is dark: the weight is a compromise between surfaces seen along the
+ * normal, which become darker, and those seen at grazing angles, which stay brighter. */
+enum { METAL_STEPS = 512 };
+static void make_metal_table(float table[METAL_STEPS + 1]) {
+  enum { COSINES = 64 };
+  for (int i = 0; i <= METAL_STEPS; i++) {
+    double low = 0, high = 0.9999;
+    for (int step = 0; step < 24; step++) {
+      const double r = 0.5 * (low + high);
+      double mean = 0;
+      for (int k = 0; k < COSINES; k++) {
+        const double c = (k + 0.5) / COSINES;
+        mean += 4 * c * c * c / COSINES * (double)vl_fresnel_conductor((float)c, 1, (float)(2 * sqrt(r) / sqrt(1 - r)));
+      }
+      *(mean < (double)i / METAL_STEPS ? &low : &high) = r;
+    }
+    table[i] = (float)low;
+  }
+}
+
+/* Schlick's metal of the colour c reflects F = c + (1 - c)/21 of diffuse light, with several reflections between its
+ * microfacets F E / (1 - F (1 - E)) (principled.md), as one of a brighter colour without them. The mean of Schlick's
+ * curve with the weight above is c + (1 - c) / 126. */
+static float metal_color(float value, Change c) {
+  const float v = value < 1 ? value > 0 ? value : 0 : 1, f = v + (1 - v) / 21;
+  const float brighter = (21 * fminf(1, f / (1 - f * c.lost)) - 1) / 20;
+  const float at = (brighter + (1 - brighter) / 126) * METAL_STEPS;
+  const int i = (int)at < METAL_STEPS ? (int)at : METAL_STEPS - 1;
+  return c.metal[i] + (at - (float)i) * (c.metal[i + 1] - c.metal[i]);
+}
 
 static float change_color(float value, Change c) {
+  if (c.metal) return metal_color(value, c);
   return c.raised + (1 - c.raised) * value / (1 - c.turned_back + value * c.turned_back);
 }
 
 static bool changes_color(Change c) {
-  return c.turned_back != 0 || c.raised != 0;
+  return c.turned_back != 0 || c.raised != 0 || c.metal;
 }
 
 /* Changes an image: one channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
   uint32_t variant = 2 + (change.squared ? 1u : 0u);
-  const float key[10] = {t->tint[0], t->tint[1],        t->tint[2],       t->tint[3],         t->bias,
-                         t->scale,   (float)t->channel, (float)t->cutoff, change.turned_back, change.raised};
+  const float key[12] = {t->tint[0],  t->tint[1],          t->tint[2],       t->tint[3],         t->bias,
+                         t->scale,    (float)t->channel,   (float)t->cutoff, change.turned_back, change.raised,
+                         change.lost, change.metal ? 1 : 0};
   for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
   vlExportImage *known = find_image(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
@@ -231,7 +268,7 @@ bool vl_pbrt_inner_color(vlExport *x, const vlSpectrumInput *input, int depth, v
 
 bool vl_pbrt_prepare_number(vlExport *x, const vlFloatInput *input, bool squared, vlPbrtInput *result) {
   *result = (vlPbrtInput){0};
-  if (input->texture.index && !put_texture(x, input->texture.index, (Change){squared, 0, 0}, 0, result->texture))
+  if (input->texture.index && !put_texture(x, input->texture.index, (Change){.squared = squared}, 0, result->texture))
     return false;
   float v = result->texture[0] ? 0 : vl_export_number(x, input);
   result->number = squared ? v * v : v;
@@ -263,11 +300,20 @@ bool vl_pbrt_prepare_under_coat(vlExport *x, const vlSpectrumInput *input, doubl
     double s = (c - eta * t) / (c + eta * t), p = (eta * c - t) / (eta * c + t);
     f += 2 * c / STEPS * 0.5 * (s * s + p * p);
   }
-  return prepare_color(x, input, (Change){false, (float)(1 - (1 - f) / (eta * eta)), 0}, result);
+  return prepare_color(x, input, (Change){.turned_back = (float)(1 - (1 - f) / (eta * eta))}, result);
 }
 
 bool vl_pbrt_prepare_raised(vlExport *x, const vlSpectrumInput *input, float white, vlPbrtInput *result) {
-  return prepare_color(x, input, (Change){false, 0, white}, result);
+  return prepare_color(x, input, (Change){.raised = white}, result);
+}
+
+bool vl_pbrt_prepare_metal(vlExport *x, const vlSpectrumInput *input, float alpha, vlPbrtInput *result) {
+  const double a = alpha < 1 ? (double)alpha : 1;
+  float table[METAL_STEPS + 1];
+  make_metal_table(table);
+  /* 1 - E, averaged over all directions: a fit, within 0.0025, to the integral over GGX's visible normals */
+  const double lost = a * (0.138 + a * (1.784 + a * (-2.104 + 0.774 * a)));
+  return prepare_color(x, input, (Change){.metal = table, .lost = (float)lost}, result);
 }
 
 void vl_pbrt_put_number(vlExport *x, const char *name, const vlPbrtInput *input) {

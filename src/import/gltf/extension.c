@@ -71,7 +71,7 @@ bool vl_gltf_reads_extension(const char *name) {
   return is_in(name, known, sizeof known / sizeof *known);
 }
 
-static vlShortText shown(const char *name) {
+vlShortText vl_gltf_extension_text(const char *name) {
   vlShortText text = vl_short_text(name);
   if (is_in(name, registered, sizeof registered / sizeof *registered))
     snprintf(text.text, sizeof text.text, "%s", name);
@@ -99,15 +99,16 @@ bool vl_gltf_check_extensions(vlGltf *g) {
                                name);
     const char *near = vl_nearest_name(name, known, known_count);
     return near ? vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s (it reads %s)",
-                                    shown(name).text, near)
-                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s", shown(name).text);
+                                    vl_gltf_extension_text(name).text, near)
+                : vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "velo does not read %s",
+                                    vl_gltf_extension_text(name).text);
   }
   for (size_t i = 0; i < used_count; i++) {
     const char *name = json_string_value(json_array_get(used, i));
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsUsed", i);
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (!is_in(name, known, known_count) && !is_in(name, silent, silent_count))
-      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it", shown(name).text);
+      vl_gltf_warn(g, VL_LOG_WARNING, at, "%s is ignored: velo does not read it", vl_gltf_extension_text(name).text);
   }
   return true;
 }

@@ -201,6 +201,8 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
 
 bool vl_gltf_check_extensions(vlGltf *g);
 bool vl_gltf_reads_extension(const char *name);
+/* The name for messages: in full if it is registered, else shortened. */
+vlShortText vl_gltf_extension_text(const char *name);
 /* names.c: warns of members whose name is nearly a name of the format. */
 void vl_gltf_check_names(vlGltf *g);
 

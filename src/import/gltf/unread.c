@@ -54,7 +54,7 @@ static void walk(vlGltf *g, const char *key, json_t *value) {
     }
     if (strcmp(name, "occlusionTexture") == 0) add(g, "%s: left out, velo computes occlusion", name);
     if (extensions && !vl_gltf_reads_extension(name)) {
-      add(g, "extension %s: left out, velo does not read it", vl_short_text(name).text);
+      add(g, "extension %s: left out, velo does not read it", vl_gltf_extension_text(name).text);
       continue;
     }
     if (json_is_object(part)) walk(g, name, part);

@@ -21,7 +21,7 @@ static void cross(const double a[3], const double b[3], double c[3]) {
 
 /* The normal of a face, as long as twice its area. */
 static void face_normal(const vlShapeDef *d, const uint32_t *face, size_t per, double n[3]) {
-  const float *p[4];
+  const float *p[4] = {NULL};
   double a[3], b[3];
   for (size_t k = 0; k < per; k++) p[k] = d->positions + 3 * (size_t)face[k];
   /* a patch p00 p10 p01 p11: its diagonals */

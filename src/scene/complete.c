@@ -299,7 +299,7 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   vlEnvironmentKind kind = def.environment;
   if (kind == VL_ENVIRONMENT_AUTO) kind = s->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   bool fits = def.environment == VL_ENVIRONMENT_AUTO && kind == VL_ENVIRONMENT_STUDIO;
-  View axes;
+  View axes = {.azimuth = 0};
   if (!vl_scene_axes(&def, axes.right, axes.up, axes.front)) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, (vlSource){0}, "camera: the axes up and front make no sense");
     return vl_scene_result(scene, error);

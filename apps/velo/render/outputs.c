@@ -191,9 +191,10 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
 }
 
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {
-  const bool known = outputs->meter && outputs->shared && !isnan(*outputs->shared);
-  float exposure = known ? *outputs->shared : outputs->meter ? exposure_meter(image) : outputs->exposure;
-  if (outputs->meter && outputs->shared && stage == OUTPUT_FINISHED) *outputs->shared = exposure;
+  float exposure = outputs->exposure, *shared = outputs->shared;
+  const bool known = !outputs->meter || (shared && !isnan(*shared));
+  if (outputs->meter) exposure = known ? *shared : exposure_meter(image);
+  if (outputs->meter && shared && stage == OUTPUT_FINISHED) *shared = exposure;
   vlImage *displays[2] = {NULL, NULL}; /* made when the first file needs it: without and with alpha */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {
@@ -207,7 +208,7 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
     bool alpha = outputs->transparent && output_holds_alpha(path);
     if (eight_bit && !displays[alpha]) {
       result = display_image(context, image, outputs->view, exposure, alpha, &displays[alpha]);
-      if (outputs->meter && !known && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
+      if (!known && stage != OUTPUT_PROGRESS) exposure_tell(exposure);
     }
     const char *to = has_part && stage != OUTPUT_FINISHED ? part : path;
     if (result == VL_OK)

@@ -105,8 +105,10 @@ static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t bl
 }
 
 static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
-  while (marks->count < id)
-    if (!VL_PUSH(scene->context, marks)) return NULL;
+  while (marks->count < id) {
+    vlSceneMark *mark = VL_PUSH(scene->context, marks);
+    if (!mark) return NULL;
+  }
   return &marks->items[id - 1];
 }
 

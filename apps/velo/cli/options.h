@@ -36,7 +36,7 @@ typedef struct Option {
   const Choice *choices;
 } Option;
 
-enum { MAX_OPTIONS = 96, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
+enum { MAX_OPTIONS = 112, MAX_TEXTS = 32, MAX_OPERANDS = 4 };
 
 typedef struct OptionValue {
   bool given;

@@ -1,0 +1,23 @@
+/* view/camera_pose.h: a camera as described and as compiled, and its pose as the lecture spells it: eye, lookat, up,
+ * roll. */
+#ifndef APP_VIEW_CAMERA_POSE_H
+#define APP_VIEW_CAMERA_POSE_H
+
+#include "velo/velo.h"
+
+/* A camera as described and as compiled. */
+typedef struct ViewCamera {
+  vlCameraDef def;
+  vlCamera made;
+} ViewCamera;
+
+typedef struct CameraPose {
+  double eye[3], lookat[3], up[3], roll; /* scene units; radians */
+} CameraPose;
+
+/* The pose of a camera. lookat is at the focus distance where the def has a matrix. */
+CameraPose camera_pose(const ViewCamera *camera);
+/* Gives the def this pose. A pose that mirrors or scales keeps doing so: it stays a matrix. */
+void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *def);
+
+#endif

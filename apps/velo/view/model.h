@@ -1,0 +1,24 @@
+/* view/model.h: a scene file as the viewer has it: the scene, its world, its job, and the files that it was made of. */
+#ifndef APP_VIEW_MODEL_H
+#define APP_VIEW_MODEL_H
+
+#include "render/job.h"
+#include "render/scene_options.h"
+
+typedef struct Model {
+  vlScene *scene;
+  vlWorld *world;
+  Job job;
+  SceneOpening opening;
+  vlWorldInfo info;
+  float exposure; /* EV of the first view */
+  char **files;   /* paths of the files that were read */
+  uint32_t file_count;
+} Model;
+
+/* Loads, completes and builds. Returns -1, or the exit code after reporting the error; *model is empty then. */
+int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model);
+/* Frees what the model has and empties it. */
+void model_free(Model *model);
+
+#endif

@@ -8,10 +8,11 @@
 
 static const double degree = 3.14159265358979323846 / 180.0;
 
-CameraUnits camera_units(const vlCameraDef *def) {
-  return (CameraUnits){.zoom = isnan(def->zoom) ? 1 : def->zoom,
-                       .pixel_size = isnan(def->pixel_size) ? 1 : def->pixel_size,
-                       .sensor_mm = isnan(def->sensor_width_mm) ? 36 : def->sensor_width_mm};
+/* Takes the units that the def names. */
+static void note_units(const vlCameraDef *def, CameraUnits *units) {
+  if (!isnan(def->zoom)) units->zoom = def->zoom;
+  if (!isnan(def->pixel_size)) units->pixel_size = def->pixel_size;
+  if (!isnan(def->sensor_width_mm)) units->sensor_mm = def->sensor_width_mm;
 }
 
 /* ---- the focal length -------------------------------------------------------------------------------------------- */
@@ -38,7 +39,7 @@ static void spell_matrix(const ViewCamera *now, vlCameraDef *def) {
 
 static void spell_lecture(const ViewCamera *now, vlCameraDef *def) {
   if (!isnan(def->view_distance)) return;
-  CameraUnits u = camera_units(def);
+  const CameraUnits u = now->units;
   drop_window(now, def);
   drop_focal(def);
   if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) {
@@ -50,7 +51,7 @@ static void spell_lecture(const ViewCamera *now, vlCameraDef *def) {
 }
 
 static void spell_lens_mm(const ViewCamera *now, vlCameraDef *def) {
-  CameraUnits u = camera_units(def);
+  const CameraUnits u = now->units;
   if (isnan(def->focal_mm)) {
     drop_window(now, def);
     drop_focal(def);
@@ -360,25 +361,74 @@ static vlResult apply_fields(Edit *edit, vlError *error) {
   return VL_OK;
 }
 
-void camera_at_size(ViewCamera *camera) {
+/* Gives the width of the sensor only where it has a meaning. */
+static void tidy_sensor(const CameraUnits *units, vlCameraDef *def) {
+  const vlLensDef *lens = &def->lens;
+  bool needed = !isnan(def->focal_mm) || !isnan(lens->f_number) || lens->lens_tilt_x != 0 || lens->lens_tilt_y != 0;
+  def->sensor_width_mm = needed ? units->sensor_mm : VL_UNSET;
+}
+
+static bool near(double a, double b) {
+  return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
+}
+
+/* Whether two compiled cameras are the same but for rounding. */
+static bool same_camera(const vlCamera *a, const vlCamera *b) {
+  return near(a->fx, b->fx) && near(a->fy, b->fy) && near(a->cx, b->cx) && near(a->cy, b->cy) &&
+         near(a->skew, b->skew) && near(a->lens_radius, b->lens_radius);
+}
+
+/* Scales the spelling of the focal length to the image's size. */
+static void spell_at_size(ViewCamera *camera) {
   vlCameraDef *def = &camera->def;
   const vlCamera *made = &camera->made;
-  if (def->width == made->width && def->height == made->height) return;
-  bool panorama = def->projection == VL_PROJECTION_OPTICS;
+  if (!isnan(def->view_distance)) def->view_distance = made->fx * camera->units.pixel_size / camera->units.zoom;
+  if (!isnan(def->focal_mm)) def->focal_mm = made->fx * def->sensor_width_mm / made->width;
+  if (!isnan(def->fx)) def->fx = made->fx;
+  if (!isnan(def->fy)) def->fy = made->fy;
+  if (!isnan(def->cx)) def->cx = made->cx;
+  if (!isnan(def->cy)) def->cy = made->cy;
+  if (!isnan(def->skew)) def->skew = made->skew;
   def->width = made->width, def->height = made->height;
-  if (panorama) return;
+}
+
+/* Spells the camera by numbers that need no others: the matrix, the radius of the lens. */
+static void spell_plainly(ViewCamera *camera) {
+  vlCameraDef *def = &camera->def;
+  const vlCamera *made = &camera->made;
   drop_window(camera, def);
   drop_focal(def);
+  def->sensor_width_mm = VL_UNSET;
   def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy, def->skew = made->skew;
+  def->lens_radius = made->lens_radius, def->lens.f_number = VL_UNSET;
+  def->exposure_time = made->exposure_time, def->lens.iso = def->lens.seconds = VL_UNSET;
+}
+
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, ViewCamera *camera, vlError *error) {
+  *camera = (ViewCamera){.def = *def, .made = *made, .units = {1, 1, 36}};
+  vlLensDef *lens = &camera->def.lens;
+  note_units(def, &camera->units);
+  camera->def.stereo_eye = VL_EYE_BOTH;
+  if (!isnan(lens->focus_pixel[0]) && !lens->optics) { /* the focus is found already */
+    lens->focus_pixel[0] = lens->focus_pixel[1] = VL_UNSET;
+    camera->def.focus_distance = made->focus_distance;
+  }
+  if (def->width != made->width || def->height != made->height) {
+    vlCamera again;
+    spell_at_size(camera);
+    if (vl_camera_make(&camera->def, &again, NULL, error) != VL_OK || !same_camera(&again, made)) spell_plainly(camera);
+  }
+  return vl_camera_make(&camera->def, &camera->made, NULL, error);
 }
 
 vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result, const char **warning,
                      vlError *error) {
   ViewCamera next = *now;
-  camera_at_size(&next);
   Edit edit = {.now = now, .def = &next.def, .message = message, .pose = {.pose = camera_pose(now)}};
   vlResult status = apply_fields(&edit, error);
   if (status == VL_OK && edit.pose.given) camera_place(now, &edit.pose.pose, &next.def);
+  note_units(&next.def, &next.units);
+  tidy_sensor(&next.units, &next.def);
   if (status == VL_OK) status = vl_camera_make(&next.def, &next.made, warning, error);
   if (status == VL_OK) *result = next;
   return status;

@@ -7,21 +7,15 @@
 #include "view/camera_pose.h"
 #include "view/message.h"
 
-/* What the spellings that the def does not use refer to. */
-typedef struct CameraUnits {
-  double zoom, pixel_size; /* of the lecture's spelling */
-  double sensor_mm;        /* width of the sensor */
-} CameraUnits;
-CameraUnits camera_units(const vlCameraDef *def);
-
 /* Applies the fields of a message. Errors: ARGUMENT: a field or value is refused; the error has the message of
  * vl_camera_make, or names the field. *result is unchanged then. warning: as vl_camera_make's. */
 vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result, const char **warning,
                      vlError *error);
 /* Replaces the focus of a camera by a distance. Errors as camera_edit. */
 vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result, vlError *error);
-/* A def of the same camera whose image has the size of `made`: its calibration matrix replaces the field of view. */
-void camera_at_size(ViewCamera *camera);
+/* The camera of a def whose image has the size of `made`. It keeps the def's spelling of the focal length where it can.
+ * Errors as camera_edit. */
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, ViewCamera *camera, vlError *error);
 
 /* Writes all spellings as members of the open JSON object. */
 void camera_spellings(Json *json, const ViewCamera *camera);

@@ -5,10 +5,17 @@
 
 #include "velo/velo.h"
 
-/* A camera as described and as compiled. */
+/* What the spellings refer to that the def does not use. */
+typedef struct CameraUnits {
+  double zoom, pixel_size; /* of the lecture's spelling */
+  double sensor_mm;        /* width of the sensor */
+} CameraUnits;
+
+/* A camera as described and as compiled, for an image of the same size. */
 typedef struct ViewCamera {
   vlCameraDef def;
   vlCamera made;
+  CameraUnits units;
 } ViewCamera;
 
 typedef struct CameraPose {

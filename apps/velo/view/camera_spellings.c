@@ -33,7 +33,7 @@ static void put_focal(Json *json, const ViewCamera *camera) {
   static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
   const vlCameraDef *def = &camera->def;
   const vlCamera *c = &camera->made;
-  const CameraUnits u = camera_units(def);
+  const CameraUnits u = camera->units;
   bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   double w = c->width, h = c->height;
   double horizontal = angle(c, 0, c->cy, c->cx, c->cy) + angle(c, c->cx, c->cy, w, c->cy);
@@ -79,7 +79,7 @@ static void put_lens(Json *json, const ViewCamera *camera) {
   const vlCameraDef *def = &camera->def;
   const vlCamera *c = &camera->made;
   const vlLensDef *lens = &def->lens;
-  double unit = isnan(lens->unit_mm) ? 1000 : lens->unit_mm, sensor = camera_units(def).sensor_mm;
+  double unit = isnan(lens->unit_mm) ? 1000 : lens->unit_mm, sensor = camera->units.sensor_mm;
   double focal = c->fx * sensor / c->width;
   json_number(json, "lens_radius", c->lens_radius);
   json_number(json, "f_number",

@@ -127,8 +127,7 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
 static void step_history(Engine *e, const ViewMessage *m) {
   History *h = &e->history;
   if (m->kind == MESSAGE_RESET) {
-    const ViewCamera camera = {.def = e->model.job.defs->camera, .made = e->model.job.camera};
-    engine_remember(e, &camera, 0);
+    engine_remember(e, &e->scene_camera, 0);
   } else if (m->kind == MESSAGE_UNDO && h->at > 0) {
     h->at--;
   } else if (m->kind == MESSAGE_REDO && h->at + 1 < h->count) {

@@ -44,6 +44,7 @@ struct Engine {
   bool quit;
   uint32_t clients;
   Wanted wanted;
+  ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
   Task tasks[MOST_TASKS];
   uint32_t task_count;
@@ -63,6 +64,8 @@ struct Engine {
 };
 
 double engine_clock(void);
+/* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after reporting an error. */
+int engine_take_model(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
 /* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per pixel of the frame. */
@@ -76,6 +79,12 @@ void engine_post_state(Engine *engine, uint32_t client);
 void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
+/* Writes a camera or an image; posts its name. */
+void engine_save(Engine *engine, const Task *task);
+/* Writes the camera and posts the command that renders the present image. */
+void engine_command(Engine *engine, const Task *task);
+/* Posts vanishing points, horizon and, if asked for, the boxes of objects. */
+void engine_overlay(Engine *engine, const Task *task);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);

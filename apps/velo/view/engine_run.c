@@ -292,16 +292,20 @@ static void *run(void *user) {
   return NULL;
 }
 
-static void start_wanted(Engine *e) {
+int engine_take_model(Engine *e) {
   const vlSceneDefs *defs = e->model.job.defs;
   Wanted *w = &e->wanted;
-  w->camera = (ViewCamera){.def = defs->camera, .made = e->model.job.camera};
+  vlError error = {0};
+  vlResult result = camera_take(&defs->camera, &e->model.job.camera, &w->camera, &error);
+  if (result != VL_OK) return report_error(&error, result, e->def.path);
+  e->scene_camera = w->camera;
   memcpy(w->crop, defs->film.crop, sizeof w->crop);
   w->spp = defs->render.spp;
   w->generation++;
   e->history.cameras[0] = w->camera;
   e->history.count = 1;
   e->history.at = 0;
+  return -1;
 }
 
 int engine_create(const EngineDef *def, Engine **result) {
@@ -311,7 +315,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
   int status = model_load(def->context, def->path, def->arguments, &engine->model);
-  if (status < 0) start_wanted(engine);
+  if (status < 0) status = engine_take_model(engine);
   *result = engine;
   return status;
 }
@@ -336,7 +340,9 @@ int engine_stop(Engine *engine) {
   pthread_mutex_unlock(&engine->lock);
   pthread_join(engine->thread, NULL);
   engine->started = false;
-  if (!engine->def.film_path || !engine->film || !vl_film_spp(engine->film)) return STATUS_OK;
+  if (!engine->def.film_path) return STATUS_OK;
+  if (!engine->film || !vl_film_spp(engine->film))
+    return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", engine->def.film_path);
   vlError error = {0};
   vlResult result = vl_film_write(engine->film, NULL, engine->def.film_path, &error);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, engine->def.film_path);

@@ -114,6 +114,15 @@ void engine_answer(Engine *e, const Task *task) {
   switch (task->message.kind) {
     case MESSAGE_PICK: pick(e, task); break;
     case MESSAGE_FOCUS: focus(e, task); break;
-    default: post_answer_error(e, task, "not yet"); break;
+    case MESSAGE_SAVE: engine_save(e, task); break;
+    case MESSAGE_COMMAND: engine_command(e, task); break;
+    case MESSAGE_OVERLAY: engine_overlay(e, task); break;
+    case MESSAGE_SEEN: /* these need no world */
+    case MESSAGE_CAMERA:
+    case MESSAGE_UNDO:
+    case MESSAGE_REDO:
+    case MESSAGE_RESET:
+    case MESSAGE_SETTINGS:
+    case MESSAGE_STEER: break;
   }
 }

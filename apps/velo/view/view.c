@@ -19,7 +19,7 @@ static int run_view(const Command *command, const Arguments *arguments) {
 /* Families of velo/schema.h. */
 static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
 
-static const Option view_options[] = {
+const Option view_options[] = {
     {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1, 65535, NULL},
     {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
      "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other machine can reach", 0, 0,

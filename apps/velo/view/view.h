@@ -8,6 +8,8 @@
 enum { VIEW_PORT = RENDER_OPTIONS, VIEW_LISTEN, VIEW_NO_OPEN, VIEW_OPTIONS };
 _Static_assert((int)VIEW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
+extern const Option view_options[];
+
 /* Runs the command. Returns the exit code. */
 int view_run(const Arguments *arguments);
 

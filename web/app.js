@@ -7,6 +7,9 @@ import { pivot } from "./steer.js";
 import { Panel } from "./panel.js";
 import { Display } from "./display.js";
 import { Inspector } from "./inspect.js";
+import { Overlay } from "./overlay.js";
+import { Compare } from "./compare.js";
+import { Save } from "./save.js";
 import { byId, make, metric } from "./dom.js";
 import { addHelp } from "./help.js";
 
@@ -69,7 +72,7 @@ const app = {
     });
   },
   hover: (x, y) => inspector.hover(x, y),
-  band: rectangle => overlay?.band(rectangle),
+  band: rectangle => overlay.band(rectangle),
   notice(text, calm = false) {
     const box = byId("notice");
     box.textContent = text;
@@ -80,10 +83,13 @@ const app = {
   },
 };
 
-let overlay = null;
 const screen = app.screen = new Screen(byId("screen"));
 const panel = new Panel(byId("camera"), (set, gesture) => app.edit(set, gesture));
-const display = new Display(byId("display"), app);
+const display = app.display = new Display(byId("display"), app);
+const overlay = new Overlay(byId("overlays"), app);
+const compare = new Compare(byId("compare"), app);
+new Save(byId("save"), app);
+screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);
 new Pointer(byId("stage"), app);
 
@@ -104,7 +110,7 @@ function showState(state) {
   byId("pause").setAttribute("aria-pressed", String(state.paused));
   const c = state.crop;
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
-  overlay?.state(state);
+  overlay.state(state);
 }
 
 function showStatus(s) {
@@ -152,6 +158,7 @@ app.connection = new Connection({
     screen.take(frame);
     app.connection.send({ type: "seen", serial: frame.serial });
     inspector.frame();
+    compare.frame();
     app.frames = (app.frames || 0) + 1;
   },
   state(connected, reason) {

@@ -134,6 +134,8 @@ const handlers = {
     if (message.id && app.waiting.has(message.id)) return answered(message);
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
+  loading: () => { byId("status").textContent = "a file changed: loading"; },
+  loaded: () => app.notice("The scene was loaded again.", true),
   warning: message => app.notice(message.message, true),
   note: message => app.notice(message.message, true),
   error(message) {

@@ -65,7 +65,7 @@ export class Overlay {
   }
   label(at, text, colour) {
     const [x, y] = this.app.screen.toPage(...at);
-    for (const style of [{ stroke: "#000a", "stroke-width": 3 }, { fill: colour }])
+    for (const style of [{ stroke: "#000b", "stroke-width": 3, fill: "none" }, { fill: colour }])
       this.svg.append(element("text", { x: x + 5, y: y - 4, "font-size": 12, "font-family": "system-ui", ...style }, text));
   }
 

@@ -316,6 +316,46 @@ def test_many(view):
     other.close()
 
 
+# ---- files that change ----
+
+def test_watch(folder):
+    inner = os.path.join(folder, "things.pbrt")
+    outer = os.path.join(folder, "watched.pbrt")
+    thing = 'Material "diffuse" "rgb reflectance" [%s]\nShape "sphere"\n'
+    open(inner, "w").write(thing % "0.8 0.1 0.1")
+    open(outer, "w").write('LookAt 0 0 5 0 0 0 0 1 0\nCamera "perspective" "float fov" 40\nSampler "halton" "integer '
+                           'pixelsamples" 4\nFilm "rgb" "integer xresolution" 64 "integer yresolution" 48\nWorldBegin\n'
+                           'LightSource "infinite"\nInclude "things.pbrt"\n')
+    view = View(VELO, outer, cwd=folder)
+    page = Page(view)
+    middle = lambda: struct.unpack_from("<3e", page.pixels, 6 * (24 * 64 + 32))
+    wait_done(page)
+    red = middle()
+    check("watch_first", red[0] > 2 * red[1], red)
+    moved = edit(page, eye=[0, 0, 4.5])
+    open(inner, "w").write(thing % "0.1 0.8 0.1")
+    page.wait_text("loaded")
+    state = page.wait_text("state")
+    page.wait_frame(lambda f: f.scale == 1 and middle()[1] > 2 * middle()[0])
+    check("watch_change", True)
+    check("watch_keeps_camera", state["camera"]["eye"] == moved["camera"]["eye"], state["camera"]["eye"])
+    open(inner, "w").write(thing % "0.1 0.8 0.1" + 'Shape "spere"\n')
+    error = page.wait_text("error")
+    check("watch_error", error["file"].endswith("things.pbrt") and error["line"] == 3 and error["column"] > 0 and
+          "spere" in error["message"], error)
+    edit(page, eye=[0, 0, 4.75])
+    page.wait_frame(lambda f: f.scale == 1)
+    check("watch_old_image_stays", middle()[1] > 2 * middle()[0], middle())
+    new = inner + ".new"  # as editors do it: another file takes its place
+    open(new, "w").write(thing % "0.1 0.1 0.8")
+    os.rename(new, inner)
+    page.wait_text("loaded")
+    page.wait_frame(lambda f: f.scale == 1 and middle()[2] > 2 * middle()[0])
+    check("watch_mended", True)
+    page.close()
+    check("watch_ends", view.end()[0] == 0)
+
+
 def main():
     missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
     if "without libwebsockets" in missing.stderr:
@@ -347,6 +387,7 @@ def main():
         code, errors = view.end()
     check("ends", code == 0, code, errors)
     check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
+    test_watch(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
     check("film", info.returncode == 0, info.stderr)
     shutil.rmtree(folder)

@@ -36,8 +36,8 @@ typedef struct Task {
 struct Engine {
   EngineDef def;
   Server *server;
-  pthread_t thread;
-  bool started;
+  pthread_t thread, watcher;
+  bool started, watching;
   pthread_mutex_t lock;
   pthread_cond_t wake;
   /* under the lock */
@@ -46,9 +46,12 @@ struct Engine {
   Wanted wanted;
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
+  Model *next; /* the scene after a change of its files; null: none */
   Task tasks[MOST_TASKS];
   uint32_t task_count;
-  /* the render thread's own */
+  /* the watcher's own */
+  FileList files; /* of which the scene was made */
+  /* the render thread's own; the model is replaced under the lock */
   Model model;
   Wanted now; /* what is being rendered */
   vlFilm *film;
@@ -77,6 +80,10 @@ void engine_post_state(Engine *engine, uint32_t client);
 /* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of one gesture are one
  * step; 0: none. */
 void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
+/* The thread that watches the files. */
+void *engine_watch(void *engine);
+/* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
+bool engine_swap_model(Engine *engine);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
 /* Writes a camera or an image; posts its name. */

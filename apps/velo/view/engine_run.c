@@ -24,7 +24,7 @@ double engine_clock(void) {
 }
 
 static bool must_stop(const Engine *e) {
-  return e->quit || e->task_count || e->wanted.generation != e->now.generation;
+  return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
 }
 
 bool engine_interrupted(Engine *engine) {
@@ -276,6 +276,7 @@ static void answer_tasks(Engine *e) {
 static void *run(void *user) {
   Engine *e = user;
   while (wait_for_work(e)) {
+    engine_swap_model(e);
     answer_tasks(e);
     bool anew = take_wanted(e);
     if (anew && e->now.channel) {
@@ -314,7 +315,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   engine->def = *def;
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
-  int status = model_load(def->context, def->path, def->arguments, &engine->model);
+  int status = model_load(def->context, def->path, def->arguments, &engine->model, &engine->files);
   if (status < 0) status = engine_take_model(engine);
   *result = engine;
   return status;
@@ -329,6 +330,7 @@ int engine_start(Engine *engine, Server *server) {
   if (pthread_create(&engine->thread, NULL, run, engine) != 0)
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
+  engine->watching = pthread_create(&engine->watcher, NULL, engine_watch, engine) == 0;
   return -1;
 }
 
@@ -339,6 +341,7 @@ int engine_stop(Engine *engine) {
   pthread_cond_broadcast(&engine->wake);
   pthread_mutex_unlock(&engine->lock);
   pthread_join(engine->thread, NULL);
+  if (engine->watching) pthread_join(engine->watcher, NULL);
   engine->started = false;
   if (!engine->def.film_path) return STATUS_OK;
   if (!engine->film || !vl_film_spp(engine->film))
@@ -352,6 +355,9 @@ void engine_destroy(Engine *engine) {
   if (!engine) return;
   vl_film_destroy(engine->film);
   model_free(&engine->model);
+  if (engine->next) model_free(engine->next);
+  free(engine->next);
+  file_list_free(&engine->files);
   pthread_cond_destroy(&engine->wake);
   pthread_mutex_destroy(&engine->lock);
   free(engine);

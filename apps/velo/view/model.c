@@ -1,24 +1,11 @@
 /* view/model.c: see model.h. */
 #include "view/model.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/report.h"
 #include "render/exposure.h"
 #include "render/lens_options.h"
-
-/* Copies the paths of the files that the context recorded. Those that do not fit are left out. */
-static void take_files(vlContext *context, Model *model) {
-  uint32_t count = 0;
-  while (vl_context_file(context, count)) count++;
-  model->files = calloc(count + 1, sizeof *model->files);
-  if (!model->files) return;
-  for (uint32_t i = 0; i < count; i++) {
-    char *path = strdup(vl_context_file(context, i)->path);
-    if (path) model->files[model->file_count++] = path;
-  }
-}
 
 static int choose_exposure(vlContext *context, const Arguments *arguments, Model *model) {
   bool meter;
@@ -29,7 +16,7 @@ static int choose_exposure(vlContext *context, const Arguments *arguments, Model
                               meter || model->opening.lamps ? 0 : 1, &model->exposure);
 }
 
-int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model) {
+int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model, FileList *files) {
   memset(model, 0, sizeof *model);
   vlError error = {0};
   vl_context_record_files(context, false);
@@ -41,7 +28,9 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
     vlResult result = vl_world_build_last(model->scene, &model->job.defs->build, &model->world, &error);
     if (result != VL_OK) status = report_error(&error, result, path);
   }
-  take_files(context, model);
+  file_list_add(files, path);
+  const vlFileRecord *file;
+  for (uint32_t i = 0; (file = vl_context_file(context, i)); i++) file_list_add(files, file->path);
   vl_context_record_files(context, false);
   if (status < 0) status = lens_autofocus(&model->job, model->scene, model->world);
   if (status < 0) status = choose_exposure(context, arguments, model);
@@ -55,7 +44,5 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
 void model_free(Model *model) {
   vl_world_destroy(model->world);
   vl_scene_destroy(model->scene);
-  for (uint32_t i = 0; i < model->file_count; i++) free(model->files[i]);
-  free(model->files);
   memset(model, 0, sizeof *model);
 }

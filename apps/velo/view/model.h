@@ -4,6 +4,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
+#include "view/watch.h"
 
 typedef struct Model {
   vlScene *scene;
@@ -16,8 +17,9 @@ typedef struct Model {
   uint32_t file_count;
 } Model;
 
-/* Loads, completes and builds. Returns -1, or the exit code after reporting the error; *model is empty then. */
-int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model);
+/* Loads, completes and builds. Adds the paths of the files that were read to the list. Returns -1, or the exit code
+ * after reporting the error; *model is empty then. */
+int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model, FileList *files);
 /* Frees what the model has and empties it. */
 void model_free(Model *model);
 

@@ -404,8 +404,8 @@ static void spell_plainly(ViewCamera *camera) {
   def->exposure_time = made->exposure_time, def->lens.iso = def->lens.seconds = VL_UNSET;
 }
 
-vlResult camera_take(const vlCameraDef *def, const vlCamera *made, ViewCamera *camera, vlError *error) {
-  *camera = (ViewCamera){.def = *def, .made = *made, .units = {1, 1, 36}};
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error) {
+  *camera = (ViewCamera){.def = *def, .made = *made, .units = {1, 1, 36, lookat}};
   vlLensDef *lens = &camera->def.lens;
   note_units(def, &camera->units);
   camera->def.stereo_eye = VL_EYE_BOTH;
@@ -428,6 +428,10 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
   vlResult status = apply_fields(&edit, error);
   if (status == VL_OK && edit.pose.given) camera_place(now, &edit.pose.pose, &next.def);
   note_units(&next.def, &next.units);
+  const CameraPose *pose = &edit.pose.pose;
+  double arm = 0;
+  for (int i = 0; i < 3; i++) arm += (pose->lookat[i] - pose->eye[i]) * (pose->lookat[i] - pose->eye[i]);
+  if (arm > 0) next.units.lookat = sqrt(arm);
   tidy_sensor(&next.units, &next.def);
   if (status == VL_OK) status = vl_camera_make(&next.def, &next.made, warning, error);
   if (status == VL_OK) *result = next;

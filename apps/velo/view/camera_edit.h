@@ -14,8 +14,8 @@ vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCame
 /* Replaces the focus of a camera by a distance. Errors as camera_edit. */
 vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result, vlError *error);
 /* The camera of a def whose image has the size of `made`. It keeps the def's spelling of the focal length where it can.
- * Errors as camera_edit. */
-vlResult camera_take(const vlCameraDef *def, const vlCamera *made, ViewCamera *camera, vlError *error);
+ * lookat: see CameraUnits. Errors as camera_edit. */
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error);
 
 /* Writes all spellings as members of the open JSON object. */
 void camera_spellings(Json *json, const ViewCamera *camera);

@@ -39,12 +39,11 @@ CameraPose camera_pose(const ViewCamera *camera) {
     memcpy(pose.up, def->up, sizeof pose.up);
     return pose;
   }
-  double r[3][3], distance = camera->made.focus_distance;
-  if (!(distance > 0 && distance < 1e6)) distance = 1;
+  double r[3][3];
   rotation_of(def->world_from_camera, r);
   for (int i = 0; i < 3; i++) {
     pose.eye[i] = def->world_from_camera[4 * i + 3];
-    pose.lookat[i] = pose.eye[i] + distance * r[2][i];
+    pose.lookat[i] = pose.eye[i] + camera->units.lookat * r[2][i];
     pose.up[i] = -r[1][i];
   }
   return pose;

@@ -9,6 +9,7 @@
 typedef struct CameraUnits {
   double zoom, pixel_size; /* of the lecture's spelling */
   double sensor_mm;        /* width of the sensor */
+  double lookat;           /* distance of lookat from the eye, where the def has a matrix */
 } CameraUnits;
 
 /* A camera as described and as compiled, for an image of the same size. */
@@ -22,7 +23,7 @@ typedef struct CameraPose {
   double eye[3], lookat[3], up[3], roll; /* scene units; radians */
 } CameraPose;
 
-/* The pose of a camera. lookat is at the focus distance where the def has a matrix. */
+/* The pose of a camera. */
 CameraPose camera_pose(const ViewCamera *camera);
 /* Gives the def this pose. A pose that mirrors or scales keeps doing so: it stays a matrix. */
 void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *def);

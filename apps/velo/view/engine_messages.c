@@ -108,8 +108,8 @@ static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
   vlError error = {0};
   const char *warning = NULL;
   if (camera_edit(&e->wanted.camera, m, &next, &warning, &error) != VL_OK) {
+    engine_post_state(e, client); /* its inputs show the camera as it is */
     post_refusal(e, client, m, error.message[0] ? error.message : "refused");
-    engine_post_state(e, client);
     return;
   }
   e->wanted.change = m->change;

@@ -297,7 +297,7 @@ int engine_take_model(Engine *e) {
   const vlSceneDefs *defs = e->model.job.defs;
   Wanted *w = &e->wanted;
   vlError error = {0};
-  vlResult result = camera_take(&defs->camera, &e->model.job.camera, &w->camera, &error);
+  vlResult result = camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
   if (result != VL_OK) return report_error(&error, result, e->def.path);
   e->scene_camera = w->camera;
   memcpy(w->crop, defs->film.crop, sizeof w->crop);

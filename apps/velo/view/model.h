@@ -12,6 +12,7 @@ typedef struct Model {
   Job job;
   SceneOpening opening;
   vlWorldInfo info;
+  double lookat;  /* distance of what the middle of the image shows, or of the scene's middle */
   float exposure; /* EV of the first view */
   char **files;   /* paths of the files that were read */
   uint32_t file_count;

@@ -141,7 +141,9 @@ typedef enum vlIsa { VL_ISA_AUTO = 0, VL_ISA_BASE = 1, VL_ISA_V2 = 2, VL_ISA_V3 
 /** Called about ten times a second by long calls, on the thread that made the call. Return true to stop the call. */
 typedef bool vlStopFn(void *user);
 
-/** The environment of all objects: memory, log, worker threads, instruction set. Any thread may use it. */
+/** The environment of all objects: memory, log, worker threads, instruction set. Any thread may use it, also several
+ * at once: calls from different threads overlap. Each works on its own thread, and the workers are divided evenly among
+ * the calls; calls of a higher priority (vlRenderDef.priority and others) get all workers. */
 typedef struct vlContext vlContext;
 
 /** How to create a context. */
@@ -179,9 +181,37 @@ VL_API void vl_context_destroy(vlContext *context);
 VL_API vlIsa vl_context_isa(const vlContext *context);
 /** The number of workers. */
 VL_API uint32_t vl_context_threads(const vlContext *context);
+/** A request to stop, which one thread makes and the calls of other threads obey: load, build, render, ground truth. A
+ * call stops within one batch of rays, or one step of a build, and returns VL_CANCELLED. All functions are callable
+ * from any thread. */
+typedef struct vlCancel vlCancel;
+/** Creates a request that is not made yet. ARGUMENT, MEMORY. */
+VL_API vlResult vl_cancel_create(vlContext *context, vlCancel **cancel);
+/** Must not be called while a call that refers to it runs. Null is allowed. */
+VL_API void vl_cancel_destroy(vlCancel *cancel);
+/** Makes the request: all calls that refer to it stop, and later ones stop at once. Safe in a signal handler. */
+VL_API void vl_cancel_request(vlCancel *cancel);
+/** Withdraws the request, so that the object can be used again. To be called when the stopped calls have returned. */
+VL_API void vl_cancel_clear(vlCancel *cancel);
+/** Whether the request is made. Null: false. */
+VL_API bool vl_cancel_requested(const vlCancel *cancel);
+
+/** The state of a load or a build. */
+typedef struct vlStep {
+  const char *name; /**< what is done now: "reading", "images", "shapes", "lights", "accelerator"; a constant string */
+  double fraction;  /**< the estimated share of the call that is done, 0 to 1 */
+  double elapsed;   /**< seconds since the call began */
+} vlStep;
+/** Called about ten times a second by a load or a build, on the thread that made the call. Return false to stop the
+ * call with VL_CANCELLED. */
+typedef bool vlStepFn(void *user, const vlStep *step);
+
 /** The number of bytes that the context and Embree hold now. *peak, which may be null, is set to the largest number so
  * far. */
 VL_API size_t vl_context_memory(const vlContext *context, size_t *peak);
+
+/** Frees data that a function of the library returned to the caller (those that say so). Null is allowed. */
+VL_API void vl_release(vlContext *context, void *data);
 
 /** A file that a context read. */
 typedef struct vlFileRecord {

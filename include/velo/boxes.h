@@ -37,6 +37,7 @@ typedef struct vlBoxesDef {
   double time;      /**< time at which the scene is seen, seconds; unset: the middle of the exposure (vl_camera_time) */
   vlStopFn *stop;   /**< returns true to stop with VL_CANCELLED; default null: never */
   void *stop_user;  /**< passed to stop */
+  const vlCancel *cancel; /**< stops the call within one tile of 32 x 32 pixels; default null */
 } vlBoxesDef;
 /** The default def for an image of this size, in pixels. */
 VL_API vlBoxesDef vl_default_boxes_def(uint32_t width, uint32_t height);

@@ -244,6 +244,13 @@ VL_API double vl_camera_time(const vlCamera *camera, double x, double y, double 
  * stretched to the new size; OPTICS keeps the film's diagonal. ARGUMENT: the size is out of range. */
 VL_API vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t height, vlCamera *result);
 
+/** The largest factor of vl_camera_coarse. */
+enum { VL_MOST_COARSE = 64 };
+/** Makes the same camera with pixels that are `factor` times as wide and as high, for a first coarse image. Pixel (x,
+ * y) covers the pixels from (factor x, factor y) on; the last column and row may reach beyond the image. ARGUMENT:
+ * factor is not 1 to 64. */
+VL_API vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *result);
+
 /** The pinhole ray through film point (x, y), in pixels: origin and normalised direction in world space, in double
  * precision. Returns false if the point is outside the camera's domain. This function and the following ones use the
  * pose at pose_times[0]; call vl_camera_at first for another time. */

@@ -87,9 +87,11 @@ typedef struct vlChannelsDef {
   const vlRenderDef *render; /**< see film */
   float exposure;            /**< for ERROR: exposure of the developed image (vlDevelopDef.exposure); default 1 */
   const vlCamera *forward, *backward; /**< for FORWARD and BACKWARD: the other cameras */
-  double time;     /**< the time at which the scene is shown, seconds; unset: the middle of the exposure */
-  vlStopFn *stop;  /**< returns true to stop with VL_CANCELLED; default null: never */
-  void *stop_user; /**< passed to stop */
+  double time;            /**< the time at which the scene is shown, seconds; unset: the middle of the exposure */
+  vlStopFn *stop;         /**< returns true to stop with VL_CANCELLED; default null: never */
+  void *stop_user;        /**< passed to stop */
+  const vlCancel *cancel; /**< stops the call within one tile of 32 x 32 pixels; default null */
+  int priority;           /**< as vlRenderDef.priority */
 } vlChannelsDef;
 /** The default def for an image of this size, in pixels. */
 VL_API vlChannelsDef vl_default_channels_def(uint32_t width, uint32_t height);

@@ -100,6 +100,11 @@ VL_API vlResult vl_image_find_attribute(const vlImage *image, const char *name, 
  */
 VL_API vlResult vl_image_read(vlContext *context, const char *path, vlImage **image, vlError *error);
 
+/** As vl_image_read, from the bytes of a file in memory; they are not kept. name: for messages. The context's limit of
+ * pixels applies. */
+VL_API vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size,
+                                     vlImage **image, vlError *error);
+
 /** Reads only the header: an image without pixels (vl_image_pixels is null), with channels and attributes. */
 VL_API vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **image, vlError *error);
 
@@ -127,6 +132,11 @@ VL_API vlWriteDef vl_default_write_def(void);
  * curve, clamped. write may be null. EXR is compressed on the context's workers (not from inside a parallel body,
  * except with `alone`); its bytes do not depend on their number. Errors: ARGUMENT, IO, MEMORY. */
 VL_API vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error);
+
+/** As vl_image_write, to memory. suffix: ".png", ".exr" and so on. *data receives the bytes of the file, which the
+ * caller frees with vl_release, *size their number. Errors: ARGUMENT, MEMORY; *data is null then. */
+VL_API vlResult vl_image_write_memory(const vlImage *image, const char *suffix, const vlWriteDef *write, void **data,
+                                      size_t *size, vlError *error);
 
 /** Writes all channels of several images of the same size to one OpenEXR file, each with its image's type. Channel
  * names must differ. Attributes are those of the first image; `half` applies to the first image only. Errors as above.

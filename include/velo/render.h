@@ -39,6 +39,15 @@ typedef struct vlBuildDef {
    * set, for tests. VL_BITS_PORTABLE accepts only the first two. The build returns UNSUPPORTED for a set that is not
    * accepted or that the machine lacks. */
   vlBits bits;
+  /** A world of the same context. What has not changed since is shared with it: meshes, their part of the accelerator,
+   * images, tables of materials. The result is the same, bit for bit, as without it. Things of one scene are recognised
+   * by their ids (velo/edit.h), those of a scene that was loaded again by their contents. Image files are read again if
+   * size or time of modification differ. `previous` may be destroyed before or after the new world. It is ignored if
+   * color, bits or imitate_pbrt differ. Default null. */
+  const vlWorld *previous;
+  const vlCancel *cancel; /**< stops the build; default null */
+  vlStepFn *progress;     /**< default null */
+  void *progress_user;    /**< passed to progress */
 } vlBuildDef;
 /** The default def. */
 VL_API vlBuildDef vl_default_build_def(void);
@@ -97,6 +106,10 @@ typedef struct vlFilmDef {
 VL_API const char *vl_sensor_name(uint32_t index);
 /** The default def for an image of this size, in pixels. */
 VL_API vlFilmDef vl_default_film_def(uint32_t width, uint32_t height);
+/** The def of a film of 1/factor of the size, rounded up, for a first coarse image by vl_camera_coarse. Pixel (x, y)
+ * covers the pixels from (factor x, factor y) on. The crop covers that of `def`; sums for errors and spectra are left
+ * out. factor: 1 to 64. */
+VL_API vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor);
 /** Creates a film without samples. ARGUMENT, MEMORY. */
 VL_API vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film);
 /** Null is allowed. */
@@ -201,6 +214,12 @@ typedef struct vlRenderDef {
   float noise_scale;      /**< a further factor, as vlDevelopDef.exposure; default 1 */
   vlProgressFn *progress; /**< default null */
   void *progress_user;    /**< passed to progress */
+  /** Stops the render within one batch of at most 1024 paths; the pass that is running is discarded, and the film keeps
+   * whole passes. Default null. */
+  const vlCancel *cancel;
+  /** Of several calls that run at once in a context, those with the highest priority get all workers; the others wait
+   * between two batches, except for one batch each 50 ms. Default 0. */
+  int priority;
 } vlRenderDef;
 /** The default def. */
 VL_API vlRenderDef vl_default_render_def(void);
@@ -216,11 +235,11 @@ typedef struct vlRenderStats {
   uint32_t worst_x, worst_y; /**< a pixel where a sample was discarded */
 } vlRenderStats;
 /** Adds samples to the film until each pixel has def->spp. The bits depend neither on the number of threads, nor on the
- * crop, nor on the division into passes and calls. VL_CANCELLED when the callback stopped the render; the film then
- * holds whole passes. Only one render at a time may add to a film. The render runs on the workers of the world's
- * context. def and stats may be null. With buckets in the film, the tracers with light paths use camera paths only.
- * Errors: MEMORY; ARGUMENT, also when camera and film have different sizes, when the film has buckets and the world is
- * in RGB mode, or when the film's samples are from a sequence of another length. */
+ * crop, nor on the division into passes and calls. VL_CANCELLED when the callback or def->cancel stopped the render;
+ * the film then holds whole passes. Only one render at a time may add to a film. The render runs on the workers of the
+ * world's context. def and stats may be null. With buckets in the film, the tracers with light paths use camera paths
+ * only. Errors: MEMORY; ARGUMENT, also when camera and film have different sizes, when the film has buckets and the
+ * world is in RGB mode, or when the film's samples are from a sequence of another length. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 

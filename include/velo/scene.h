@@ -41,6 +41,10 @@ typedef struct vlShapeId {
 typedef struct vlGroupId {
   uint32_t index; /**< from 1; 0: the world itself */
 } vlGroupId;
+/** Id of an instance. */
+typedef struct vlInstanceId {
+  uint32_t index; /**< from 1; 0: none */
+} vlInstanceId;
 /** Id of a participating medium. */
 typedef struct vlMediumId {
   uint32_t index; /**< from 1; 0: vacuum */
@@ -560,14 +564,15 @@ VL_API vlShapeId vl_scene_add_shape(vlScene *scene, const vlShapeDef *def);
 
 /** Adds an empty group; shapes join it by vlShapeDef.group. name may be null. Returns index 0 on error. */
 VL_API vlGroupId vl_scene_add_group(vlScene *scene, const char *name);
-/** Places a group in the world. Groups cannot be nested. vl_scene_result returns errors. */
-VL_API void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source);
+/** Places a group in the world. Groups cannot be nested. Returns index 0 on error (vl_scene_result). */
+VL_API vlInstanceId vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16],
+                                          vlSource source);
 /** Places a moving group in the world: `keys` poses (16 numbers each) at ascending times, in seconds. Between two times
  * translation, rotation and scale are interpolated separately (formulas: src/math/motion.h); before the first and after
  * the last time the group is at rest. Errors (returned by vl_scene_result): a pose is singular, only one of two
  * consecutive poses mirrors, or the times do not ascend. */
-VL_API void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
-                                         const double *world_from_group, vlSource source);
+VL_API vlInstanceId vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
+                                                 const double *world_from_group, vlSource source);
 
 /* ---- how the image is taken ------------------------------------------------------------------------------------ */
 
@@ -677,6 +682,9 @@ typedef struct vlLoadDef {
   const char *animation; /**< glTF: name of the animation, or its number from 0; null: the first */
   const char *variant;   /**< glTF: name of a material variant; null: the file's default */
   const char *camera;    /**< glTF: name of the camera, or its number from 0; null: the first */
+  const vlCancel *cancel; /**< stops the load; the scene must then be destroyed; default null */
+  vlStepFn *progress;     /**< default null */
+  void *progress_user;    /**< passed to progress */
 } vlLoadDef;
 /** The default def. */
 VL_API vlLoadDef vl_default_load_def(void);
@@ -684,6 +692,11 @@ VL_API vlLoadDef vl_default_load_def(void);
  * or one of these but glTF's with .gz. Relative paths in the file are relative to its folder. def may be null. Errors:
  * SCENE, MISSING, IO, MEMORY, UNSUPPORTED (valid, but not supported; the message says what). */
 VL_API vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
+
+/** As vl_scene_load, for a pbrt scene in memory. name: the file's name in messages, required; relative paths are
+ * relative to its folder, which need not contain a file of this name. data is copied. */
+VL_API vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size,
+                                     const vlLoadDef *def, vlError *error);
 
 /** The environment (light from all directions) that vl_scene_complete adds. */
 typedef enum vlEnvironmentKind {

@@ -43,11 +43,34 @@ static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoad
   return VL_OK;
 }
 
-vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+static vlResult check_load(const vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
   vl_error_clear(error);
   if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
   if (def && def->cookie != VL_COOKIE_LOAD) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
-  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  return vl_scene_result(scene, error);
+}
+
+static void start_task(vlScene *scene, vlTask *task, const vlLoadDef *def) {
+  vlLoadDef load = def ? *def : vl_default_load_def();
+  vl_task_start(task, load.cancel, load.progress, load.progress_user);
+  scene->task = task;
+}
+
+vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data, size_t size, const vlLoadDef *def,
+                              vlError *error) {
+  vlResult result = check_load(scene, name, def, error);
+  if (result != VL_OK) return result;
+  if (!data && size) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
+  vlTask task;
+  start_task(scene, &task, def);
+  result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
+  scene->task = NULL;
+  return result;
+}
+
+vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
+  vlResult checked = check_load(scene, path, def, error);
+  if (checked != VL_OK) return checked;
   struct stat info;
   bool readable = stat(path, &info) == 0 && !S_ISDIR(info.st_mode);
   Import *import =
@@ -59,7 +82,10 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
     if (!import && vl_ends_with(path, formats[i].suffix)) import = formats[i].import;
   }
   if (import) {
-    vlResult result = import(scene, path, def, error);
+    vlTask task;
+    start_task(scene, &task, def);
+    vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error) : import(scene, path, def, error);
+    scene->task = NULL;
     return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error) : result;
   }
   vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){0}, "%.300s: unknown kind of scene file (known: %s)", path, known);

@@ -1,4 +1,4 @@
-/* base/context.c: counted allocation, log, worker pool. See context.h. */
+/* base/context.c: counted allocation, log, parallel loops (pool.c), the sandbox. See context.h. */
 #include "base/context.h"
 
 #include <limits.h>
@@ -13,36 +13,19 @@
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/machine.h"
+#include "base/pool.h"
 #include "base/text.h"
-
-typedef struct Pool {
-  pthread_mutex_t mutex;
-  pthread_cond_t wake, done;
-  pthread_t *threads;
-  uint32_t thread_count; /* besides the caller */
-  bool stop;
-  uint64_t generation;
-  uint32_t running;
-  vlParallelFn *body;
-  void *loop_user;
-  uint32_t count;
-  atomic_uint next;
-} Pool;
 
 struct vlContext {
   vlContextDef def;
   vlIsa isa;
   atomic_size_t held, peak;
-  pthread_mutex_t log_mutex, run_mutex;
+  pthread_mutex_t log_mutex;
+  atomic_uint_fast64_t last_number;
   vlFileRecords files;
   char **sandbox; /* def.sandbox_count folders, with symbolic links resolved */
-  Pool pool;
+  vlPool pool;
 };
-
-typedef struct PoolSlot {
-  Pool *pool;
-  uint32_t worker;
-} PoolSlot;
 
 /* ---- memory: a header of 64 bytes before each block holds its size, so that the count is exact ------------------- */
 
@@ -130,6 +113,10 @@ void vl_free(vlContext *context, void *block) {
   context->def.allocator.release(context->def.allocator.user, header.raw);
 }
 
+void vl_release(vlContext *context, void *data) {
+  vl_free(context, data);
+}
+
 char *vl_strdup(vlContext *context, const char *text) {
   if (!text) return NULL;
   size_t size = strlen(text) + 1;
@@ -160,67 +147,6 @@ void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const ch
 
 /* ---- workers ----------------------------------------------------------------------------------------------------- */
 
-static void pool_work(Pool *pool, uint32_t worker) {
-  for (;;) {
-    uint32_t index = atomic_fetch_add(&pool->next, 1);
-    if (index >= pool->count) return;
-    pool->body(pool->loop_user, index, worker);
-  }
-}
-
-static void *pool_thread(void *argument) {
-  PoolSlot slot = *(PoolSlot *)argument;
-  free(argument);
-  Pool *pool = slot.pool;
-  uint64_t seen = 0;
-  pthread_mutex_lock(&pool->mutex);
-  for (;;) {
-    while (!pool->stop && pool->generation == seen) pthread_cond_wait(&pool->wake, &pool->mutex);
-    if (pool->stop) break;
-    seen = pool->generation;
-    pthread_mutex_unlock(&pool->mutex);
-    pool_work(pool, slot.worker);
-    pthread_mutex_lock(&pool->mutex);
-    if (--pool->running == 0) pthread_cond_signal(&pool->done);
-  }
-  pthread_mutex_unlock(&pool->mutex);
-  return NULL;
-}
-
-static void pool_stop(Pool *pool) {
-  pthread_mutex_lock(&pool->mutex);
-  pool->stop = true;
-  pthread_cond_broadcast(&pool->wake);
-  pthread_mutex_unlock(&pool->mutex);
-  for (uint32_t i = 0; i < pool->thread_count; i++) pthread_join(pool->threads[i], NULL);
-  free(pool->threads);
-  pthread_mutex_destroy(&pool->mutex);
-  pthread_cond_destroy(&pool->wake);
-  pthread_cond_destroy(&pool->done);
-}
-
-static vlResult pool_start(Pool *pool, uint32_t threads) {
-  pthread_mutex_init(&pool->mutex, NULL);
-  pthread_cond_init(&pool->wake, NULL);
-  pthread_cond_init(&pool->done, NULL);
-  pool->threads = threads > 1 ? calloc(threads - 1, sizeof *pool->threads) : NULL;
-  if (threads > 1 && !pool->threads) return VL_ERROR_MEMORY;
-  for (uint32_t i = 1; i < threads; i++) {
-    PoolSlot *slot = malloc(sizeof *slot);
-    if (slot) {
-      *slot = (PoolSlot){pool, i};
-      if (pthread_create(&pool->threads[pool->thread_count], NULL, pool_thread, slot) == 0) {
-        pool->thread_count++;
-        continue;
-      }
-      free(slot);
-    }
-    pool_stop(pool);
-    return VL_ERROR_MEMORY;
-  }
-  return VL_OK;
-}
-
 static void *wait_turn(void *mutex) {
   pthread_mutex_lock(mutex);
   pthread_mutex_unlock(mutex);
@@ -243,29 +169,16 @@ vlResult vl_try_threads(vlContext *context, vlError *error) {
   return vl_fail(error, VL_ERROR_MEMORY, "the system refuses to start %u threads", wanted);
 }
 
-void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user) {
+void vl_parallel_for_at(vlContext *context, const vlLoopDef *def, uint32_t count, vlParallelFn *body, void *loop_user) {
   if (count == 0) return;
-  if (context->def.parallel_for) {
+  if (context->def.parallel_for)
     context->def.parallel_for(context->def.parallel_for_user, count, body, loop_user);
-    return;
-  }
-  Pool *pool = &context->pool;
-  pthread_mutex_lock(
-      &context->run_mutex); /* only one parallel loop runs at a time, also if several threads call this function */
-  pthread_mutex_lock(&pool->mutex);
-  pool->body = body;
-  pool->loop_user = loop_user;
-  pool->count = count;
-  atomic_store(&pool->next, 0);
-  pool->running = pool->thread_count;
-  pool->generation++;
-  pthread_cond_broadcast(&pool->wake);
-  pthread_mutex_unlock(&pool->mutex);
-  pool_work(pool, 0);
-  pthread_mutex_lock(&pool->mutex);
-  while (pool->running > 0) pthread_cond_wait(&pool->done, &pool->mutex);
-  pthread_mutex_unlock(&pool->mutex);
-  pthread_mutex_unlock(&context->run_mutex);
+  else
+    vl_pool_run(&context->pool, def, count, body, loop_user);
+}
+
+void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user) {
+  vl_parallel_for_at(context, &(vlLoopDef){0}, count, body, loop_user);
 }
 
 /* ---- the sandbox ------------------------------------------------------------------------------------------------- */
@@ -336,10 +249,9 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   context->def = d;
   context->isa = isa;
   pthread_mutex_init(&context->log_mutex, NULL);
-  pthread_mutex_init(&context->run_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
   r = copy_sandbox(context);
-  if (r == VL_OK && !d.parallel_for) r = pool_start(&context->pool, d.threads);
+  if (r == VL_OK && !d.parallel_for) r = vl_pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
     free_sandbox(context);
     d.allocator.release(d.allocator.user, context);
@@ -351,9 +263,8 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
 
 void vl_context_destroy(vlContext *context) {
   if (!context) return;
-  if (!context->def.parallel_for) pool_stop(&context->pool);
+  if (!context->def.parallel_for) vl_pool_stop(&context->pool);
   pthread_mutex_destroy(&context->log_mutex);
-  pthread_mutex_destroy(&context->run_mutex);
   pthread_mutex_destroy(&context->files.mutex);
   for (size_t i = 0; i < context->files.files.count; i++)
     vl_free(context, (void *)(uintptr_t)context->files.files.items[i].path);
@@ -368,6 +279,10 @@ vlIsa vl_context_isa(const vlContext *context) {
 
 uint32_t vl_context_threads(const vlContext *context) {
   return context->def.threads;
+}
+
+uint64_t vl_context_number(vlContext *context) {
+  return atomic_fetch_add(&context->last_number, 1) + 1;
 }
 
 vlFileRecords *vl_context_file_records(vlContext *context) {

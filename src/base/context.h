@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <stdarg.h>
 
+#include "base/pool.h"
 #include "velo/base.h"
 
 /* Counted allocation through the context. Null on failure or if count * size overflows. vl_alloc_zero zeroes the
@@ -44,8 +45,14 @@ vlFileRecords *vl_context_file_records(vlContext *context);
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* A number that no other call with this context returns; from 1. */
+uint64_t vl_context_number(vlContext *context);
+
 /* Runs body for each index in [0, count) on the context's workers (or by the caller's parallel_for). Returns when
- * all are done. Must not be called from inside a body. */
+ * all are done. Must not be called from inside a body. Loops of several threads run at the same time; their workers
+ * have the same numbers. */
+void vl_parallel_for_at(vlContext *context, const vlLoopDef *def, uint32_t count, vlParallelFn *body, void *loop_user);
+/* The same with the default def. */
 void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user);
 
 #endif

@@ -32,8 +32,14 @@ typedef struct vlFileWriter {
   mode_t mode;
   uid_t owner;
   gid_t group;
+  vlContext *context; /* of a writer to memory; else null */
+  char *memory;       /* its bytes */
+  size_t memory_size, memory_capacity;
 } vlFileWriter;
 vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error);
+/* Starts a writer to memory. It is not committed; the caller takes `memory` and frees it with vl_free. If memory runs
+ * out, failed_errno is ENOMEM. */
+void vl_file_open_memory(vlFileWriter *writer, vlContext *context);
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size);
 /* Writes at an absolute offset (for OpenEXR's callback). */
 void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset);

@@ -123,6 +123,7 @@ void vl_remove_leftovers(const char *path) {
 vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error) {
   writer->failed_errno = 0;
   writer->descriptor = -1;
+  writer->context = NULL;
   writer->target[0] = writer->temporary[0] = 0;
   int n = snprintf(writer->path, sizeof writer->path, "%s", path);
   if (n < 0 || (size_t)n >= sizeof writer->path) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
@@ -142,8 +143,39 @@ vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *err
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
 }
 
+void vl_file_open_memory(vlFileWriter *writer, vlContext *context) {
+  writer->failed_errno = 0;
+  writer->descriptor = -1;
+  writer->context = context;
+  writer->memory = NULL;
+  writer->memory_size = writer->memory_capacity = 0;
+  writer->path[0] = writer->target[0] = writer->temporary[0] = 0;
+}
+
+static void write_memory(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
+  size_t end = (size_t)offset + size;
+  if (size == 0 || writer->failed_errno) return;
+  if (end > writer->memory_capacity) {
+    size_t capacity = end + end / 2 + 4096;
+    char *grown = vl_realloc_array(writer->context, writer->memory, capacity, 1);
+    if (!grown) {
+      writer->failed_errno = ENOMEM;
+      return;
+    }
+    writer->memory = grown;
+    writer->memory_capacity = capacity;
+  }
+  if (offset > writer->memory_size) memset(writer->memory + writer->memory_size, 0, offset - writer->memory_size);
+  memcpy(writer->memory + offset, data, size);
+  if (end > writer->memory_size) writer->memory_size = end;
+}
+
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
   const char *bytes = data;
+  if (writer->context) {
+    write_memory(writer, data, size, writer->memory_size);
+    return;
+  }
   while (size && !writer->failed_errno) {
     ssize_t n = write(writer->descriptor, bytes, size);
     if (n < 0) {
@@ -157,6 +189,10 @@ void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
 
 void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
   const char *bytes = data;
+  if (writer->context) {
+    write_memory(writer, data, size, offset);
+    return;
+  }
   while (size && !writer->failed_errno) {
     ssize_t n = pwrite(writer->descriptor, bytes, size, (off_t)offset);
     if (n < 0) {

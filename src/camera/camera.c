@@ -153,3 +153,20 @@ vlResult vl_camera_resize(const vlCamera *camera, uint32_t width, uint32_t heigh
   *result = resized;
   return VL_OK;
 }
+
+vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *result) {
+  if (!camera || !result || factor == 0 || factor > VL_MOST_COARSE) return VL_ERROR_ARGUMENT;
+  vlCamera coarse = *camera;
+  double scale = 1.0 / factor;
+  coarse.fx *= scale, coarse.fy *= scale, coarse.skew *= scale;
+  coarse.cx *= scale, coarse.cy *= scale;
+  for (int i = 0; i < 2; i++) coarse.lens.focus_pixel[i] *= scale; /* unset values stay unset */
+  coarse.width = (camera->width + factor - 1) / factor;
+  coarse.height = (camera->height + factor - 1) / factor;
+  bool down = camera->readout_direction == VL_READOUT_DOWN || camera->readout_direction == VL_READOUT_UP;
+  double rows = down ? camera->height : camera->width, coarse_rows = down ? coarse.height : coarse.width;
+  coarse.readout *= coarse_rows * factor / rows; /* rows are read at the same speed */
+  vl_camera_measure(&coarse);
+  *result = coarse;
+  return VL_OK;
+}

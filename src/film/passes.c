@@ -21,6 +21,17 @@ vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
                      .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
 }
 
+vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor) {
+  vlFilmDef coarse = *def;
+  if (factor == 0) factor = 1;
+  coarse.width = (def->width + factor - 1) / factor;
+  coarse.height = (def->height + factor - 1) / factor;
+  for (int i = 0; i < 4; i++) coarse.crop[i] = (def->crop[i] + (i < 2 ? 0 : factor - 1)) / factor;
+  coarse.errors = false;
+  coarse.buckets = 0;
+  return coarse;
+}
+
 /* Sets the sensor's response curves and matrix, its name (a static string), and pbrt's default white balance for it. */
 static vlResult set_sensor(vlFilm *film) {
   vlFilmDef *def = &film->def;

@@ -238,24 +238,54 @@ static vlResult finish_write(vlFileWriter *writer, vlResult result, vlError *err
   return result;
 }
 
+/* The codec that writes files of this name; null, with the error set, if there is none. */
+static const vlCodec *find_codec(const char *path, vlError *error) {
+  const vlCodec *codec = codec_of_suffix(path);
+  if (codec) return codec;
+  const char *names[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
+  const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+  const char *near = dot && (!slash || dot > slash) ? vl_nearest_name(dot, names, 7) : NULL;
+  if (near)
+    vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: unknown suffix (did you mean %s?)", path, near);
+  else
+    vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga",
+            path);
+  return NULL;
+}
+
 vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef *write, vlError *error) {
   vlWriteDef def = write ? *write : vl_default_write_def();
   vlResult result = check_write(image, path, &def, error);
   if (result != VL_OK) return result;
-  const vlCodec *codec = codec_of_suffix(path);
-  if (!codec) {
-    const char *names[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    const char *near = dot && (!slash || dot > slash) ? vl_nearest_name(dot, names, 7) : NULL;
-    if (near)
-      return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write %s: unknown suffix (did you mean %s?)", path, near);
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "cannot write %s: the suffix must be .exr .png .jpg .jpeg .hdr .pfm or .tga", path);
-  }
+  const vlCodec *codec = find_codec(path, error);
+  if (!codec) return VL_ERROR_ARGUMENT;
   vlFileWriter writer;
   result = vl_file_open_write(&writer, path, error);
   if (result != VL_OK) return result;
   return finish_write(&writer, codec->write(image, &def, &writer, error), error);
+}
+
+vlResult vl_image_write_memory(const vlImage *image, const char *suffix, const vlWriteDef *write, void **data,
+                               size_t *size, vlError *error) {
+  if (!data || !size) return vl_fail(error, VL_ERROR_ARGUMENT, "image: data or size is null");
+  *data = NULL;
+  *size = 0;
+  vlWriteDef def = write ? *write : vl_default_write_def();
+  vlResult result = check_write(image, suffix, &def, error);
+  if (result != VL_OK) return result;
+  const vlCodec *codec = find_codec(suffix, error);
+  if (!codec) return VL_ERROR_ARGUMENT;
+  vlFileWriter writer;
+  vl_file_open_memory(&writer, image->context);
+  result = codec->write(image, &def, &writer, error);
+  if (writer.failed_errno) result = vl_fail_memory(error);
+  if (result != VL_OK) {
+    vl_free(image->context, writer.memory);
+    return result;
+  }
+  *data = writer.memory;
+  *size = writer.memory_size;
+  return VL_OK;
 }
 
 static vlResult check_layers(const vlImage *const *images, uint32_t count, vlError *error) {

@@ -49,8 +49,5 @@ vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32
 /* Like vl_image_read, for a file that a scene names: pipes are rejected, and the context's sandbox and pixel limit
  * apply. */
 vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **image, vlError *error);
-/* Like vl_image_read_named, from the bytes of a file in memory. Messages use `name`. */
-vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
-                              vlError *error);
 
 #endif

@@ -46,6 +46,7 @@ typedef struct vlRenderRun {
   vlRenderWorker *workers;
   atomic_uint blocks_done;
   vlStop stop;
+  vlLoopDef loop;
   double start;
   vlFilmSequence sequence;
   /* Work in samples per pixel, the mean over all pixels: before this call, before the running pass, of the running

@@ -191,7 +191,7 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
   c->world = world;
   c->def = &p->def;
   vlStop stop;
-  vl_stop_init(&stop, def->stop, def->stop_user);
+  vl_stop_init(&stop, def->cancel, def->stop, def->stop_user);
   c->stop = &stop;
   vl_channel_prepare(c, camera);
   p->time = vl_world_time(world, c->time);

@@ -291,7 +291,7 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   vlChannelPass pass, *p = &pass;
   memset(p, 0, sizeof *p);
   vlStop stop;
-  vl_stop_init(&stop, def->stop, def->stop_user);
+  vl_stop_init(&stop, def->cancel, def->stop, def->stop_user);
   p->world = world;
   p->def = def;
   p->stop = &stop;
@@ -301,7 +301,8 @@ vlResult vl_render_channels(const vlWorld *world, const vlCamera *camera, const 
   if (result == VL_OK) result = make_workers(p, error);
   if (result == VL_OK) result = open_mattes(p, error);
   if (result == VL_OK) {
-    vl_parallel_for(world->context, p->tiles, vl_channel_tile, p);
+    vlLoopDef loop = vl_loop_def(def->priority, def->cancel);
+    vl_parallel_for_at(world->context, &loop, p->tiles, vl_channel_tile, p);
     result = atomic_load(&stop.stopped) ? vl_fail(error, VL_CANCELLED, "stopped") : describe_mattes(p, error);
   }
   free_all(p);

@@ -155,6 +155,7 @@ static void prepare(vlRenderRun *r, const vlCamera *camera) {
   r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
                           .sampler = &r->film_rays.sampler,
                           .isa = isa,
+                          .cancel = r->def->cancel,
                           .max_depth = r->def->max_depth,
                           .ao_distance = r->def->ao_distance,
                           .ao_cosine = r->def->ao_cosine,
@@ -241,10 +242,10 @@ static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
   if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
   atomic_store(&r->blocks_done, 0);
   if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
-  if (result == VL_OK) vl_parallel_for(r->world->context, vl_render_block_count(r), vl_render_block, r);
+  if (result == VL_OK) vl_parallel_for_at(r->world->context, &r->loop, vl_render_block_count(r), vl_render_block, r);
   if (r->two_way && r->adaptive.in_pass < r->adaptive.blocks) vl_two_way_drop_splats(r->two_way);
   *late = atomic_load(&r->stop.late);
-  if (result == VL_OK && !atomic_load(&r->stop.stopped)) {
+  if (result == VL_OK && !atomic_load(&r->stop.stopped) && !vl_is_cancelled(r->def->cancel)) {
     vl_film_commit_pass(r->film);
     return vl_adaptive_end_pass(&r->adaptive, r->pass_samples) == VL_OK ? VL_OK : vl_fail_memory(error);
   }
@@ -285,7 +286,8 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   r->film = film;
   r->def = def;
   r->start = vl_seconds();
-  vl_stop_init(&r->stop, ask_to_stop, r);
+  r->loop = vl_loop_def(def->priority, def->cancel);
+  vl_stop_init(&r->stop, def->cancel, ask_to_stop, r);
   r->sequence = vl_film_sequence(film);
   if (!r->sequence.length) {
     r->sequence.length = def->sequence ? def->sequence : vl_sampler_sequence(def->sampler, def->spp);

@@ -53,6 +53,7 @@ struct vlTwoWayRun {
   uint32_t *start, capacity, buckets;
   atomic_uint_least64_t stored;
   vlStop *stop;
+  vlLoopDef loop;
   bool starts; /* some light can start paths */
 };
 
@@ -224,8 +225,8 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
   for (;;) {
     set_radius(run, index);
     atomic_store(&run->stored, 0);
-    vl_parallel_for(run->context, (run->paths + VL_BATCH - 1) / VL_BATCH, light_block, run);
-    if (atomic_load(&stop->stopped)) return vl_fail(error, VL_CANCELLED, "stopped");
+    vl_parallel_for_at(run->context, &run->loop, (run->paths + VL_BATCH - 1) / VL_BATCH, light_block, run);
+    if (vl_stop_check(stop)) return vl_fail(error, VL_CANCELLED, "stopped");
     uint64_t stored = atomic_load(&run->stored);
     if (!way->merge) return VL_OK;
     if (stored <= run->capacity) {
@@ -291,6 +292,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->trace.two_way = &run->way;
   run->kernels = vl_trace_kernels(trace->isa);
   run->rays = rays;
+  run->loop = vl_loop_def(def->priority, def->cancel);
   run->exposure = (float)camera->exposure_time;
   uint64_t pixels = (uint64_t)f->width * f->height;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;

@@ -58,6 +58,8 @@ bool vl_scene_copy_source(vlScene *scene, vlSource *source) {
       return true;
     }
   }
+  for (size_t i = 0; i < scene->files.count; i++) /* a def of this scene */
+    if (scene->files.items[i] == source->file) return true;
   if (!vl_scene_copy_string(scene, &source->file)) return false;
   const char **slot = VL_PUSH(scene->context, &scene->files);
   if (!slot) {

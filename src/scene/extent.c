@@ -57,7 +57,7 @@ void vl_extent_visit(const vlScene *scene, const vlExtent *boxes, const bool *wi
     const vlSceneInstance *instance = &scene->instances.items[i];
     const vlExtent *b = &boxes[instance->group.index - 1];
     vlMat4 m = vl_mat4_load(instance->world_from_group);
-    if (b->low[0] <= b->high[0]) visit_box(&m, b->low, b->high, visit, user);
+    if (!instance->hidden && b->low[0] <= b->high[0]) visit_box(&m, b->low, b->high, visit, user);
   }
 }
 

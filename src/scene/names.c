@@ -4,8 +4,8 @@
 #include "scene/scene.h"
 #include "scene/schema/schema.h"
 
-static bool is_placed(const vlScene *scene, const vlSceneInstance *instance) {
-  return scene->groups.items[instance->group.index - 1].shape_count > 0; /* a world has no instances of empty groups */
+bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance) {
+  return !instance->hidden && scene->groups.items[instance->group.index - 1].shape_count > 0;
 }
 
 uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind) {
@@ -15,7 +15,8 @@ uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind) {
     case VL_ID_OBJECT: return (uint32_t)scene->shapes.count;
     case VL_ID_MATERIAL: return (uint32_t)scene->materials.count + 1;
     case VL_ID_INSTANCE:
-      for (size_t i = 0; i < scene->instances.count; i++) placed += is_placed(scene, &scene->instances.items[i]);
+      for (size_t i = 0; i < scene->instances.count; i++)
+        placed += vl_scene_is_placed(scene, &scene->instances.items[i]);
       return placed;
   }
   return 0;
@@ -23,7 +24,7 @@ uint32_t vl_scene_id_count(const vlScene *scene, vlIdKind kind) {
 
 static const vlSceneInstance *find_instance(const vlScene *scene, uint32_t id) {
   for (size_t i = 0; i < scene->instances.count; i++)
-    if (is_placed(scene, &scene->instances.items[i]) && --id == 0) return &scene->instances.items[i];
+    if (vl_scene_is_placed(scene, &scene->instances.items[i]) && --id == 0) return &scene->instances.items[i];
   return NULL;
 }
 

@@ -15,6 +15,12 @@ vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const cha
   return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
 }
 
+bool vl_scene_stopped(vlScene *scene, double fraction) {
+  if (!vl_task_stopped(scene->task, "reading", fraction)) return false;
+  vl_scene_fail(scene, VL_CANCELLED, (vlSource){0}, "stopped");
+  return true;
+}
+
 static vlSceneDefs default_defs(void) {
   const uint32_t width = 1280, height = 720; /* pbrt's default size, pixels */
   return (vlSceneDefs){.camera = vl_default_camera_def(width, height),
@@ -30,6 +36,7 @@ vlResult vl_scene_create(vlContext *context, vlScene **result) {
   vlScene *scene = vl_alloc_zero(context, 1, sizeof *scene);
   if (!scene) return VL_ERROR_MEMORY;
   scene->context = context;
+  scene->number = vl_context_number(context);
   scene->defs = default_defs();
   *result = scene;
   return VL_OK;
@@ -42,6 +49,14 @@ void vl_scene_destroy(vlScene *scene) {
   for (size_t i = 0; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
   for (size_t i = 0; i < scene->apertures.count; i++) vl_aperture_destroy(scene->apertures.items[i]);
   for (size_t i = 0; i < scene->optics.count; i++) vl_optics_destroy(scene->optics.items[i]);
+  for (size_t i = 0; i < scene->edits.count; i++) {
+    vl_free(context, scene->edits.items[i].block);
+    vl_image_destroy(scene->edits.items[i].image);
+  }
+  VL_ARRAY_FREE(context, &scene->edits);
+  VL_ARRAY_FREE(context, &scene->texture_marks);
+  VL_ARRAY_FREE(context, &scene->light_marks);
+  VL_ARRAY_FREE(context, &scene->shape_marks);
   VL_ARRAY_FREE(context, &scene->apertures);
   VL_ARRAY_FREE(context, &scene->optics);
   VL_ARRAY_FREE(context, &scene->textures);

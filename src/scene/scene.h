@@ -6,6 +6,7 @@
 #define SCENE_SCENE_H
 
 #include "base/array.h"
+#include "base/cancel.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "velo/check.h"
@@ -25,7 +26,23 @@ typedef struct vlSceneInstance {
   vlLabel label;
   uint32_t keys; /* number of keys of the motion; 0: no motion */
   const double *times, *poses;
+  bool hidden, removed;
 } vlSceneInstance;
+
+/* What vl_scene_set_* has allocated for an object; freed when the object is set again. */
+typedef struct vlSceneEdit {
+  const void *array; /* address of the scene's array that holds the object */
+  uint32_t id;
+  void *block; /* one of the two is null */
+  vlImage *image;
+} vlSceneEdit;
+
+/* The state of an object besides its def. Objects that were never changed have no mark. */
+typedef struct vlSceneMark {
+  uint64_t generation; /* 0: as added; each vl_scene_set_* gives a new number */
+  bool hidden;
+} vlSceneMark;
+typedef VL_ARRAY(vlSceneMark) vlSceneMarks; /* element i: object of id i + 1; may be shorter than the objects */
 
 typedef struct vlSceneChoice {
   vlChoiceKind kind;
@@ -37,6 +54,7 @@ struct vlScene {
   vlError error;        /* the first error; code VL_OK: none */
   vlProblemFn *problem; /* receives problems while loading (vl_scene_diagnose); may be null */
   void *problem_user;
+  vlTask *task; /* of the load that is running; else null */
   VL_ARRAY(vlTextureDef) textures;
   VL_ARRAY(vlMaterialDef) materials;
   VL_ARRAY(vlEmissionDef) emissions;
@@ -45,6 +63,9 @@ struct vlScene {
   VL_ARRAY(vlShapeDef) shapes;
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
+  uint64_t number; /* of this scene in its context; from 1 */
+  vlSceneMarks texture_marks, light_marks, shape_marks;
+  VL_ARRAY(vlSceneEdit) edits;
   vlSceneDefs defs;
   bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras of a glTF file */
   VL_ARRAY(vlAperture *) apertures; /* aperture objects to which defs.camera may point */
@@ -62,6 +83,10 @@ struct vlScene {
   bool meshes_dropped;       /* vl_scene_drop_meshes has freed the arrays of the shapes */
 };
 
+static inline vlSceneMark vl_scene_mark(const vlSceneMarks *marks, size_t index) {
+  return index < marks->count ? marks->items[index] : (vlSceneMark){0, false};
+}
+
 /* Whether the coat of this material has a closed form. It has one if the base is diffuse, the layer does not scatter,
  * and its thickness is constant. */
 bool vl_coat_in_closed_form(const vlMaterialDef *def);
@@ -70,9 +95,17 @@ bool vl_coat_in_closed_form(const vlMaterialDef *def);
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* True: the load that is running must stop; the scene then has the error CANCELLED. fraction: as in vlStep. */
+bool vl_scene_stopped(vlScene *scene, double fraction);
+
 /* Adds a shape without copying its mesh arrays. The arrays are memory blocks of the scene's context (vl_alloc*), or
  * null. On success the scene owns them; on failure they are freed. */
 vlShapeId vl_scene_adopt_shape(vlScene *scene, const vlShapeDef *def);
+
+/* Whether a shape can be an area light. */
+bool vl_shape_may_emit(const vlShapeDef *def);
+/* Whether an instance is in the worlds of the scene: those without shapes are not, nor those that are hidden. */
+bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance);
 
 /* Adds a choice of the file; the name is copied and may be null. False if memory is exhausted (reported). */
 bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, double seconds);

@@ -131,6 +131,11 @@ static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
   return true;
 }
 
+bool vl_shape_may_emit(const vlShapeDef *d) {
+  const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
+  return (row->traits & VL_SHAPE_TRAIT_EMITS) && !d->centers && !d->radii;
+}
+
 static bool check_shape(vlScene *scene, vlShapeDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
   if (!row) return bad(scene, d, "unknown kind of shape"), false;
@@ -280,8 +285,10 @@ static vlSceneInstance *push_instance(vlScene *scene, vlGroupId group, const dou
   return slot;
 }
 
-void vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16], vlSource source) {
-  push_instance(scene, group, world_from_group, source);
+vlInstanceId vl_scene_add_instance(vlScene *scene, vlGroupId group, const double world_from_group[16],
+                                   vlSource source) {
+  bool added = push_instance(scene, group, world_from_group, source) != NULL;
+  return (vlInstanceId){added ? (uint32_t)scene->instances.count : 0};
 }
 
 void vl_scene_label_instance(vlScene *scene, const vlLabel *label) {
@@ -307,21 +314,23 @@ static bool check_keys(vlScene *scene, uint32_t keys, const double *times, const
   return true;
 }
 
-void vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
-                                  const double *world_from_group, vlSource source) {
-  if (scene->error.code != VL_OK) return;
+vlInstanceId vl_scene_add_moving_instance(vlScene *scene, vlGroupId group, uint32_t keys, const double *times,
+                                          const double *world_from_group, vlSource source) {
+  const vlInstanceId none = {0};
+  if (scene->error.code != VL_OK) return none;
   if (keys == 0 || keys > 65536 || !times || !world_from_group) {
     vl_scene_fail(scene, VL_ERROR_ARGUMENT, source, "instance: a motion needs 1 to 65536 poses and their times");
-    return;
+    return none;
   }
-  if (!check_keys(scene, keys, times, world_from_group, source)) return;
+  if (!check_keys(scene, keys, times, world_from_group, source)) return none;
   const double *kept_times = times, *kept_poses = world_from_group;
   if (!vl_scene_copy_block(scene, times, keys, sizeof *times, &kept_times) ||
       !vl_scene_copy_block(scene, world_from_group, keys, 16 * sizeof *world_from_group, &kept_poses))
-    return;
+    return none;
   vlSceneInstance *slot = push_instance(scene, group, world_from_group, source);
-  if (!slot) return;
+  if (!slot) return none;
   slot->keys = keys > 1 ? keys : 0;
   slot->times = kept_times;
   slot->poses = kept_poses;
+  return (vlInstanceId){(uint32_t)scene->instances.count};
 }

@@ -6,6 +6,7 @@
 #ifndef TRACE_TRACE_H
 #define TRACE_TRACE_H
 
+#include "base/cancel.h"
 #include "base/isa.h"
 #include "trace/sampler/sampler.h"
 #include "world/world.h"
@@ -56,7 +57,8 @@ typedef struct vlTraceDef {
   float lambda_low, lambda_span; /* nm; if the span is above 0, wavelengths are uniform in [low, low + span]; else they
                                     are drawn from the visible response (pbrt book 4.5.4) */
   float pixel_spread, pixel_width; /* width of a camera ray's footprint at distance t: pixel_width + pixel_spread * t */
-  const struct vlTwoWay *two_way;  /* only for the two-way tracers (two_way.h); else null */
+  const vlCancel *cancel; /* once it is requested, tracers end early, and their results must not be used; may be null */
+  const struct vlTwoWay *two_way; /* only for the two-way tracers (two_way.h); else null */
 } vlTraceDef;
 
 /* Camera rays and their results. Rays are in world space, and d has unit length. Each array has VL_PAD(n) elements, n

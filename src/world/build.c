@@ -26,6 +26,10 @@ bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float
   return true;
 }
 
+vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error) {
+  return vl_task_stopped(world->task, name, fraction) ? vl_fail(error, VL_CANCELLED, "stopped") : VL_OK;
+}
+
 /* giving: the same scene if its meshes may be freed during the build, else null. */
 static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *def, vlWorld **result, vlError *error) {
   vl_error_clear(error);
@@ -43,11 +47,16 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
   if (!world) return vl_fail_memory(error);
+  vlTask task;
+  vl_task_start(&task, d.cancel, d.progress, d.progress_user);
   world->context = scene->context;
   world->def = d;
+  world->def.cancel = NULL, world->def.progress = NULL, world->def.progress_user = NULL;
+  world->task = &task;
   vlError local;
   vl_error_clear(&local);
-  r = vl_world_preload_images(world, scene, &local);
+  r = vl_world_step(world, "images", 0, &local);
+  if (r == VL_OK) r = vl_world_preload_images(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_materials(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_shapes(world, scene, &local);
   if (r == VL_OK) r = vl_world_add_media(world, scene, &local);
@@ -55,7 +64,9 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   if (r == VL_OK) r = vl_world_add_lights(world, scene, &local);
   if (r == VL_OK && giving) vl_scene_drop_meshes(giving); /* frees memory before the accelerator allocates */
   if (r == VL_OK) r = vl_accel_build(world, &local);
+  if (r == VL_OK) r = vl_world_step(world, "accelerator", 1, &local);
   world->texture_memo = NULL;
+  world->task = NULL;
   if (r != VL_OK) {
     if (error) *error = local;
     vl_world_destroy(world);

@@ -68,10 +68,10 @@ static vlResult fill(vlWorld *world, const vlScene *scene, Files *files) {
     if (name[0] && !names[i]) return VL_ERROR_MEMORY;
   }
   size_t next = 0;
-  for (size_t i = 0; i < scene->instances.count; i++) { /* instances of empty groups are not in the world */
+  for (size_t i = 0; i < scene->instances.count; i++) { /* as in add_instances (shapes.c) */
     const vlSceneInstance *instance = &scene->instances.items[i];
     uint32_t group = instance->group.index;
-    if (world->groups.items[group].count == 0 || next >= world->instances.count) continue;
+    if (instance->hidden || world->groups.items[group].count == 0 || next >= world->instances.count) continue;
     vlWorldOrigin *o = &world->instance_origins[next++];
     copy_source(files, scene, instance->source, &o->source);
     if (!copy_label(world, &instance->label, &o->label)) return VL_ERROR_MEMORY;

@@ -8,6 +8,7 @@
 #define WORLD_WORLD_H
 
 #include "base/array.h"
+#include "base/cancel.h"
 #include "color/color.h"
 #include "velo/render.h"
 #include "world/accel/accel.h"
@@ -225,7 +226,8 @@ typedef struct vlWorldOrigin {
 
 struct vlWorld {
   vlContext *context;
-  vlBuildDef def;
+  vlBuildDef def; /* without its pointers, which are valid during the build only */
+  vlTask *task;   /* of the build; null afterwards */
   VL_ARRAY(vlWorldShape) shapes;
   VL_ARRAY(vlWorldGroup) groups; /* element 0 holds the shapes outside of groups */
   VL_ARRAY(vlWorldInstance) instances;
@@ -278,6 +280,8 @@ vlResult vl_world_add_origins(vlWorld *world, const struct vlScene *scene, vlErr
 /* Area of one primitive in the space of its vertices: world space for shapes outside of groups, else group space. */
 float vl_world_prim_area(const vlWorldShape *shape, uint32_t prim);
 void vl_world_prim_bounds(const vlWorldShape *shape, uint32_t prim, float low[3], float high[3]);
+/* During the build: CANCELLED if it must stop. name, fraction: as in vlStep. */
+vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error);
 /* Returns r. Adds the source location to an error that has none. */
 vlResult vl_world_placed(vlSource source, vlError *error, vlResult r);
 /* A new block owned by the world, or null. */

@@ -1,5 +1,6 @@
 /* test/base/test_threads.c: the worker pool: each index runs once, worker numbers are in range, loops follow each
- * other, several callers, the caller's own parallel_for, a log callback that is never entered twice at a time. */
+ * other, several callers at once, priorities, the caller's own parallel_for, a log callback that is never entered twice
+ * at a time. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,8 +8,11 @@
 /* cmocka wants these four before it */
 #include <cmocka.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 #include "base/context.h"
 
@@ -134,12 +138,94 @@ static void log_is_entered_once(void **state) {
   vl_context_destroy(context);
 }
 
+/* Two loops at once: each body waits until a body of the other loop runs, too. A pool that runs one loop after the
+ * other would wait for ever; the alarm ends it. */
+typedef struct Meeting {
+  atomic_uint here[2];
+  vlContext *context;
+} Meeting;
+typedef struct Side {
+  Meeting *meeting;
+  int index;
+} Side;
+
+static void meet(void *user, uint32_t index, uint32_t worker) {
+  (void)index, (void)worker;
+  Side *side = user;
+  atomic_store(&side->meeting->here[side->index], 1);
+  while (!atomic_load(&side->meeting->here[1 - side->index])) sched_yield();
+}
+
+static void *call_meet(void *user) {
+  vl_parallel_for(((Side *)user)->meeting->context, 4, meet, user);
+  return NULL;
+}
+
+static void loops_overlap(void **state) {
+  (void)state;
+  for (uint32_t threads = 1; threads <= 3; threads++) {
+    vlContextDef def = vl_default_context_def();
+    def.threads = threads;
+    Meeting meeting = {{0, 0}, NULL};
+    assert_int_equal(vl_context_create(&def, &meeting.context), VL_OK);
+    Side sides[2] = {{&meeting, 0}, {&meeting, 1}};
+    pthread_t other;
+    alarm(120);
+    assert_int_equal(pthread_create(&other, NULL, call_meet, &sides[1]), 0);
+    call_meet(&sides[0]);
+    pthread_join(other, NULL);
+    alarm(0);
+    vl_context_destroy(meeting.context);
+  }
+}
+
+/* A loop of low priority gives way: while the other one runs, it starts at most a task each 50 ms. */
+typedef struct Race {
+  vlContext *context;
+  atomic_uint low, low_before, low_after, high;
+} Race;
+
+static void low_task(void *user, uint32_t index, uint32_t worker) {
+  (void)index, (void)worker;
+  atomic_fetch_add(&((Race *)user)->low, 1);
+  nanosleep(&(struct timespec){0, 1000000}, NULL);
+}
+
+static void high_task(void *user, uint32_t index, uint32_t worker) {
+  (void)index, (void)worker;
+  Race *race = user;
+  if (atomic_fetch_add(&race->high, 1) == 0) race->low_before = atomic_load(&race->low);
+  nanosleep(&(struct timespec){0, 1000000}, NULL);
+  race->low_after = atomic_load(&race->low);
+}
+
+static void *call_low(void *user) {
+  vl_parallel_for_at(((Race *)user)->context, &(vlLoopDef){0, NULL}, 400, low_task, user);
+  return NULL;
+}
+
+static void priority_gives_way(void **state) {
+  (void)state;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 2;
+  Race race = {NULL, 0, 0, 0, 0};
+  assert_int_equal(vl_context_create(&def, &race.context), VL_OK);
+  pthread_t other;
+  assert_int_equal(pthread_create(&other, NULL, call_low, &race), 0);
+  while (atomic_load(&race.low) < 4) sched_yield();
+  vl_parallel_for_at(race.context, &(vlLoopDef){1, NULL}, 200, high_task, &race);
+  pthread_join(other, NULL);
+  assert_int_equal(race.high, 200);
+  assert_int_equal(race.low, 400);
+  /* Without priorities as many low tasks as high ones would run: 100 to 200. */
+  assert_true(race.low_after - race.low_before < 60);
+  vl_context_destroy(race.context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(each_index_once),
-      cmocka_unit_test(several_callers),
-      cmocka_unit_test(callers_own_loop),
-      cmocka_unit_test(log_is_entered_once),
+      cmocka_unit_test(each_index_once), cmocka_unit_test(several_callers),    cmocka_unit_test(callers_own_loop),
+      cmocka_unit_test(loops_overlap),   cmocka_unit_test(priority_gives_way), cmocka_unit_test(log_is_entered_once),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -255,6 +255,7 @@ static bool put_instances(vlExport *x, json_t *roots, const json_int_t *mesh_of)
   const vlScene *s = x->scene;
   for (size_t i = 0; i < s->instances.count; i++) {
     const vlSceneInstance *instance = &s->instances.items[i];
+    if (instance->hidden) continue;
     json_t *node = node_of(instance->world_from_group), *children = json_array();
     set_name(node, &instance->label);
     if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");

@@ -193,6 +193,7 @@ static bool put_groups(vlExport *x) {
   }
   for (size_t i = 0; i < s->instances.count; i++) {
     const vlSceneInstance *instance = &s->instances.items[i];
+    if (instance->hidden) continue;
     if (instance->keys) vl_export_lose(x, "instances that move: as they stand at first");
     PUT("AttributeBegin\n");
     vl_pbrt_matrix(x, instance->world_from_group);

@@ -349,7 +349,8 @@ bool vl_gltf_draw(vlGltf *g) {
   bool ok = order || vl_gltf_fail_memory(g);
   ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count);
   if (ok) g->diagonal = vl_gltf_diagonal(g, order, count);
-  for (size_t k = 0; ok && k < count; k++) ok = draw_node(g, order[k]);
+  for (size_t k = 0; ok && k < count; k++)
+    ok = !vl_scene_stopped(g->scene, (double)k / (double)count) && draw_node(g, order[k]);
   ok = ok && vl_gltf_image_light(g, scene, at);
   vl_free(g->context, order);
   json_decref(all);

@@ -409,7 +409,9 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   bool fine = vl_obj_material(obj, "") == 0;
   if (fine) obj->materials.items[0].defined = true;
   char *from = data;
-  while (fine && vl_obj_statement(obj, &from, data + size)) fine = read_statement(obj);
+  while (fine && vl_obj_statement(obj, &from, data + size))
+    fine = read_statement(obj) &&
+           !(obj->line % 1024 == 0 && vl_scene_stopped(scene, (double)(from - data) / (double)size));
   if (fine) {
     obj->line = 0;
     fine = vl_obj_add_shapes(obj);

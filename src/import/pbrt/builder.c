@@ -226,6 +226,11 @@ static bool skip_include(void *user, vlSource place) {
   return true;
 }
 
+static bool go_on(void *user, double fraction) {
+  vlImport *import = user;
+  return !vl_scene_stopped(import->scene, 0.5 * fraction); /* then the meshes of other files are read */
+}
+
 /* ---- a whole file ------------------------------------------------------------------------------------------------ */
 
 static void free_pending(vlContext *context, vlPending *items, size_t count) {
@@ -285,8 +290,14 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
   import->times[1] = 1.0;
   import->edge_scale = 1.0;
   import->state.space = VL_SPACE_SRGB;
-  vlParseTarget target = {import,      statement, parse_error, recover, import->search_path, vl_import_note_elsewhere,
-                          skip_include};
+  vlParseTarget target = {.user = import,
+                          .statement = statement,
+                          .error = parse_error,
+                          .recover = recover,
+                          .search_path = import->search_path,
+                          .found_elsewhere = vl_import_note_elsewhere,
+                          .go_on = go_on,
+                          .skip = skip_include};
   bool is_old = !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
   bool fine = is_old ? false
               : data ? vl_parse_memory(import->context, data, size, path, &target)

@@ -236,6 +236,14 @@ static bool go_on(vlParserFile *file) {
   return target->recover(target->user);
 }
 
+/* Offers the target to stop. Inside included files the fraction is unknown and given as 0. */
+static bool poll(const vlParserFile *file, size_t size) {
+  const vlParseTarget *target = file->parser->target;
+  if (!target->go_on) return true;
+  double left = (double)(file->tokens.end - file->tokens.at);
+  return target->go_on(target->user, file->parent || !size ? 0 : 1 - left / (double)size);
+}
+
 bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
   const unsigned char *b = (const unsigned char *)data;
   vlToken start = {.line = 1, .column = 1};
@@ -249,6 +257,7 @@ bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
     if (token.kind != VL_TOKEN_WORD)
       return vl_parse_fail(file, vl_parse_place(file, &token), "expected a directive, found %s",
                            vl_parse_show(&token).text);
+    if (!poll(file, size)) return false;
     if (!read_directive(file, &token) && !go_on(file)) return false;
   }
 }

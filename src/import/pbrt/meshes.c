@@ -39,6 +39,10 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
   const Work *work = user;
   Job *job = &work->jobs[index];
   const vlImport *import = work->import;
+  if (vl_task_stopped(import->scene->task, "reading", 0.5)) {
+    job->result = vl_fail(&job->error, VL_CANCELLED, "stopped");
+    return;
+  }
   job->result = vl_ply_read(import->context, import->mesh_files.items[work->first + index].path, import->permissive,
                             &job->mesh, &job->error);
 }
@@ -145,6 +149,7 @@ static bool place_shapes(vlImport *import, const vlShapeDef *old, size_t count, 
   bool fine = true;
   for (size_t i = 0; i < count && fine; i++) {
     first[i] = (uint32_t)scene->shapes.count;
+    if (vl_scene_stopped(scene, 0.5 + 0.5 * (double)i / (double)count)) fine = false;
     if (next < import->mesh_files.count && import->mesh_files.items[next].shape == i) {
       if (next == read) {
         Work work = {import, jobs, next};

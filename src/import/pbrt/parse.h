@@ -75,6 +75,10 @@ typedef struct vlParseTarget {
   const char *search_path;
   /* Called for a file that is found in the current folder only. May be null. */
   void (*found_elsewhere)(void *user, vlSource place, const char *path);
+  /* Called before each directive; fraction: the share of the first file that is read, 0
+   * inside included files. False: the parser stops; the
+   * callee has reported why. May be null. */
+  bool (*go_on)(void *user, double fraction);
   /* Called for a file beyond the limits. Returns true to leave the file out. May be null. */
   bool (*skip)(void *user, vlSource place);
 } vlParseTarget;

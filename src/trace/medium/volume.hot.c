@@ -323,7 +323,7 @@ void vl_volume_tracer(vlTracing *t) {
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
   vl_volume_start(t, n, NULL);
-  for (uint32_t depth = 0; n > 0; depth++) {
+  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     vl_volume_travel(t, n, depth, depth < t->def->max_depth);
     emission(t, n);
     if (depth >= t->def->max_depth) break;

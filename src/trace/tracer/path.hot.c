@@ -198,7 +198,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
 
 void vl_path_tracer(vlTracing *t) {
   uint32_t n = t->batch->n;
-  for (uint32_t depth = 0; n > 0; depth++) {
+  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     vl_stage_hits(t, n, depth == 0);
     if (depth == 0) vl_stage_alpha(t);
     vl_stage_emission(t, n);

@@ -10,7 +10,7 @@ void vl_trace_random_walk(vlTracing *t) {
   vlPaths *p = &s->b;
   const vlSurface *f = &s->surface;
   uint32_t n = t->batch->n;
-  for (uint32_t depth = 0; n > 0; depth++) {
+  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     vl_stage_hits(t, n, depth == 0);
     if (depth == 0) vl_stage_alpha(t);
     vl_stage_emission(t, n); /* all rays are marked specular, so that their weight is 1 */

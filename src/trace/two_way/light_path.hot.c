@@ -212,7 +212,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
   bool media = vl_has_media(&t);
   if (media) vl_volume_start(&t, n, scratch->volume.shadow_medium);
-  for (uint32_t depth = 0; n > 0 && depth < most; depth++) {
+  for (uint32_t depth = 0; n > 0 && depth < most && !vl_is_cancelled(def->cancel); depth++) {
     if (media)
       vl_volume_travel(&t, n, depth, false);
     else

@@ -289,9 +289,17 @@ static vlResult attach_instance(RTCDevice device, RTCScene scene, RTCScene targe
   return VL_OK;
 }
 
-static RTCScene new_scene(RTCDevice device) {
-  RTCScene scene = rtcNewScene(device);
-  if (scene) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+/* Called by Embree's threads while a scene is built; n: the share that is done. */
+static bool go_on(void *user, double n) {
+  vlTask *task = user;
+  return !vl_task_stopped(task, "accelerator", 0.5 + 0.5 * n);
+}
+
+static RTCScene new_scene(const vlWorld *world) {
+  RTCScene scene = rtcNewScene(world->accel.device);
+  if (!scene) return NULL;
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  if (world->task->cancel || world->task->progress) rtcSetSceneProgressMonitorFunction(scene, go_on, world->task);
   return scene;
 }
 
@@ -398,7 +406,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
     geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
   for (size_t k = world->groups.count; k-- > 0;) { /* group 0, the world itself, comes last: it refers to the others */
     const vlWorldGroup *group = &world->groups.items[k];
-    RTCScene scene = new_scene(device);
+    RTCScene scene = new_scene(world);
     if (!scene) return vl_fail_memory(error);
     a->groups[k] = scene;
     vlResult r = VL_OK;
@@ -416,6 +424,8 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
     }
     if (r != VL_OK) return r;
     rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, NULL, NULL);
+    if ((r = vl_world_step(world, "accelerator", 0.5 + 0.5 / (double)(k + 1), error)) != VL_OK) return r;
   }
   a->scene = a->groups[0];
   enum RTCError code = rtcGetDeviceError(device);

@@ -158,14 +158,20 @@ vlResult vl_world_add_lights(vlWorld *world, const vlScene *scene, vlError *erro
   memset(&white, 0, sizeof white);
   vl_light_image_color(world, VL_SPACE_SRGB, 1, &white);
   world->white = white.spectrum;
-  for (size_t i = 0; r == VL_OK && i < scene->lights.count; i++) r = add_light(world, &scene->lights.items[i], error);
+  for (size_t i = 0; r == VL_OK && i < scene->lights.count; i++) {
+    r = vl_world_step(world, "lights", 0.5, error);
+    if (vl_scene_mark(&scene->light_marks, i).hidden) continue;
+    if (r == VL_OK) r = add_light(world, &scene->lights.items[i], error);
+  }
   uint32_t *compiled = vl_alloc_array(world->context, scene->emissions.count + 1, sizeof *compiled);
   if (!compiled && r == VL_OK) r = vl_fail_memory(error);
   for (size_t i = 0; compiled && i < scene->emissions.count; i++) compiled[i] = VL_NONE;
   for (size_t i = 0; r == VL_OK && i < scene->shapes.count; i++)
-    if (scene->shapes.items[i].emission.index && (world->shapes.items[i].faces > 0))
+    if (scene->shapes.items[i].emission.index && world->shapes.items[i].faces > 0 &&
+        !vl_scene_mark(&scene->shape_marks, i).hidden)
       r = vl_world_add_shape_lights(world, scene, (uint32_t)i, compiled, error);
   vl_free(world->context, compiled);
+  if (r == VL_OK) r = vl_world_step(world, "lights", 0.5, error);
   if (r == VL_OK) r = vl_light_tree_build(world, error);
   world->info.lights = world->lights.count;
   return r;

@@ -242,8 +242,10 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
 vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *error) {
   vlMaterialDef grey = vl_default_material_def(VL_MATERIAL_DIFFUSE);
   vlResult r = add_material(world, scene, &grey, error);
-  for (size_t i = 0; r == VL_OK && i < scene->materials.count; i++)
-    r = add_material(world, scene, &scene->materials.items[i], error);
+  for (size_t i = 0; r == VL_OK && i < scene->materials.count; i++) {
+    r = vl_world_step(world, "materials", 0.3 + 0.1 * (double)i / (double)scene->materials.count, error);
+    if (r == VL_OK) r = add_material(world, scene, &scene->materials.items[i], error);
+  }
   if (r == VL_OK && !(world->rank = vl_world_block(world, world->materials.count, sizeof(uint32_t))))
     return vl_fail_memory(error);
   uint32_t next = 0;

@@ -176,7 +176,8 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     if (r != VL_OK) return r;
   }
   for (size_t i = 0, k = 0; k < world->instances.count; i++) {
-    if (world->groups.items[scene->instances.items[i].group.index].count == 0) continue;
+    if (scene->instances.items[i].hidden || world->groups.items[scene->instances.items[i].group.index].count == 0)
+      continue;
     const vlSource *source = &scene->instances.items[i].source;
     const vlWorldInstance *instance = &world->instances.items[k++];
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -199,7 +200,7 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
 static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *error) {
   for (size_t i = 0; i < scene->instances.count; i++) {
     const vlSceneInstance *source = &scene->instances.items[i];
-    if (world->groups.items[source->group.index].count == 0) continue;
+    if (source->hidden || world->groups.items[source->group.index].count == 0) continue;
     vlWorldInstance *instance = VL_PUSH(world->context, &world->instances);
     if (!instance) return vl_fail_memory(error);
     memset(instance, 0, sizeof *instance);
@@ -219,6 +220,12 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
   return VL_OK;
 }
 
+/* Whether rays can hit a shape: it is shown, and a mesh has faces. */
+static bool is_in_group(const vlScene *scene, size_t index) {
+  const vlShapeDef *def = &scene->shapes.items[index];
+  return (def->faces || !vl_shape_is_mesh(def->kind)) && !vl_scene_mark(&scene->shape_marks, index).hidden;
+}
+
 vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *error) {
   size_t group_count = scene->groups.count + 1;
   vl_world_find_times(world, scene);
@@ -228,10 +235,11 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   world->groups.count = group_count;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    vlResult r = add_shape(world, scene, def, &world->shapes.items[i], error);
+    vlResult r = vl_world_step(world, "shapes", 0.4 + 0.1 * (double)i / (double)scene->shapes.count, error);
+    if (r == VL_OK) r = add_shape(world, scene, def, &world->shapes.items[i], error);
     if (r != VL_OK) return r;
     world->shapes.count = i + 1;
-    if (def->faces || !vl_shape_is_mesh(def->kind)) world->groups.items[def->group.index].count++;
+    if (is_in_group(scene, i)) world->groups.items[def->group.index].count++;
     world->info.primitives += world->shapes.items[i].faces;
     if (def->kind == VL_SHAPE_TRIANGLES) world->info.triangles += world->shapes.items[i].faces;
   }
@@ -242,7 +250,7 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   }
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
-    if (!def->faces && vl_shape_is_mesh(def->kind)) continue;
+    if (!is_in_group(scene, i)) continue;
     vlWorldGroup *group = &world->groups.items[def->group.index];
     group->shapes[group->count++] = (uint32_t)i;
   }

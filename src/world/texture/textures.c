@@ -3,6 +3,7 @@
 #include "world/texture/texture.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "base/error.h"
@@ -170,13 +171,18 @@ static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *
 
 typedef struct Preload {
   vlContext *context;
+  const vlWorld *world;
+  atomic_uint done;
+  uint32_t count;
   const vlTextureDef **defs;
   vlMipmap **mipmaps;
 } Preload;
 
 static void preload_one(void *user, uint32_t index, uint32_t worker) {
   (void)worker;
-  const Preload *job = user;
+  Preload *job = user;
+  double share = (double)atomic_fetch_add(&job->done, 1) / job->count;
+  if (vl_world_step(job->world, "images", 0.3 * share, NULL) != VL_OK) return;
   Image p = open_image(job->defs[index]);
   vlError ignored; /* ignored: whoever uses the image meets the same error and reports it with its source location */
   load_image(job->context, &p, &job->mipmaps[index], &ignored);
@@ -194,14 +200,16 @@ static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *
 vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
   enum { MOST = 4096 }; /* duplicates are found by linear search */
   size_t most = scene->textures.count < MOST ? scene->textures.count : MOST, count = 0;
-  Preload job = {world->context, vl_alloc_array(world->context, most + 1, sizeof *job.defs),
-                 vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps)};
+  Preload job = {.context = world->context, .world = world};
+  job.defs = vl_alloc_array(world->context, most + 1, sizeof *job.defs);
+  job.mipmaps = vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps);
   bool ok = job.defs && job.mipmaps;
   for (size_t i = 0; ok && i < scene->textures.count && count < most; i++) {
     const vlTextureDef *def = &scene->textures.items[i];
     if (def->kind == VL_TEXTURE_IMAGE && (def->path || def->data) && !listed(job.defs, count, def))
       job.defs[count++] = def;
   }
+  job.count = (uint32_t)count;
   if (ok && count > 1) vl_parallel_for(world->context, (uint32_t)count, preload_one, &job);
   for (size_t i = 0; ok && i < count; i++) {
     if (!job.mipmaps[i]) continue;
@@ -212,7 +220,7 @@ vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *
   for (size_t i = 0; job.mipmaps && i < count; i++) vl_mipmap_destroy(job.mipmaps[i]);
   vl_free(world->context, job.defs);
   vl_free(world->context, job.mipmaps);
-  return ok ? VL_OK : vl_fail_memory(error);
+  return ok ? vl_world_step(world, "images", 0.3, error) : vl_fail_memory(error);
 }
 
 static int32_t image_of(vlWorld *world, const vlTextureDef *def, vlError *error) {

@@ -1,0 +1,76 @@
+/** @file
+ * velo/edit.h: changes to a scene between two builds. A program changes some objects, builds again with
+ * vlBuildDef.previous and renders the new world, which shares all that has not changed with the previous one.
+ *
+ * Rules for all calls that change a scene: the checks are those of the vl_scene_add_* call of the object. After an
+ * error the scene is unchanged, and vl_scene_result does not report the error. Worlds that were built before do not
+ * change. Errors: ARGUMENT (no such id, the scene has an error, a def without cookie), SCENE, MEMORY. */
+#ifndef VELO_EDIT_H
+#define VELO_EDIT_H
+
+#include "velo/base.h"
+#include "velo/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The def of an object, with defaults in the members that its kind does not use; null if there is no such id. It and
+ * what it points at belong to the scene and are valid until the scene is changed. To change an object: copy its def,
+ * change the copy, pass it to the vl_scene_set_* call. */
+VL_API const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id);
+/** As vl_scene_texture. */
+VL_API const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id);
+/** As vl_scene_texture. */
+VL_API const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId id);
+/** As vl_scene_texture. An environment is a light of kind VL_LIGHT_INFINITE. */
+VL_API const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id);
+/** As vl_scene_texture. */
+VL_API const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id);
+/** As vl_scene_texture. The arrays are null after vl_world_build_last. */
+VL_API const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id);
+
+/** An instance of a scene. */
+typedef struct vlInstanceInfo {
+  vlGroupId group;             /**< what it places */
+  double world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
+  bool moves;                  /**< it has several poses */
+  bool shown;                  /**< it is in the worlds that are built from now on */
+  vlSource source;             /**< where the file describes it */
+  vlLabel label;               /**< what the file calls it */
+} vlInstanceInfo;
+/** Fills *info; its strings belong to the scene. ARGUMENT: there is no such instance, or it was removed. */
+VL_API vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info);
+
+/** Replaces a texture. Its inputs must have lower ids than its own; it stays a float or a colour texture. */
+VL_API vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error);
+/** Replaces a material. The parts of a mix must have lower ids than its own. */
+VL_API vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def, vlError *error);
+/** Replaces an emission. */
+VL_API vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def, vlError *error);
+/** Replaces a light. */
+VL_API vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error);
+/** Shows or hides a light; lights are shown at first. */
+VL_API vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error);
+
+/** Gives a shape another material; index 0: the default material. */
+VL_API vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material, vlError *error);
+/** Gives a shape another emission; index 0: none. */
+VL_API vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission, vlError *error);
+/** Shows or hides a shape, also in all instances of its group; shapes are shown at first. Ids of objects do not
+ * change. */
+VL_API vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error);
+
+/** Moves an instance, which is then at rest. */
+VL_API vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id, const double world_from_group[16],
+                                      vlError *error);
+/** Shows or hides an instance; instances are shown at first. Hidden instances have no id.instance: the ids of those
+ * after them are lower by 1. */
+VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown, vlError *error);
+/** Removes an instance for good; its id is not given again. */
+VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,241 @@
+/* scene/edit.c: changes to objects of a scene (velo/edit.h). A new def is checked and stored by the vl_scene_add_*
+ * function, while the scene looks as it did before the object was added; so ids refer to lower ones only. */
+#include "velo/edit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "scene/scene.h"
+
+/* ---- defs -------------------------------------------------------------------------------------------------------- */
+
+#define ITEM(scene, array, id) \
+  ((scene) && (id).index && (id).index <= (scene)->array.count ? &(scene)->array.items[(id).index - 1] : NULL)
+
+const vlTextureDef *vl_scene_texture(const vlScene *scene, vlTextureId id) {
+  return ITEM(scene, textures, id);
+}
+const vlMaterialDef *vl_scene_material(const vlScene *scene, vlMaterialId id) {
+  return ITEM(scene, materials, id);
+}
+const vlEmissionDef *vl_scene_emission(const vlScene *scene, vlEmissionId id) {
+  return ITEM(scene, emissions, id);
+}
+const vlLightDef *vl_scene_light(const vlScene *scene, vlLightId id) {
+  return ITEM(scene, lights, id);
+}
+const vlMediumDef *vl_scene_medium(const vlScene *scene, vlMediumId id) {
+  return ITEM(scene, media, id);
+}
+const vlShapeDef *vl_scene_shape(const vlScene *scene, vlShapeId id) {
+  return ITEM(scene, shapes, id);
+}
+
+vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info) {
+  const vlSceneInstance *instance = ITEM(scene, instances, id);
+  if (!instance || instance->removed || !info) return VL_ERROR_ARGUMENT;
+  *info = (vlInstanceInfo){.group = instance->group,
+                           .moves = instance->keys > 0,
+                           .shown = !instance->hidden,
+                           .source = instance->source,
+                           .label = instance->label};
+  memcpy(info->world_from_group, instance->world_from_group, sizeof info->world_from_group);
+  return VL_OK;
+}
+
+/* ---- checks ------------------------------------------------------------------------------------------------------ */
+
+static vlResult check(const vlScene *scene, bool found, const char *what, vlError *error) {
+  vl_error_clear(error);
+  if (!scene) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: scene is null", what);
+  if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
+  return found ? VL_OK : vl_fail(error, VL_ERROR_ARGUMENT, "%s: there is no such %s", what, what);
+}
+
+/* Takes the error of a failed change out of the scene. */
+static vlResult take_error(vlScene *scene, vlError *error) {
+  vlResult result = scene->error.code;
+  if (error) *error = scene->error;
+  vl_error_clear(&scene->error);
+  return result;
+}
+
+/* ---- replacing a def --------------------------------------------------------------------------------------------- */
+
+/* Frees what an earlier change of the object has allocated; entries from `end` on are of this change. */
+static void free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
+  size_t kept = 0;
+  for (size_t i = 0; i < scene->edits.count; i++) {
+    vlSceneEdit e = scene->edits.items[i];
+    if (i < end && e.array == array && e.id == id) {
+      vl_free(scene->context, e.block);
+      vl_image_destroy(e.image);
+    } else {
+      scene->edits.items[kept++] = e;
+    }
+  }
+  scene->edits.count = kept;
+}
+
+/* Moves the blocks and images that the change has added to the scene's lists into its edits. There is room. */
+static void note_edits(vlScene *scene, const void *array, uint32_t id, size_t blocks, size_t images) {
+  for (size_t i = blocks; i < scene->blocks.count; i++)
+    scene->edits.items[scene->edits.count++] = (vlSceneEdit){array, id, scene->blocks.items[i], NULL};
+  for (size_t i = images; i < scene->images.count; i++)
+    scene->edits.items[scene->edits.count++] = (vlSceneEdit){array, id, NULL, scene->images.items[i]};
+  scene->blocks.count = blocks;
+  scene->images.count = images;
+}
+
+/* Ends a change: what the failed or the replaced def has allocated is freed. */
+static vlResult finish(vlScene *scene, const void *array, uint32_t id, size_t blocks, size_t images, bool done,
+                       vlError *error) {
+  size_t old = scene->edits.count;
+  if (done && VL_RESERVE(scene->context, &scene->edits, scene->blocks.count - blocks + scene->images.count - images)) {
+    note_edits(scene, array, id, blocks, images);
+    free_edits(scene, array, id, old);
+    return VL_OK;
+  }
+  if (done) return VL_OK; /* no memory for the list: the blocks stay with the scene */
+  for (size_t i = blocks; i < scene->blocks.count; i++) vl_free(scene->context, scene->blocks.items[i]);
+  for (size_t i = images; i < scene->images.count; i++) vl_image_destroy(scene->images.items[i]);
+  scene->blocks.count = blocks;
+  scene->images.count = images;
+  return take_error(scene, error);
+}
+
+static vlSceneMark *mark_of(vlScene *scene, vlSceneMarks *marks, uint32_t id) {
+  while (marks->count < id) {
+    vlSceneMark *mark = VL_PUSH(scene->context, marks);
+    if (!mark) return NULL;
+  }
+  return &marks->items[id - 1];
+}
+
+/* Sets the object of an array by the function that adds one. */
+#define SET(scene, array, add, id, def, what, error)                                \
+  do {                                                                              \
+    vlResult checked = check(scene, ITEM(scene, array, id) != NULL, what, error);   \
+    if (checked != VL_OK) return checked;                                           \
+    if (!(def)) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: def is null", what);  \
+    vlSource place = (def)->source; /* its file's name outlives the change */       \
+    if (!vl_scene_copy_source(scene, &place)) return take_error(scene, error);      \
+    size_t blocks = (scene)->blocks.count, images = (scene)->images.count;          \
+    size_t count = (scene)->array.count;                                            \
+    const size_t at = (id).index - 1;                                               \
+    __typeof__(*(scene)->array.items) old = (scene)->array.items[at];               \
+    (scene)->array.count = at;                                                      \
+    bool done = add(scene, def).index != 0;                                         \
+    (scene)->array.count = count;                                                   \
+    if (!done) (scene)->array.items[at] = old;                                      \
+    return finish(scene, &(scene)->array, (id).index, blocks, images, done, error); \
+  } while (0)
+
+static vlResult set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error) {
+  SET(scene, textures, vl_scene_add_texture, id, def, "texture", error);
+}
+static vlResult set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
+  SET(scene, lights, vl_scene_add_light, id, def, "light", error);
+}
+
+vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, textures, id) != NULL, "texture", error);
+  if (result != VL_OK) return result;
+  if (def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
+                   def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
+  vlSceneMark *mark = mark_of(scene, &scene->texture_marks, id.index);
+  if (!mark) return vl_fail_memory(error);
+  result = set_texture(scene, id, def, error);
+  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
+  return result;
+}
+
+vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def, vlError *error) {
+  SET(scene, materials, vl_scene_add_material, id, def, "material", error);
+}
+
+vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def, vlError *error) {
+  SET(scene, emissions, vl_scene_add_emission, id, def, "emission", error);
+}
+
+vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
+  if (result != VL_OK) return result;
+  vlSceneMark *mark = mark_of(scene, &scene->light_marks, id.index);
+  if (!mark) return vl_fail_memory(error);
+  result = set_light(scene, id, def, error);
+  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
+  return result;
+}
+
+/* ---- shapes, lights ---------------------------------------------------------------------------------------------- */
+
+vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
+  vlSceneMark *mark = result == VL_OK ? mark_of(scene, &scene->light_marks, id.index) : NULL;
+  if (result == VL_OK && !mark) return vl_fail_memory(error);
+  if (mark) mark->hidden = !shown;
+  return result;
+}
+
+vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  vlSceneMark *mark = result == VL_OK ? mark_of(scene, &scene->shape_marks, id.index) : NULL;
+  if (result == VL_OK && !mark) return vl_fail_memory(error);
+  if (mark) mark->hidden = !shown;
+  return result;
+}
+
+vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  if (result == VL_OK) result = check(scene, material.index <= scene->materials.count, "material", error);
+  if (result == VL_OK) scene->shapes.items[id.index - 1].material = material;
+  return result;
+}
+
+vlResult vl_scene_set_shape_emission(vlScene *scene, vlShapeId id, vlEmissionId emission, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
+  if (result == VL_OK) result = check(scene, emission.index <= scene->emissions.count, "emission", error);
+  if (result != VL_OK) return result;
+  const vlShapeDef *shape = &scene->shapes.items[id.index - 1];
+  if (emission.index && !vl_shape_may_emit(shape))
+    return vl_fail(error, VL_ERROR_SCENE, "shape: a shape of this kind cannot emit light");
+  scene->shapes.items[id.index - 1].emission = emission;
+  return VL_OK;
+}
+
+/* ---- instances --------------------------------------------------------------------------------------------------- */
+
+static vlResult find_instance(vlScene *scene, vlInstanceId id, vlSceneInstance **instance, vlError *error) {
+  *instance = ITEM(scene, instances, id);
+  return check(scene, *instance && !(*instance)->removed, "instance", error);
+}
+
+vlResult vl_scene_set_instance(vlScene *scene, vlInstanceId id, const double world_from_group[16], vlError *error) {
+  vlSceneInstance *instance;
+  vlResult result = find_instance(scene, id, &instance, error);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 16; i++)
+    if (!world_from_group || !isfinite(world_from_group[i]))
+      return vl_fail(error, VL_ERROR_SCENE, "instance: transform is not finite");
+  memcpy(instance->world_from_group, world_from_group, sizeof instance->world_from_group);
+  instance->keys = 0;
+  return VL_OK;
+}
+
+vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool shown, vlError *error) {
+  vlSceneInstance *instance;
+  vlResult result = find_instance(scene, id, &instance, error);
+  if (result == VL_OK) instance->hidden = !shown;
+  return result;
+}
+
+vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error) {
+  vlSceneInstance *instance;
+  vlResult result = find_instance(scene, id, &instance, error);
+  if (result != VL_OK) return result;
+  instance->removed = instance->hidden = true;
+  scene->groups.items[instance->group.index - 1].instance_count--;
+  return VL_OK;
+}

@@ -27,7 +27,7 @@ export class Compare {
   keep() {
     const f = this.app.screen.frame;
     if (!f) return;
-    this.other = new ImageData(new Uint8ClampedArray(this.app.screen.values()), f.width, f.height);
+    this.other = new ImageData(new Uint8ClampedArray(this.app.screen.values()), f.columns, f.rows);
     if (this.mode.value === "off") this.mode.value = "wipe";
     this.draw();
   }
@@ -63,8 +63,8 @@ export class Compare {
   }
 
   difference(g, f, width, height) {
-    if (width !== f.width || height !== f.height) {
-      this.number.textContent = `the kept image has ${width} x ${height} pixels, this one ${f.width} x ${f.height}`;
+    if (width !== f.columns || height !== f.rows) {
+      this.number.textContent = `the kept image has ${width} x ${height} pixels, this one ${f.columns} x ${f.rows}`;
       return;
     }
     const now = this.app.screen.values(), result = new ImageData(width, height), gain = 2 ** this.gain.value;

@@ -52,7 +52,7 @@ export class Display {
   set() {
     this.number.value = short(this.ev, 4);
     Object.assign(this.app.screen.display, { exposure: this.ev, view: Number(this.view.value) });
-    this.app.screen.draw();
+    this.app.screen.redevelop();
     this.count();
   }
 

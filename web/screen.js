@@ -1,8 +1,8 @@
-// The canvas: shows a frame through WebGL2, whole or zoomed in.
-import { fragment, vertex } from "./shaders.js";
+// The canvas: develops frames into 8-bit pixels and lays them on the page, whole or zoomed in, through WebGL2.
+import { develop, lay, vertex } from "./shaders.js";
 import { Pixels } from "./frame.js";
 
-function compile(gl) {
+function compile(gl, fragment) {
   const program = gl.createProgram();
   for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
     const shader = gl.createShader(type);
@@ -13,14 +13,26 @@ function compile(gl) {
   }
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
-  return program;
+  const places = {};
+  return { program, at: name => places[name] ??= gl.getUniformLocation(program, name) };
 }
 
-// A texture that takes the tiles of frames.
+function texture(gl, internal, width, height) {
+  const made = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, made);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, internal, width, height);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+  for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
+  return made;
+}
+
+// A frame on the graphics processor: its values, which tiles replace in part, and its developed pixels.
 class Layer {
   constructor(gl) {
     this.gl = gl;
     this.frame = null;
+    this.stale = true;
   }
 
   take(frame, fits) {
@@ -28,16 +40,35 @@ class Layer {
     const format = [gl.RED, gl.RG, gl.RGB][n], type = half ? gl.HALF_FLOAT : gl.FLOAT;
     const internal = half ? [gl.R16F, gl.RG16F, gl.RGB16F][n] : [gl.R32F, gl.RG32F, gl.RGB32F][n];
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-    if (!this.texture || !fits) {
-      if (this.texture) gl.deleteTexture(this.texture);
-      this.texture = gl.createTexture();
-      gl.bindTexture(gl.TEXTURE_2D, this.texture);
-      gl.texStorage2D(gl.TEXTURE_2D, 1, internal, frame.columns, frame.rows);
-      for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
+    if (!this.values || !fits) {
+      if (this.values) gl.deleteTexture(this.values), gl.deleteTexture(this.shown), gl.deleteFramebuffer(this.target);
+      this.values = texture(gl, internal, frame.columns, frame.rows);
+      this.shown = texture(gl, gl.RGBA8, frame.columns, frame.rows);
+      this.target = gl.createFramebuffer();
+      gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.shown, 0);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     }
-    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.bindTexture(gl.TEXTURE_2D, this.values);
     for (const t of frame.tiles) gl.texSubImage2D(gl.TEXTURE_2D, 0, t.x, t.y, t.w, t.h, format, type, t.pixels);
     this.frame = frame;
+    this.stale = true;
+  }
+
+  develop(program, display) {
+    const gl = this.gl;
+    if (!this.stale) return;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.target);
+    gl.viewport(0, 0, this.frame.columns, this.frame.rows);
+    gl.useProgram(program.program);
+    gl.bindTexture(gl.TEXTURE_2D, this.values);
+    gl.uniform4f(program.at("place"), -1, -1, 1, 1);
+    gl.uniform1f(program.at("exposure"), 2 ** display.exposure);
+    gl.uniform3fv(program.at("low"), display.low);
+    gl.uniform3fv(program.at("high"), display.high);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.stale = false;
   }
 }
 
@@ -46,7 +77,8 @@ export class Screen {
     this.canvas = canvas;
     const gl = this.gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: false });
     if (!gl) throw new Error("this browser has no WebGL2");
-    this.program = compile(gl);
+    this.programs = new Map();
+    this.laying = compile(gl, lay);
     this.pixels = new Pixels();
     this.layer = new Layer(gl);      // the present frame
     this.whole = new Layer(gl);      // the last frame of the whole image, behind a rectangle
@@ -127,52 +159,60 @@ export class Screen {
     requestAnimationFrame(() => { this.pending = false; this.drawNow(); });
   }
 
+  // The exposure, the view or the range changed: all is developed anew.
+  redevelop() {
+    this.layer.stale = this.whole.stale = true;
+    this.draw();
+  }
+
   drawNow() {
-    const gl = this.gl, ratio = window.devicePixelRatio || 1, k = this.factor(), [left, top] = this.origin(), f = this.frame;
-    const w = this.canvas.width / 2, h = this.canvas.height / 2;
+    const gl = this.gl, ratio = window.devicePixelRatio || 1, k = this.factor(), [left, top] = this.origin();
+    if (this.cropped) this.develop(this.whole);
+    this.develop(this.layer);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
-    const place = [left * ratio / w - 1, 1 - top * ratio / h, (left + f.width * k) * ratio / w - 1, 1 - (top + f.height * k) * ratio / h];
-    if (this.cropped && this.whole.frame) this.drawLayer(this.whole, place, 1 / (k * ratio), 0.45);
-    this.drawLayer(this.layer, place, 1 / (k * ratio), 1);
+    if (this.cropped) this.lay(this.whole, left * ratio, top * ratio, k * ratio, 0.45);
+    this.lay(this.layer, left * ratio, top * ratio, k * ratio, 1);
     this.drawn++;
     this.ondraw?.();
   }
 
-  drawLayer(layer, place, taps, dim) {
-    const gl = this.gl, f = layer.frame, d = this.display, p = this.program, at = name => gl.getUniformLocation(p, name);
+  develop(layer) {
+    const d = this.display, f = layer.frame;
     if (!f) return;
-    gl.useProgram(p);
-    gl.bindTexture(gl.TEXTURE_2D, layer.texture);
-    gl.uniform4fv(at("place"), place);
-    gl.uniform2f(at("size"), f.width, f.height);
-    gl.uniform4f(at("window"), f.x0, f.y0, f.scale, 0);
-    gl.uniform1f(at("exposure"), 2 ** d.exposure);
-    gl.uniform1i(at("view"), d.view);
-    gl.uniform1i(at("kind"), f.channel === 0 ? 0 : d.kind);
-    gl.uniform3fv(at("low"), d.low);
-    gl.uniform3fv(at("high"), d.high);
-    gl.uniform1f(at("taps"), Math.abs(taps - 1) < 1e-3 ? 1 : taps);
-    gl.uniform1f(at("dim"), dim);
-    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    const kind = f.channel === 0 ? 0 : d.kind || 6, view = kind === 0 ? d.view : 0, key = 8 * view + kind;
+    if (!this.programs.has(key)) this.programs.set(key, compile(this.gl, develop(view, kind)));
+    layer.develop(this.programs.get(key), d);
   }
 
-  // The display values of the whole frame, 8-bit RGBA, rows from the top: for a copy, and for tests.
+  // left, top: of the image, k: size of its pixels; all in pixels of the canvas.
+  lay(layer, left, top, k, dim) {
+    const gl = this.gl, f = layer.frame, w = this.canvas.width / 2, h = this.canvas.height / 2, p = this.laying;
+    if (!f) return;
+    const x0 = left + f.x0 * k, y0 = top + f.y0 * k, x1 = x0 + f.columns * f.scale * k, y1 = y0 + f.rows * f.scale * k;
+    // A coarse image and a reduced one are smooth; pixels that are magnified on purpose stay pixels.
+    const smooth = f.format === 0 && (f.scale > 1 || k < 1 || (k < 2 && this.zoom === 1 && k !== 1)) ? gl.LINEAR : gl.NEAREST;
+    gl.enable(gl.SCISSOR_TEST); // the last pixels of a coarse image reach beyond the image
+    gl.scissor(Math.round(left), Math.round(2 * h - top - f.height * k), Math.max(0, Math.round(f.width * k)), Math.max(0, Math.round(f.height * k)));
+    gl.useProgram(p.program);
+    gl.bindTexture(gl.TEXTURE_2D, layer.shown);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, smooth);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, smooth);
+    gl.uniform4f(p.at("place"), x0 / w - 1, 1 - y0 / h, x1 / w - 1, 1 - y1 / h);
+    gl.uniform1f(p.at("dim"), dim);
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+    gl.disable(gl.SCISSOR_TEST);
+  }
+
+  // The display values of the frame, 8-bit RGBA, rows from the top: to compare, and for tests.
   values() {
-    const gl = this.gl, f = this.frame, target = gl.createFramebuffer(), texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, f.width, f.height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-    gl.viewport(0, 0, f.width, f.height);
-    this.drawLayer(this.layer, [-1, -1, 1, 1], 1, 1);
-    const bytes = new Uint8Array(4 * f.width * f.height);
-    gl.readPixels(0, 0, f.width, f.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    const gl = this.gl, f = this.frame;
+    this.develop(this.layer);
+    const bytes = new Uint8Array(4 * f.columns * f.rows);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.layer.target);
+    gl.readPixels(0, 0, f.columns, f.rows, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.deleteFramebuffer(target);
-    gl.deleteTexture(texture);
-    this.draw();
     return bytes;
   }
 }

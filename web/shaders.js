@@ -1,7 +1,8 @@
-// The programs that show a frame: exposure, view transforms (as src/image/view.c), false colours.
+// The programs of the screen. The first develops a frame: exposure and view transform (as src/image/view.c), or false
+// colours, once for each pixel of the frame. The second lays the result on the page.
 export const vertex = `#version 300 es
-uniform vec4 place;            // corners of the image in clip space: left, top, right, bottom
-out vec2 point;                // place in the image, 0 to 1, y down
+uniform vec4 place;            // corners in clip space: left, top, right, bottom
+out vec2 point;                // place in the texture, 0 to 1
 void main() {
   point = vec2(gl_VertexID & 1, gl_VertexID >> 1);
   gl_Position = vec4(mix(place.x, place.z, point.x), mix(place.y, place.w, point.y), 0, 1);
@@ -34,9 +35,15 @@ vec3 agx(vec3 c) {
 vec3 display(vec3 c) {
   c = clamp(c * exposure, -1e30, 1e30);
   if (any(isnan(c))) c = vec3(0);
-  if (view == 1) return srgbCurve(khronosNeutral(max(c, 0.0)));
-  if (view == 2) return clamp(agx(max(c, 0.0)), 0.0, 1.0);
-  return view == 3 ? clamp(c, 0.0, 1.0) : srgbCurve(c);
+#if VIEW == 1
+  return srgbCurve(khronosNeutral(max(c, 0.0)));
+#elif VIEW == 2
+  return clamp(agx(max(c, 0.0)), 0.0, 1.0);
+#elif VIEW == 3
+  return clamp(c, 0.0, 1.0);
+#else
+  return srgbCurve(c);
+#endif
 }`;
 
 // Viridis (Smith, van der Walt), a polynomial of degree 6 by Matt Zucker.
@@ -55,53 +62,48 @@ vec3 idColour(float id) {
   return id == 0.0 ? vec3(0.08) : light * mix(vec3(1), c, 0.65);
 }
 vec3 falseColour(vec3 v) {
-  bool nothing = any(isinf(v)) || any(isnan(v));
-  if (kind == 1) return nothing ? vec3(0.13) : viridis(clamp((v.x - low.x) / (high.x - low.x), 0.0, 1.0));
-  if (kind == 2) return v == vec3(0) ? vec3(0.13) : 0.5 + 0.5 * v;
-  if (kind == 3) return v == vec3(0) ? vec3(0.13) : clamp((v - low) / max(high - low, 1e-9), 0.0, 1.0);
-  if (kind == 4) return vec3(fract(v.xy), 0.25);
-  if (kind == 5) return srgbCurve(v);
+#if KIND == 1
+  return any(isinf(v)) || any(isnan(v)) ? vec3(0.13) : viridis(clamp((v.x - low.x) / (high.x - low.x), 0.0, 1.0));
+#elif KIND == 2
+  return v == vec3(0) ? vec3(0.13) : 0.5 + 0.5 * v;
+#elif KIND == 3
+  return v == vec3(0) ? vec3(0.13) : clamp((v - low) / max(high - low, 1e-9), 0.0, 1.0);
+#elif KIND == 4
+  return vec3(fract(v.xy), 0.25);
+#elif KIND == 5
+  return srgbCurve(v);
+#else
   return idColour(v.x);
+#endif
 }`;
 
-export const fragment = `#version 300 es
+// Develops a frame. kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids. Each combination is a
+// program of its own, so that none computes what it does not show.
+export const develop = (view, kind) => `#version 300 es
 precision highp float;
 precision highp int;
+#define VIEW ${view}
+#define KIND ${kind}
 uniform highp sampler2D pixels;
-uniform vec2 size;             // of the image
-uniform vec4 window;           // x0, y0 of the frame in the image, its scale, 0
 uniform float exposure;
-uniform int view, kind;        // kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids
 uniform vec3 low, high;
-uniform float taps;            // texels that a pixel of the screen covers, each way
-uniform float dim;
-in vec2 point;
 out vec4 result;
 ${views}
 ${colours}
-vec3 texel(ivec2 at) {
-  ivec2 last = textureSize(pixels, 0) - 1;
-  return texelFetch(pixels, clamp(at, ivec2(0), last), 0).rgb;
-}
-vec3 shown(vec3 v) { return kind == 0 ? display(v) : falseColour(v); }
 void main() {
-  vec2 at = (point * size - window.xy) / window.z;
-  vec2 end = vec2(textureSize(pixels, 0));
-  if (at.x < 0.0 || at.y < 0.0 || at.x >= end.x || at.y >= end.y) discard;
-  vec3 sum = vec3(0);
-  if (window.z > 1.0 && kind == 0) {            // a coarse image: smooth
-    vec2 p = at - 0.5, f = fract(p);
-    ivec2 i = ivec2(floor(p));
-    sum = shown(mix(mix(texel(i), texel(i + ivec2(1, 0)), f.x),
-                    mix(texel(i + ivec2(0, 1)), texel(i + ivec2(1, 1)), f.x), f.y));
-  } else if (taps <= 1.0) {                     // pixels are shown as pixels
-    sum = shown(texel(ivec2(at)));
-  } else {                                      // a reduced image: the mean of what a pixel covers
-    int n = int(min(4.0, ceil(taps)));
-    for (int j = 0; j < n; j++)
-      for (int i = 0; i < n; i++)
-        sum += shown(texel(ivec2(at + ((vec2(i, j) + 0.5) / float(n) - 0.5) * taps)));
-    sum /= float(n * n);
-  }
-  result = vec4(sum * dim, 1);
+  vec3 v = texelFetch(pixels, ivec2(gl_FragCoord.xy), 0).rgb;
+#if KIND == 0
+  result = vec4(display(v), 1);
+#else
+  result = vec4(falseColour(v), 1);
+#endif
 }`;
+
+// Lays developed pixels on the page.
+export const lay = `#version 300 es
+precision mediump float;
+uniform sampler2D pixels;
+uniform float dim;
+in highp vec2 point;
+out vec4 result;
+void main() { result = vec4(texture(pixels, point).rgb * dim, 1); }`;

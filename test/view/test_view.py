@@ -230,7 +230,7 @@ def frame_equals_file(page, folder, words):
     shown = struct.unpack(f"<{3 * width * height}e", bytes(page.pixels))
     exact = [v for row in rows for v in row]
     worst = max(abs(a - b) / max(abs(b), 2 ** -14) for a, b in zip(shown, exact) if b < 65504)
-    check("frame_is_the_image", page.form[:2] == (width, height) and worst <= 2 ** -11 * 1.001, worst)
+    check("frame_is_the_image", page.form[:2] == (width, height) and worst <= 2 ** -11 * 1.001, worst, page.form, width, height)
 
 
 # ---- malformed messages, many pages ----

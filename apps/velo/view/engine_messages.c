@@ -62,6 +62,7 @@ void engine_greet(void *user, uint32_t client) {
   post_lists(e, client);
   pthread_mutex_lock(&e->lock);
   engine_post_state(e, client);
+  if (e->last_status) server_post(e->server, client, e->last_status);
   pthread_mutex_unlock(&e->lock);
 }
 
@@ -69,6 +70,7 @@ void engine_clients(void *user, uint32_t count) {
   Engine *e = user;
   pthread_mutex_lock(&e->lock);
   e->clients = count;
+  if (!count) vl_cancel_request(e->stop);
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
 }
@@ -88,6 +90,7 @@ static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const
 static void show_camera(Engine *e, const ViewCamera *camera) {
   e->wanted.camera = *camera;
   e->wanted.generation++;
+  vl_cancel_request(e->stop);
 }
 
 void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
@@ -178,16 +181,18 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
   }
   if (m->has_spp) e->wanted.spp = m->spp;
   if (m->has_paused) e->wanted.paused = m->paused;
+  if (m->has_crop || m->has_channel || e->wanted.paused) vl_cancel_request(e->stop);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
 }
 
-static void add_task(Engine *e, uint32_t client, const ViewMessage *m) {
-  if (e->task_count == MOST_TASKS) {
+/* Adds a message to a list of tasks. */
+static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks, uint32_t *count) {
+  if (*count == MOST_TASKS) {
     post_refusal(e, client, m, "too much at once");
     return;
   }
-  e->tasks[e->task_count++] = (Task){.client = client, .message = *m};
+  tasks[(*count)++] = (Task){.client = client, .message = *m};
 }
 
 /* Messages that change nothing that others see. */
@@ -207,11 +212,11 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
       case MESSAGE_REDO:
       case MESSAGE_RESET: step_history(e, m); break;
       case MESSAGE_SETTINGS: change_settings(e, client, m); break;
+      case MESSAGE_SAVE:
+      case MESSAGE_COMMAND: add_task(e, client, m, e->tasks, &e->task_count); break;
       case MESSAGE_PICK:
       case MESSAGE_FOCUS:
-      case MESSAGE_SAVE:
-      case MESSAGE_COMMAND:
-      case MESSAGE_OVERLAY: add_task(e, client, m); break;
+      case MESSAGE_OVERLAY: add_task(e, client, m, e->questions, &e->question_count); break;
       case MESSAGE_SEEN:
       case MESSAGE_STEER: break; /* the server's own */
     }

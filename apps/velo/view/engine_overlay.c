@@ -25,21 +25,13 @@ static void put_vanishing(Json *json, const vlCamera *camera, const double up[3]
   json_end(json, ']');
 }
 
-static bool stop(void *user) {
-  Engine *e = user;
-  pthread_mutex_lock(&e->lock);
-  bool quit = e->quit || e->wanted.generation != e->now.generation;
-  pthread_mutex_unlock(&e->lock);
-  return quit;
-}
-
 /* Boxes of the objects, those with the most pixels first as long as there is room. */
 static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
   uint32_t count = vl_world_id_count(e->model.world, VL_ID_OBJECT), put = 0;
   vlIdBox *boxes = calloc(count ? count : 1, sizeof *boxes);
   vlBoxesDef def = vl_default_boxes_def(camera->width, camera->height);
   vlError error = {0};
-  def.stop = stop, def.stop_user = e;
+  def.cancel = e->end;
   if (!boxes || vl_world_boxes(e->model.world, camera, &def, boxes, NULL, &error) != VL_OK) {
     free(boxes);
     return;

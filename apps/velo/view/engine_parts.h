@@ -27,7 +27,7 @@ typedef struct History {
   uint32_t gesture;   /* edits of one gesture are one step */
 } History;
 
-/* A message that needs the world; the render thread answers it. */
+/* A message that needs the world. */
 typedef struct Task {
   uint32_t client;
   ViewMessage message;
@@ -36,19 +36,23 @@ typedef struct Task {
 struct Engine {
   EngineDef def;
   Server *server;
-  pthread_t thread, watcher;
-  bool started, watching;
+  pthread_t thread, watcher, answerer;
+  bool started, watching, answering;
   pthread_mutex_t lock;
   pthread_cond_t wake;
+  pthread_rwlock_t model_lock; /* held by those who use the model outside the render thread */
+  vlCancel *stop;              /* stops the render; requested and withdrawn under the lock */
+  vlCancel *end;               /* stops everything */
   /* under the lock */
   bool quit;
   uint32_t clients;
   Wanted wanted;
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
-  Model *next; /* the scene after a change of its files; null: none */
-  Task tasks[MOST_TASKS];
-  uint32_t task_count;
+  char *last_status;                             /* the last state of the render, for pages that come; null: none */
+  Model *next;                                   /* the scene after a change of its files; null: none */
+  Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
+  uint32_t task_count, question_count;
   /* the watcher's own */
   FileList files; /* of which the scene was made */
   /* the render thread's own; the model is replaced under the lock */
@@ -86,6 +90,8 @@ void *engine_watch(void *engine);
 bool engine_swap_model(Engine *engine);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
+/* The thread that answers questions while the render goes on. */
+void *engine_answer_questions(void *engine);
 /* Writes a camera or an image; posts its name. */
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */

@@ -30,7 +30,9 @@ static bool load_again(Engine *e, Watch *watch) {
   if (!model) return false;
   post(e, "loading");
   report_listen(on_report, e);
-  int status = model_load(e->def.context, e->def.path, e->def.arguments, model, &e->files);
+  pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
+  int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end, model, &e->files);
+  pthread_rwlock_unlock(&e->model_lock);
   report_listen(NULL, NULL);
   watch_files(watch, &e->files);
   if (status >= 0) {
@@ -41,6 +43,7 @@ static bool load_again(Engine *e, Watch *watch) {
   pthread_mutex_lock(&e->lock);
   Model *unused = e->next;
   e->next = model;
+  vl_cancel_request(e->stop);
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
   if (unused) model_free(unused);
@@ -83,11 +86,12 @@ static bool same_place(const ViewCamera *a, const ViewCamera *b) {
 bool engine_swap_model(Engine *e) {
   pthread_mutex_lock(&e->lock);
   Model *next = e->next;
+  pthread_mutex_unlock(&e->lock);
+  if (!next) return false;
+  pthread_rwlock_wrlock(&e->model_lock);
+  pthread_mutex_lock(&e->lock);
+  next = e->next; /* another load may have replaced it */
   e->next = NULL;
-  if (!next) {
-    pthread_mutex_unlock(&e->lock);
-    return false;
-  }
   Model old = e->model;
   const ViewCamera before = e->scene_camera, shown = e->wanted.camera;
   uint32_t crop[4], spp = e->wanted.spp, old_spp = old.job.defs->render.spp;
@@ -104,6 +108,7 @@ bool engine_swap_model(Engine *e) {
   if (spp != old_spp) e->wanted.spp = spp;
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
+  pthread_rwlock_unlock(&e->model_lock);
   vl_film_destroy(e->film);
   e->film = NULL;
   e->pixel_seconds = 0;

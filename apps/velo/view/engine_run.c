@@ -34,11 +34,6 @@ bool engine_interrupted(Engine *engine) {
   return stop;
 }
 
-static bool on_progress(void *user, const vlProgress *progress) {
-  (void)progress;
-  return !engine_interrupted(user);
-}
-
 /* ---- frames ------------------------------------------------------------------------------------------------------ */
 
 /* Converts to linear Rec. 709, which the page shows. Null: the film has that space. */
@@ -89,15 +84,6 @@ static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
 
 /* ---- coarse images ----------------------------------------------------------------------------------------------- */
 
-/* The same camera with pixels that are `scale` times as wide and high. The last ones may reach beyond the image. */
-static vlCamera coarse_camera(const vlCamera *camera, uint32_t scale) {
-  vlCamera c = *camera;
-  c.width = (camera->width + scale - 1) / scale, c.height = (camera->height + scale - 1) / scale;
-  c.fx /= scale, c.fy /= scale, c.cx /= scale, c.cy /= scale, c.skew /= scale;
-  for (int i = 0; i < 2; i++) c.lens.focus_pixel[i] /= scale;
-  return c;
-}
-
 static void note_speed(Engine *e, const vlRenderStats *stats, double seconds) {
   double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
   if (stats->camera_rays > 1000) e->pixel_seconds = e->pixel_seconds > 0 ? 0.5 * (e->pixel_seconds + one) : one;
@@ -105,17 +91,18 @@ static void note_speed(Engine *e, const vlRenderStats *stats, double seconds) {
 
 /* False: interrupted. */
 static bool render_coarse(Engine *e, uint32_t scale) {
-  const vlCamera camera = coarse_camera(&e->now.camera.made, scale);
-  vlFilmDef def = e->model.job.defs->film;
+  vlCamera camera;
+  vlFilmDef whole = e->model.job.defs->film;
   vlRenderDef render = e->model.job.defs->render;
   vlFilm *film = NULL;
   vlError error = {0};
   vlRenderStats stats = {0};
-  def.width = camera.width, def.height = camera.height, def.errors = false, def.buckets = 0;
-  for (int i = 0; i < 4; i++) def.crop[i] = i < 2 ? e->now.crop[i] / scale : (e->now.crop[i] + scale - 1) / scale;
+  memcpy(whole.crop, e->now.crop, sizeof whole.crop);
+  const vlFilmDef def = vl_coarse_film_def(&whole, scale);
   render.spp = 1, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
-  render.progress = on_progress, render.progress_user = e;
-  vlResult result = vl_film_create(e->def.context, &def, &film);
+  render.cancel = e->stop, render.priority = 1;
+  vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
+  if (result == VL_OK) result = vl_film_create(e->def.context, &def, &film);
   double start = engine_clock();
   if (result == VL_OK) result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
@@ -177,7 +164,7 @@ static void tell_if_due(Engine *e, bool always) {
 /* Adds samples until the image is done or something else is asked for. */
 static void render_film(Engine *e) {
   vlRenderDef render = e->model.job.defs->render;
-  render.progress = on_progress, render.progress_user = e;
+  render.cancel = e->stop;
   render.first_sample = 0, render.time_limit = 0;
   if (!e->film) make_film(e);
   while (e->film && vl_film_spp(e->film) < e->now.spp && !engine_interrupted(e)) {
@@ -213,6 +200,7 @@ static void render_channel(Engine *e) {
   def.render = &e->model.job.defs->render;
   def.film = e->film;
   def.exposure = e->model.job.defs->develop.exposure;
+  def.cancel = e->stop;
   if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return;
   vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
   const vlImage *image = floats ? floats : ids;
@@ -231,6 +219,7 @@ static bool take_wanted(Engine *e) {
   bool anew = e->wanted.generation != e->now.generation;
   bool channel = e->wanted.channel != e->now.channel;
   e->now = e->wanted;
+  if (!e->quit && !e->next) vl_cancel_clear(e->stop);
   pthread_mutex_unlock(&e->lock);
   if (!anew) return channel;
   vl_film_destroy(e->film);
@@ -315,7 +304,12 @@ int engine_create(const EngineDef *def, Engine **result) {
   engine->def = *def;
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
-  int status = model_load(def->context, def->path, def->arguments, &engine->model, &engine->files);
+  pthread_rwlock_init(&engine->model_lock, NULL);
+  bool made =
+      vl_cancel_create(def->context, &engine->stop) == VL_OK && vl_cancel_create(def->context, &engine->end) == VL_OK;
+  int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
+  if (status < 0)
+    status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
   if (status < 0) status = engine_take_model(engine);
   *result = engine;
   return status;
@@ -330,6 +324,7 @@ int engine_start(Engine *engine, Server *server) {
   if (pthread_create(&engine->thread, NULL, run, engine) != 0)
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
+  engine->answering = pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
   engine->watching = pthread_create(&engine->watcher, NULL, engine_watch, engine) == 0;
   return -1;
 }
@@ -338,10 +333,13 @@ int engine_stop(Engine *engine) {
   if (!engine->started) return STATUS_OK;
   pthread_mutex_lock(&engine->lock);
   engine->quit = true;
+  vl_cancel_request(engine->stop);
+  vl_cancel_request(engine->end);
   pthread_cond_broadcast(&engine->wake);
   pthread_mutex_unlock(&engine->lock);
   pthread_join(engine->thread, NULL);
   if (engine->watching) pthread_join(engine->watcher, NULL);
+  if (engine->answering) pthread_join(engine->answerer, NULL);
   engine->started = false;
   if (!engine->def.film_path) return STATUS_OK;
   if (!engine->film || !vl_film_spp(engine->film))
@@ -358,6 +356,10 @@ void engine_destroy(Engine *engine) {
   if (engine->next) model_free(engine->next);
   free(engine->next);
   file_list_free(&engine->files);
+  free(engine->last_status);
+  vl_cancel_destroy(engine->stop);
+  vl_cancel_destroy(engine->end);
+  pthread_rwlock_destroy(&engine->model_lock);
   pthread_cond_destroy(&engine->wake);
   pthread_mutex_destroy(&engine->lock);
   free(engine);

@@ -76,7 +76,14 @@ void status_tell(Engine *e, bool estimate) {
   json_number(&json.json, "seconds", e->rendered);
   json_number(&json.json, "error", e->noise);
   json_bool(&json.json, "paused", paused);
-  json_text_post(&json, e->server, 0);
+  char *text = json_text_end(&json);
+  if (!text) return;
+  server_post(e->server, 0, text);
+  pthread_mutex_lock(&e->lock);
+  char *before = e->last_status;
+  e->last_status = text;
+  pthread_mutex_unlock(&e->lock);
+  free(before);
 }
 
 void status_error(Engine *e, const vlError *error, vlResult result) {

@@ -1,4 +1,5 @@
-/* view/engine_tasks.c: answers of the render thread to messages that need the world. */
+/* view/engine_tasks.c: answers to messages that need the world: of the render thread, which has the film, and of a
+ * thread beside it, with a higher priority. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,6 +60,7 @@ static void pick(Engine *e, const Task *task) {
   uint32_t x = (uint32_t)m->x, y = (uint32_t)m->y;
   const uint32_t crop[4] = {x, y, x + 1, y + 1};
   memcpy(def.crop, crop, sizeof crop);
+  def.priority = 2, def.cancel = e->end;
   def.channels = VL_CHANNEL_ALL & ~(uint32_t)(VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM);
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
@@ -106,6 +108,8 @@ static void focus(Engine *e, const Task *task) {
   engine_remember(e, &next, 0);
   e->wanted.camera = next;
   e->wanted.generation++;
+  vl_cancel_request(e->stop);
+  pthread_cond_broadcast(&e->wake);
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
 }
@@ -124,5 +128,24 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_RESET:
     case MESSAGE_SETTINGS:
     case MESSAGE_STEER: break;
+  }
+}
+
+void *engine_answer_questions(void *user) {
+  Engine *e = user;
+  static Task task; /* this thread alone uses it */
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    while (!e->quit && !e->question_count) pthread_cond_wait(&e->wake, &e->lock);
+    bool quit = e->quit;
+    if (!quit) {
+      task = e->questions[0];
+      memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
+    }
+    pthread_mutex_unlock(&e->lock);
+    if (quit) return NULL;
+    pthread_rwlock_rdlock(&e->model_lock);
+    engine_answer(e, &task);
+    pthread_rwlock_unlock(&e->model_lock);
   }
 }

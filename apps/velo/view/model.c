@@ -37,8 +37,10 @@ static double find_lookat(const Model *model) {
   return middle > 0 && isfinite(middle) ? middle : 1;
 }
 
-int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model, FileList *files) {
+int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
+               const vlCancel *cancel, Model *model, FileList *files) {
   memset(model, 0, sizeof *model);
+  model->opening.cancel = cancel;
   vlError error = {0};
   vl_context_record_files(context, false);
   vl_context_record_files(context, true);
@@ -46,7 +48,9 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   int status = scene_open(context, path, arguments, &model->scene, &model->opening);
   if (status < 0) status = job_make(&model->job, context, model->scene, path, arguments);
   if (status < 0) {
-    vlResult result = vl_world_build_last(model->scene, &model->job.defs->build, &model->world, &error);
+    vlBuildDef build = model->job.defs->build;
+    build.previous = previous, build.cancel = cancel;
+    vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
     if (result != VL_OK) status = report_error(&error, result, path);
   }
   file_list_add(files, path);

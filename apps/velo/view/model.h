@@ -20,7 +20,8 @@ typedef struct Model {
 
 /* Loads, completes and builds. Adds the paths of the files that were read to the list. Returns -1, or the exit code
  * after reporting the error; *model is empty then. */
-int model_load(vlContext *context, const char *path, const Arguments *arguments, Model *model, FileList *files);
+int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
+               const vlCancel *cancel, Model *model, FileList *files);
 /* Frees what the model has and empties it. */
 void model_free(Model *model);
 

@@ -1,7 +1,7 @@
 // The value under the pointer, and what a picked pixel sees.
 import { byId, make, short } from "./dom.js";
 
-const numbers = values => (values || []).map(v => short(v, 5)).join("  ");
+const numbers = values => (values || []).map(v => short(v, 4)).join("  ");
 
 export class Inspector {
   constructor(root, app) {

@@ -55,11 +55,9 @@ vec3 viridis(float t) {
     t * vec3(-5.4354559, 4.6458526, 26.3124352))))));
 }
 vec3 idColour(float id) {
-  uint h = uint(id) * 2654435761u;
-  h ^= h >> 15; h *= 2246822519u; h ^= h >> 13;
-  float hue = float(h & 1023u) / 1024.0, light = 0.55 + 0.35 * float(h >> 10 & 255u) / 255.0;
+  float hue = fract(id * 0.61803398875), light = 0.95 - 0.3 * fract(id * 0.38196601125);
   vec3 c = clamp(abs(fract(hue + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
-  return id == 0.0 ? vec3(0.08) : light * mix(vec3(1), c, 0.65);
+  return id == 0.0 ? vec3(0.08) : light * mix(vec3(1), c, 0.6);
 }
 vec3 falseColour(vec3 v) {
 #if KIND == 1

@@ -9,6 +9,7 @@ extern const Command camera_project_command, camera_unproject_command, camera_in
 extern const Command image_denoise_command, scene_info_command, scene_check_command, scene_convert_command,
     scene_kinds_command, scene_upgrade_command;
 extern const Command camera_verify_command, camera_vanishing_command, camera_paths_command;
+extern const Command view_command;
 extern const Command film_info_command, film_merge_command, film_develop_command;
 
 #endif

@@ -18,7 +18,14 @@ static struct {
   const char *usage_file; /* the file that holds the command line; null: the command line is the user's own */
   char *json_text;
   size_t json_size;
+  ReportFn *listener;
+  void *listener_user;
 } state;
+
+void report_listen(ReportFn *listener, void *user) {
+  state.listener = listener;
+  state.listener_user = user;
+}
 
 void report_setup(bool json, Verbosity verbosity) {
   const char *term = getenv("TERM");
@@ -96,6 +103,12 @@ void report_json_end(Json *json) {
 static void say(const char *kind, int status, const vlError *where, const char *fallback_file, const char *message) {
   const char *file = where && where->file[0] ? where->file : fallback_file;
   uint32_t line = where && where->file[0] ? where->line : 0, column = line ? where->column : 0;
+  if (state.listener) {
+    vlError what = {.line = line, .column = column};
+    snprintf(what.file, sizeof what.file, "%s", file ? file : "");
+    snprintf(what.message, sizeof what.message, "%s", message);
+    state.listener(state.listener_user, kind, &what);
+  }
   if (state.json) {
     Json json = report_json_begin(kind ? kind : "error");
     if (!kind) json_integer(&json, "status", status);

@@ -43,6 +43,11 @@ void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)
 int report_reason(vlResult result, const char *file, const char *what);
 /* Reports a note. Prints nothing with --quiet or in JSON mode. */
 void report_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* Receives each error and warning besides stderr. kind: "warning"; null: an error. what: message and place. Called on
+ * the thread that reports. */
+typedef void ReportFn(void *user, const char *kind, const vlError *what);
+/* Sets who receives them; null: nobody. */
+void report_listen(ReportFn *listener, void *user);
 /* The context's log callback. */
 void report_log(void *user, vlLogLevel level, const vlError *where, const char *message);
 /* Sets the status line that is redrawn at the bottom of a terminal; null removes it. */

@@ -92,6 +92,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   const OptionValue *v = arguments->values;
   vlError error = {0};
   vlLoadDef load = vl_default_load_def();
+  load.cancel = opening->cancel;
   load.permissive = v[RENDER_PERMISSIVE].given;
   load.strict = v[RENDER_STRICT].given;
   if (v[RENDER_SEARCH].given) load.search_path = v[RENDER_SEARCH].text;

@@ -10,8 +10,9 @@
 typedef struct SceneOpening {
   vlLoadDef load;
   vlCompleteDef complete;
-  bool lamps; /* a file of a model (glTF, OBJ, PLY) with lights of its own */
-  bool model; /* a file of a model: its exposure is metered, its default output is a .png */
+  bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
+  const vlCancel *cancel; /* input: stops the load; null: nothing does */
+  bool model;             /* a file of a model: its exposure is metered, its default output is a .png */
 } SceneOpening;
 
 /* Loads the scene and completes it. Returns -1, or the exit code after reporting the error. */

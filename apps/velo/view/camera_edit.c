@@ -1,0 +1,448 @@
+/* view/camera_edit.c: see camera_edit.h. Each field has a row with a function that puts its value into the def and
+ * removes the spellings that it replaces. */
+#include "view/camera_edit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double degree = 3.14159265358979323846 / 180.0;
+
+/* Takes the units that the def names. */
+static void note_units(const vlCameraDef *def, CameraUnits *units) {
+  if (!isnan(def->zoom)) units->zoom = def->zoom;
+  if (!isnan(def->pixel_size)) units->pixel_size = def->pixel_size;
+  if (!isnan(def->sensor_width_mm)) units->sensor_mm = def->sensor_width_mm;
+}
+
+/* ---- the focal length -------------------------------------------------------------------------------------------- */
+
+/* Replaces a window in scene units by the principal point. */
+static void drop_window(const ViewCamera *now, vlCameraDef *def) {
+  if (isnan(def->screen_min_x)) return;
+  def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
+  def->cx = now->made.cx, def->cy = now->made.cy;
+}
+
+/* Removes every spelling of the focal length but the width of the sensor. */
+static void drop_focal(vlCameraDef *def) {
+  def->fov = def->view_distance = def->zoom = def->pixel_size = def->focal_mm = def->fx = def->fy = VL_UNSET;
+}
+
+static void spell_matrix(const ViewCamera *now, vlCameraDef *def) {
+  if (isnan(def->fx)) {
+    drop_window(now, def);
+    drop_focal(def);
+    def->fx = now->made.fx, def->fy = now->made.fy;
+  }
+}
+
+static void spell_lecture(const ViewCamera *now, vlCameraDef *def) {
+  if (!isnan(def->view_distance)) return;
+  const CameraUnits u = now->units;
+  drop_window(now, def);
+  drop_focal(def);
+  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) {
+    def->zoom = u.zoom, def->pixel_size = u.zoom / now->made.fx;
+    return;
+  }
+  def->view_distance = now->made.fx * u.pixel_size / u.zoom;
+  def->zoom = u.zoom, def->pixel_size = u.pixel_size;
+}
+
+static void spell_lens_mm(const ViewCamera *now, vlCameraDef *def) {
+  const CameraUnits u = now->units;
+  if (isnan(def->focal_mm)) {
+    drop_window(now, def);
+    drop_focal(def);
+    def->focal_mm = now->made.fx * u.sensor_mm / now->made.width;
+  }
+  def->sensor_width_mm = u.sensor_mm;
+}
+
+typedef struct PoseEdit {
+  bool given; /* a part of the pose is edited */
+  CameraPose pose;
+} PoseEdit;
+
+typedef struct Edit {
+  const ViewCamera *now;
+  vlCameraDef *def;
+  const ViewMessage *message;
+  PoseEdit pose;
+} Edit;
+
+/* Each of these functions takes a field; false: its value is not of the right form. */
+typedef bool Setter(Edit *edit, const MessageField *field);
+
+static bool one(const MessageField *field, double *value) {
+  if (field->count == 1) *value = field->numbers[0];
+  if (field->null) *value = VL_UNSET;
+  return field->count == 1 || field->null;
+}
+
+static bool set_d(Edit *e, const MessageField *f) {
+  spell_lecture(e->now, e->def);
+  return one(f, &e->def->view_distance);
+}
+static bool set_zoom(Edit *e, const MessageField *f) {
+  spell_lecture(e->now, e->def);
+  return one(f, &e->def->zoom);
+}
+static bool set_s(Edit *e, const MessageField *f) {
+  spell_lecture(e->now, e->def);
+  return one(f, &e->def->pixel_size);
+}
+static bool set_fov(Edit *e, const MessageField *f) {
+  drop_focal(e->def);
+  if (!one(f, &e->def->fov)) return false;
+  e->def->fov *= degree;
+  return true;
+}
+static bool set_fov_axis(Edit *e, const MessageField *f) {
+  static const char *const names[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
+  for (int i = 0; i < 5; i++)
+    if (strcmp(names[i], f->text) == 0) {
+      e->def->fov_axis = (vlFovAxis)i;
+      return true;
+    }
+  return false;
+}
+static bool set_focal_mm(Edit *e, const MessageField *f) {
+  spell_lens_mm(e->now, e->def);
+  return one(f, &e->def->focal_mm);
+}
+static bool set_sensor_mm(Edit *e, const MessageField *f) {
+  if (!isnan(e->def->focal_mm)) spell_lens_mm(e->now, e->def);
+  return one(f, &e->def->sensor_width_mm);
+}
+static bool set_fx(Edit *e, const MessageField *f) {
+  spell_matrix(e->now, e->def);
+  return one(f, &e->def->fx);
+}
+static bool set_fy(Edit *e, const MessageField *f) {
+  spell_matrix(e->now, e->def);
+  return one(f, &e->def->fy);
+}
+/* A field of view describes a window centred on the axis, so the matrix replaces it. */
+static bool set_cx(Edit *e, const MessageField *f) {
+  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x)) spell_matrix(e->now, e->def);
+  return one(f, &e->def->cx);
+}
+static bool set_cy(Edit *e, const MessageField *f) {
+  if (!isnan(e->def->fov) || !isnan(e->def->screen_min_x)) spell_matrix(e->now, e->def);
+  return one(f, &e->def->cy);
+}
+static bool set_skew(Edit *e, const MessageField *f) {
+  return one(f, &e->def->skew);
+}
+
+/* ---- projection and distortion ----------------------------------------------------------------------------------- */
+
+/* Parameters with which a projection starts. */
+static void start_projection(const ViewCamera *now, vlCameraDef *def) {
+  double field = 2.0 * atan(0.5 * now->made.height / now->made.fy), distance = 1.0;
+  const CameraPose pose = camera_pose(now);
+  for (int i = 0; i < 3; i++) distance += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
+  distance = sqrt(distance - 1.0);
+  drop_focal(def);
+  def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
+  def->cx = def->cy = def->skew = def->shape[0] = def->shape[1] = def->max_angle = VL_UNSET;
+  def->distortion = VL_DISTORTION_NONE;
+  def->distortion_count = 0;
+  switch (def->projection) {
+    case VL_PROJECTION_PERSPECTIVE: def->fov = field < 120 * degree ? field : 60 * degree; break;
+    case VL_PROJECTION_ORTHOGRAPHIC: def->fx = now->made.fx / (distance > 0 ? distance : 1); break;
+    case VL_PROJECTION_SINE:
+    case VL_PROJECTION_EQUIDISTANT:
+    case VL_PROJECTION_EQUISOLID:
+    case VL_PROJECTION_STEREOGRAPHIC: def->fov = 180 * degree, def->fov_axis = VL_FOV_SMALLER; break;
+    case VL_PROJECTION_FOV: def->shape[0] = 0.9; break;
+    case VL_PROJECTION_DIVISION: def->shape[0] = -0.2; break;
+    case VL_PROJECTION_UNIFIED: def->shape[0] = 0.8; break;
+    case VL_PROJECTION_EUCM: def->shape[0] = 0.6, def->shape[1] = 1.1; break;
+    case VL_PROJECTION_DOUBLE_SPHERE: def->shape[0] = -0.2, def->shape[1] = 0.6; break;
+    case VL_PROJECTION_EQUIRECTANGULAR:
+    case VL_PROJECTION_EQUAL_AREA:
+    case VL_PROJECTION_CYLINDRICAL:
+    case VL_PROJECTION_CUBE:
+    case VL_PROJECTION_PANINI:
+    case VL_PROJECTION_OPTICS: break;
+  }
+  if (!isnan(def->shape[0]) && def->projection != VL_PROJECTION_PANINI)
+    def->fx = def->fy = 0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
+}
+
+static bool set_projection(Edit *e, const MessageField *f) {
+  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) {
+    if (strcmp(vl_projection_name((vlProjection)i), f->text) != 0) continue;
+    if (e->def->projection == (vlProjection)i) return true;
+    e->def->projection = (vlProjection)i;
+    start_projection(e->now, e->def);
+    return true;
+  }
+  return false;
+}
+static bool set_shape(Edit *e, const MessageField *f) {
+  if (f->count > 2) return false;
+  for (uint32_t i = 0; i < 2; i++) e->def->shape[i] = i < f->count ? f->numbers[i] : VL_UNSET;
+  return true;
+}
+static bool set_max_angle(Edit *e, const MessageField *f) {
+  if (!one(f, &e->def->max_angle)) return false;
+  e->def->max_angle *= degree;
+  return true;
+}
+static bool set_distortion(Edit *e, const MessageField *f) {
+  static const char *const names[] = {"none", "opencv", "radial", "thin prism"};
+  static const uint32_t counts[] = {0, 5, 2, 8};
+  for (int i = 0; i < 4; i++)
+    if (strcmp(names[i], f->text) == 0) {
+      if (e->def->distortion != (vlDistortion)i) {
+        e->def->distortion_count = counts[i];
+        memset(e->def->distortion_coefficients, 0, sizeof e->def->distortion_coefficients);
+      }
+      e->def->distortion = (vlDistortion)i;
+      return true;
+    }
+  return false;
+}
+static bool set_coefficients(Edit *e, const MessageField *f) {
+  if (f->count > 14) return false;
+  e->def->distortion_count = f->count;
+  memcpy(e->def->distortion_coefficients, f->numbers, f->count * sizeof *f->numbers);
+  return true;
+}
+
+/* ---- pose -------------------------------------------------------------------------------------------------------- */
+
+static bool three(const MessageField *f, double value[3], bool *given) {
+  if (f->count != 3) return false;
+  memcpy(value, f->numbers, 3 * sizeof *value);
+  *given = true;
+  return true;
+}
+static bool set_eye(Edit *e, const MessageField *f) {
+  return three(f, e->pose.pose.eye, &e->pose.given);
+}
+static bool set_lookat(Edit *e, const MessageField *f) {
+  return three(f, e->pose.pose.lookat, &e->pose.given);
+}
+static bool set_up(Edit *e, const MessageField *f) {
+  return three(f, e->pose.pose.up, &e->pose.given);
+}
+static bool set_roll(Edit *e, const MessageField *f) {
+  if (f->count != 1) return false;
+  e->pose.pose.roll = f->numbers[0] * degree;
+  return e->pose.given = true;
+}
+
+/* ---- lens -------------------------------------------------------------------------------------------------------- */
+
+static bool set_lens_radius(Edit *e, const MessageField *f) {
+  e->def->lens.f_number = VL_UNSET;
+  return f->count == 1 && one(f, &e->def->lens_radius);
+}
+static bool set_f_number(Edit *e, const MessageField *f) {
+  e->def->lens_radius = 0;
+  if (isnan(e->def->focal_mm) && isnan(e->def->sensor_width_mm)) e->def->sensor_width_mm = 36;
+  return one(f, &e->def->lens.f_number);
+}
+static bool set_focus_distance(Edit *e, const MessageField *f) {
+  for (int i = 0; i < 3; i++) e->def->lens.focus_point[i] = VL_UNSET;
+  for (int i = 0; i < 2; i++) e->def->lens.focus_pixel[i] = VL_UNSET;
+  return one(f, &e->def->focus_distance);
+}
+static bool set_blades(Edit *e, const MessageField *f) {
+  if (f->count != 1 || f->numbers[0] < 0 || f->numbers[0] > 1000) return false;
+  e->def->lens.blades = (uint32_t)f->numbers[0];
+  return true;
+}
+static bool set_ratio(Edit *e, const MessageField *f) {
+  return f->count == 1 && one(f, &e->def->lens.ratio);
+}
+
+/* An angle of the lens, given in degrees. */
+static bool set_angle(const MessageField *f, double *angle) {
+  if (f->count != 1) return false;
+  *angle = f->numbers[0] * degree;
+  return true;
+}
+static bool set_rotation(Edit *e, const MessageField *f) {
+  return set_angle(f, &e->def->lens.rotation);
+}
+static bool set_tilt_x(Edit *e, const MessageField *f) {
+  return set_angle(f, &e->def->lens.tilt_x);
+}
+static bool set_tilt_y(Edit *e, const MessageField *f) {
+  return set_angle(f, &e->def->lens.tilt_y);
+}
+static bool set_lens_tilt_x(Edit *e, const MessageField *f) {
+  return set_angle(f, &e->def->lens.lens_tilt_x);
+}
+static bool set_lens_tilt_y(Edit *e, const MessageField *f) {
+  return set_angle(f, &e->def->lens.lens_tilt_y);
+}
+static bool set_near(Edit *e, const MessageField *f) {
+  if (f->null) e->def->near_plane = 0;
+  return f->null || one(f, &e->def->near_plane);
+}
+static bool set_far(Edit *e, const MessageField *f) {
+  if (f->null) e->def->far_plane = INFINITY;
+  return f->null || one(f, &e->def->far_plane);
+}
+static bool set_exposure_time(Edit *e, const MessageField *f) {
+  return f->count == 1 && one(f, &e->def->exposure_time);
+}
+
+/* ---- all fields -------------------------------------------------------------------------------------------------- */
+
+/* In the order in which the fields of one message are applied. */
+static const struct {
+  const char *name;
+  Setter *set;
+} setters[] = {{"projection", set_projection},
+               {"fov_axis", set_fov_axis},
+               {"fov", set_fov},
+               {"d", set_d},
+               {"zoom", set_zoom},
+               {"s", set_s},
+               {"sensor_width_mm", set_sensor_mm},
+               {"focal_mm", set_focal_mm},
+               {"fx", set_fx},
+               {"fy", set_fy},
+               {"cx", set_cx},
+               {"cy", set_cy},
+               {"skew", set_skew},
+               {"shape", set_shape},
+               {"max_angle", set_max_angle},
+               {"distortion", set_distortion},
+               {"coefficients", set_coefficients},
+               {"eye", set_eye},
+               {"lookat", set_lookat},
+               {"up", set_up},
+               {"roll", set_roll},
+               {"lens_radius", set_lens_radius},
+               {"f_number", set_f_number},
+               {"focus_distance", set_focus_distance},
+               {"blades", set_blades},
+               {"rotation", set_rotation},
+               {"ratio", set_ratio},
+               {"tilt_x", set_tilt_x},
+               {"tilt_y", set_tilt_y},
+               {"lens_tilt_x", set_lens_tilt_x},
+               {"lens_tilt_y", set_lens_tilt_y},
+               {"near", set_near},
+               {"far", set_far},
+               {"exposure_time", set_exposure_time}};
+enum { SETTERS = sizeof setters / sizeof *setters };
+
+static vlResult refuse_field(vlError *error, const char *what, const char *name) {
+  snprintf(error->message, sizeof error->message, "%s \"%s\"", what, vl_short_text(name).text);
+  return error->code = VL_ERROR_ARGUMENT;
+}
+
+static vlResult apply_fields(Edit *edit, vlError *error) {
+  const ViewMessage *message = edit->message;
+  uint32_t known = 0;
+  for (int s = 0; s < SETTERS; s++)
+    for (uint32_t i = 0; i < message->field_count; i++) {
+      const MessageField *field = &message->fields[i];
+      if (strcmp(field->name, setters[s].name) != 0) continue;
+      known++;
+      if (!setters[s].set(edit, field)) return refuse_field(error, "camera: wrong value of", field->name);
+    }
+  if (known == message->field_count) return VL_OK;
+  for (uint32_t i = 0; i < message->field_count; i++) {
+    int s = 0;
+    while (s < SETTERS && strcmp(setters[s].name, message->fields[i].name) != 0) s++;
+    if (s == SETTERS) return refuse_field(error, "camera: unknown field", message->fields[i].name);
+  }
+  return VL_OK;
+}
+
+/* Gives the width of the sensor only where it has a meaning. */
+static void tidy_sensor(const CameraUnits *units, vlCameraDef *def) {
+  const vlLensDef *lens = &def->lens;
+  bool needed = !isnan(def->focal_mm) || !isnan(lens->f_number) || lens->lens_tilt_x != 0 || lens->lens_tilt_y != 0;
+  def->sensor_width_mm = needed ? units->sensor_mm : VL_UNSET;
+}
+
+static bool near(double a, double b) {
+  return fabs(a - b) <= 1e-9 * fmax(fabs(a), fabs(b));
+}
+
+/* Whether two compiled cameras are the same but for rounding. */
+static bool same_camera(const vlCamera *a, const vlCamera *b) {
+  return near(a->fx, b->fx) && near(a->fy, b->fy) && near(a->cx, b->cx) && near(a->cy, b->cy) &&
+         near(a->skew, b->skew) && near(a->lens_radius, b->lens_radius);
+}
+
+/* Scales the spelling of the focal length to the image's size. */
+static void spell_at_size(ViewCamera *camera) {
+  vlCameraDef *def = &camera->def;
+  const vlCamera *made = &camera->made;
+  if (!isnan(def->view_distance)) def->view_distance = made->fx * camera->units.pixel_size / camera->units.zoom;
+  if (!isnan(def->focal_mm)) def->focal_mm = made->fx * def->sensor_width_mm / made->width;
+  if (!isnan(def->fx)) def->fx = made->fx;
+  if (!isnan(def->fy)) def->fy = made->fy;
+  if (!isnan(def->cx)) def->cx = made->cx;
+  if (!isnan(def->cy)) def->cy = made->cy;
+  if (!isnan(def->skew)) def->skew = made->skew;
+  def->width = made->width, def->height = made->height;
+}
+
+/* Spells the camera by numbers that need no others: the matrix, the radius of the lens. */
+static void spell_plainly(ViewCamera *camera) {
+  vlCameraDef *def = &camera->def;
+  const vlCamera *made = &camera->made;
+  drop_window(camera, def);
+  drop_focal(def);
+  def->sensor_width_mm = VL_UNSET;
+  def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy, def->skew = made->skew;
+  def->lens_radius = made->lens_radius, def->lens.f_number = VL_UNSET;
+  def->exposure_time = made->exposure_time, def->lens.iso = def->lens.seconds = VL_UNSET;
+}
+
+vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error) {
+  *camera = (ViewCamera){.def = *def, .made = *made, .units = {1, 1, 36, lookat}};
+  vlLensDef *lens = &camera->def.lens;
+  note_units(def, &camera->units);
+  camera->def.stereo_eye = VL_EYE_BOTH;
+  if (!isnan(lens->focus_pixel[0]) && !lens->optics) { /* the focus is found already */
+    lens->focus_pixel[0] = lens->focus_pixel[1] = VL_UNSET;
+    camera->def.focus_distance = made->focus_distance;
+  }
+  if (def->width != made->width || def->height != made->height) {
+    vlCamera again;
+    spell_at_size(camera);
+    if (vl_camera_make(&camera->def, &again, NULL, error) != VL_OK || !same_camera(&again, made)) spell_plainly(camera);
+  }
+  return vl_camera_make(&camera->def, &camera->made, NULL, error);
+}
+
+vlResult camera_edit(const ViewCamera *now, const ViewMessage *message, ViewCamera *result, const char **warning,
+                     vlError *error) {
+  ViewCamera next = *now;
+  Edit edit = {.now = now, .def = &next.def, .message = message, .pose = {.pose = camera_pose(now)}};
+  vlResult status = apply_fields(&edit, error);
+  if (status == VL_OK && edit.pose.given) camera_place(now, &edit.pose.pose, &next.def);
+  note_units(&next.def, &next.units);
+  const CameraPose *pose = &edit.pose.pose;
+  double arm = 0;
+  for (int i = 0; i < 3; i++) arm += (pose->lookat[i] - pose->eye[i]) * (pose->lookat[i] - pose->eye[i]);
+  if (arm > 0) next.units.lookat = sqrt(arm);
+  tidy_sensor(&next.units, &next.def);
+  if (status == VL_OK) status = vl_camera_make(&next.def, &next.made, warning, error);
+  if (status == VL_OK) *result = next;
+  return status;
+}
+
+vlResult camera_set_focus(const ViewCamera *now, double distance, ViewCamera *result, vlError *error) {
+  ViewMessage message = {.field_count = 1};
+  strcpy(message.fields[0].name, "focus_distance");
+  message.fields[0].count = 1;
+  message.fields[0].numbers[0] = distance;
+  const char *warning;
+  return camera_edit(now, &message, result, &warning, error);
+}

@@ -1,0 +1,110 @@
+/* view/camera_spellings.c: all equivalent spellings of a camera, as JSON for the page. */
+#include <math.h>
+
+#include "view/camera_edit.h"
+
+static const double degrees = 180.0 / 3.14159265358979323846;
+
+static void put_numbers(Json *json, const char *key, const double *values, uint32_t count) {
+  json_begin(json, key, '[');
+  for (uint32_t i = 0; i < count; i++) json_number(json, NULL, values[i]);
+  json_end(json, ']');
+}
+
+static void put_pose(Json *json, const ViewCamera *camera) {
+  const CameraPose pose = camera_pose(camera);
+  put_numbers(json, "eye", pose.eye, 3);
+  put_numbers(json, "lookat", pose.lookat, 3);
+  put_numbers(json, "up", pose.up, 3);
+  json_number(json, "roll", pose.roll * degrees);
+  put_numbers(json, "world_from_camera", camera->made.world_from_camera, 16);
+  put_numbers(json, "camera_from_world", camera->made.camera_from_world, 16);
+}
+
+/* The angle between the rays of two points of the film, degrees; NaN: one has none. */
+static double angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
+  double o[3], a[3], b[3];
+  if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
+  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+  return degrees * atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+static void put_focal(Json *json, const ViewCamera *camera) {
+  static const char *const axes[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
+  const vlCameraDef *def = &camera->def;
+  const vlCamera *c = &camera->made;
+  const CameraUnits u = camera->units;
+  bool flat = c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  double w = c->width, h = c->height;
+  double horizontal = angle(c, 0, c->cy, c->cx, c->cy) + angle(c, c->cx, c->cy, w, c->cy);
+  double vertical = angle(c, c->cx, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, c->cx, h);
+  double diagonal = angle(c, 0, 0, c->cx, c->cy) + angle(c, c->cx, c->cy, w, h);
+  const double fields[] = {vertical, horizontal, diagonal, w < h ? horizontal : vertical,
+                           w < h ? vertical : horizontal};
+  const char *spelled = !isnan(def->fx) || !isnan(def->fy) ? "matrix"
+                        : !isnan(def->view_distance)       ? "lecture"
+                        : flat && !isnan(def->pixel_size)  ? "lecture"
+                        : !isnan(def->focal_mm)            ? "focal"
+                                                           : "fov";
+  json_text(json, "spelled", spelled);
+  json_text(json, "fov_axis", axes[def->fov_axis]);
+  json_number(json, "fov", flat ? NAN : isnan(def->fov) ? fields[def->fov_axis] : def->fov * degrees);
+  json_number(json, "fov_horizontal", flat ? NAN : horizontal);
+  json_number(json, "fov_vertical", flat ? NAN : vertical);
+  json_number(json, "fov_diagonal", flat ? NAN : diagonal);
+  json_number(json, "d", flat ? NAN : !isnan(def->view_distance) ? def->view_distance : c->fx * u.pixel_size / u.zoom);
+  json_number(json, "zoom", u.zoom);
+  json_number(json, "s", flat && isnan(def->pixel_size) ? u.zoom / c->fx : u.pixel_size);
+  json_number(json, "sensor_width_mm", u.sensor_mm);
+  json_number(json, "focal_mm", flat ? NAN : !isnan(def->focal_mm) ? def->focal_mm : c->fx * u.sensor_mm / w);
+  json_number(json, "fx", c->fx);
+  json_number(json, "fy", c->fy);
+  json_number(json, "cx", c->cx);
+  json_number(json, "cy", c->cy);
+  json_number(json, "skew", c->skew);
+}
+
+static void put_projection(Json *json, const ViewCamera *camera) {
+  static const char *const distortions[] = {"none", "opencv", "radial", "thin prism"};
+  const vlCameraDef *def = &camera->def;
+  json_text(json, "projection", vl_projection_name(def->projection));
+  put_numbers(json, "shape", camera->made.shape, 2);
+  json_number(json, "max_angle", def->max_angle * degrees);
+  json_text(json, "distortion", distortions[def->distortion]);
+  put_numbers(json, "coefficients", def->distortion_coefficients, def->distortion_count);
+  json_number(json, "outside", camera->made.outside);
+}
+
+static void put_lens(Json *json, const ViewCamera *camera) {
+  const vlCameraDef *def = &camera->def;
+  const vlCamera *c = &camera->made;
+  const vlLensDef *lens = &def->lens;
+  double unit = isnan(lens->unit_mm) ? 1000 : lens->unit_mm, sensor = camera->units.sensor_mm;
+  double focal = c->fx * sensor / c->width;
+  json_number(json, "lens_radius", c->lens_radius);
+  json_number(json, "f_number",
+              !isnan(lens->f_number) ? lens->f_number
+              : c->lens_radius > 0   ? focal / (2 * unit * c->lens_radius)
+                                     : NAN);
+  json_number(json, "focus_distance", c->focus_distance);
+  json_integer(json, "blades", lens->blades);
+  json_number(json, "rotation", lens->rotation * degrees);
+  json_number(json, "ratio", lens->ratio);
+  json_number(json, "tilt_x", lens->tilt_x * degrees);
+  json_number(json, "tilt_y", lens->tilt_y * degrees);
+  json_number(json, "lens_tilt_x", lens->lens_tilt_x * degrees);
+  json_number(json, "lens_tilt_y", lens->lens_tilt_y * degrees);
+  json_number(json, "near", c->near_plane);
+  json_number(json, "far", c->far_plane);
+  json_number(json, "exposure_time", c->exposure_time);
+  json_bool(json, "optics", lens->optics != NULL);
+}
+
+void camera_spellings(Json *json, const ViewCamera *camera) {
+  json_integer(json, "width", camera->made.width);
+  json_integer(json, "height", camera->made.height);
+  put_pose(json, camera);
+  put_focal(json, camera);
+  put_projection(json, camera);
+  put_lens(json, camera);
+}

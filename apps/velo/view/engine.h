@@ -1,0 +1,29 @@
+/* view/engine.h: renders what the pages ask for: the first image coarse, then finer, then more samples. One thread
+ * renders; the server's thread brings messages. */
+#ifndef APP_VIEW_ENGINE_H
+#define APP_VIEW_ENGINE_H
+
+#include "view/model.h"
+#include "view/server.h"
+
+typedef struct Engine Engine;
+
+typedef struct EngineDef {
+  vlContext *context;
+  const char *path;           /* of the scene */
+  const Arguments *arguments; /* of the command line */
+  const char *film_path;      /* to write the film to at the end; null: none */
+} EngineDef;
+
+/* Loads the scene. Returns -1 with *engine, or the exit code after reporting the error. */
+int engine_create(const EngineDef *def, Engine **engine);
+/* The calls for the server of this engine. */
+ServerCalls engine_calls(Engine *engine);
+/* Starts the thread that renders. Returns -1 or the exit code. */
+int engine_start(Engine *engine, Server *server);
+/* Ends the thread and writes the film if that is asked for. Returns the exit code. */
+int engine_stop(Engine *engine);
+/* Null is allowed. */
+void engine_destroy(Engine *engine);
+
+#endif

@@ -1,0 +1,226 @@
+/* view/engine_messages.c: the engine's side of the server: greets pages and applies their messages. All of it runs on
+ * the server's thread; nothing here renders. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/engine_status.h"
+
+char *engine_state(const Engine *e) {
+  JsonText text;
+  if (!json_text_begin(&text, "state")) return NULL;
+  Json *json = &text.json;
+  const Wanted *w = &e->wanted;
+  json_text(json, "scene", e->def.path);
+  json_integer(json, "change", w->change);
+  json_integer(json, "spp", w->spp);
+  json_bool(json, "paused", w->paused);
+  json_integer(json, "channel", w->channel);
+  json_bool(json, "can_undo", e->history.at > 0);
+  json_bool(json, "can_redo", e->history.at + 1 < e->history.count);
+  json_begin(json, "crop", '[');
+  for (int i = 0; i < 4; i++) json_integer(json, NULL, w->crop[i]);
+  json_end(json, ']');
+  json_number(json, "exposure", (double)e->model.exposure);
+  json_integer(json, "view", e->def.arguments->values[RENDER_VIEW].integer);
+  json_begin(json, "bounds", '[');
+  for (int i = 0; i < 6; i++)
+    json_number(json, NULL, (double)(i < 3 ? e->model.info.bounds_min[i] : e->model.info.bounds_max[i - 3]));
+  json_end(json, ']');
+  json_begin(json, "camera", '{');
+  camera_spellings(json, &w->camera);
+  json_end(json, '}');
+  return json_text_end(&text);
+}
+
+void engine_post_state(Engine *e, uint32_t client) {
+  char *text = engine_state(e);
+  if (text) server_post(e->server, client, text);
+  free(text);
+}
+
+/* What the page can choose from: dialects, projections, channels. */
+static void post_lists(Engine *e, uint32_t client) {
+  JsonText text;
+  if (!json_text_begin(&text, "lists")) return;
+  Json *json = &text.json;
+  json_begin(json, "dialects", '[');
+  for (int i = VL_CAMERA_DIALECT_AUTO + 1; i < VL_CAMERA_DIALECT_COUNT; i++)
+    if (i != VL_CAMERA_DIALECT_EXR) json_text(json, NULL, vl_camera_dialect_name((vlCameraDialect)i));
+  json_end(json, ']');
+  json_begin(json, "projections", '[');
+  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) json_text(json, NULL, vl_projection_name((vlProjection)i));
+  json_end(json, ']');
+  json_begin(json, "channels", '[');
+  for (uint32_t i = 0; i <= 14; i++) json_text(json, NULL, vl_channel_name(i));
+  json_end(json, ']');
+  json_text_post(&text, e->server, client);
+}
+
+void engine_greet(void *user, uint32_t client) {
+  Engine *e = user;
+  post_lists(e, client);
+  pthread_mutex_lock(&e->lock);
+  engine_post_state(e, client);
+  if (e->last_status) server_post(e->server, client, e->last_status);
+  pthread_mutex_unlock(&e->lock);
+}
+
+void engine_clients(void *user, uint32_t count) {
+  Engine *e = user;
+  pthread_mutex_lock(&e->lock);
+  e->clients = count;
+  if (!count) vl_cancel_request(e->stop);
+  pthread_cond_broadcast(&e->wake);
+  pthread_mutex_unlock(&e->lock);
+}
+
+/* ---- the camera -------------------------------------------------------------------------------------------------- */
+
+static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const char *why) {
+  JsonText text;
+  if (!json_text_begin(&text, "refused")) return;
+  json_integer(&text.json, "change", m->change);
+  json_integer(&text.json, "id", m->id);
+  json_text(&text.json, "field", m->field_count ? m->fields[0].name : "");
+  json_text(&text.json, "message", why);
+  json_text_post(&text, e->server, client);
+}
+
+static void show_camera(Engine *e, const ViewCamera *camera) {
+  e->wanted.camera = *camera;
+  e->wanted.generation++;
+  vl_cancel_request(e->stop);
+}
+
+void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
+  History *h = &e->history;
+  bool same = gesture && gesture == h->gesture && h->at > 0;
+  h->gesture = gesture;
+  if (!same && h->at + 1 == HISTORY) {
+    memmove(h->cameras, h->cameras + 1, (HISTORY - 1) * sizeof *h->cameras);
+    h->at--;
+  }
+  if (!same) h->at++;
+  h->cameras[h->at] = *camera;
+  h->count = h->at + 1;
+}
+
+static void edit_camera(Engine *e, uint32_t client, const ViewMessage *m) {
+  ViewCamera next;
+  vlError error = {0};
+  const char *warning = NULL;
+  if (camera_edit(&e->wanted.camera, m, &next, &warning, &error) != VL_OK) {
+    engine_post_state(e, client); /* its inputs show the camera as it is */
+    post_refusal(e, client, m, error.message[0] ? error.message : "refused");
+    return;
+  }
+  e->wanted.change = m->change;
+  engine_remember(e, &next, m->gesture);
+  show_camera(e, &next);
+  engine_post_state(e, 0);
+  if (warning) {
+    JsonText text;
+    if (!json_text_begin(&text, "warning")) return;
+    json_text(&text.json, "message", warning);
+    json_text_post(&text, e->server, client);
+  }
+}
+
+static void step_history(Engine *e, const ViewMessage *m) {
+  History *h = &e->history;
+  if (m->kind == MESSAGE_RESET) {
+    engine_remember(e, &e->scene_camera, 0);
+  } else if (m->kind == MESSAGE_UNDO && h->at > 0) {
+    h->at--;
+  } else if (m->kind == MESSAGE_REDO && h->at + 1 < h->count) {
+    h->at++;
+  } else {
+    return;
+  }
+  h->gesture = 0;
+  e->wanted.change = m->change;
+  show_camera(e, &h->cameras[h->at]);
+  engine_post_state(e, 0);
+}
+
+/* ---- settings ---------------------------------------------------------------------------------------------------- */
+
+static bool set_channel(Engine *e, const char *name) {
+  if (strcmp(name, "image") == 0) {
+    e->wanted.channel = 0;
+    return true;
+  }
+  for (uint32_t i = 0; i <= 14; i++)
+    if (strcmp(name, vl_channel_name(i)) == 0) {
+      e->wanted.channel = i + 1;
+      return true;
+    }
+  return false;
+}
+
+static bool set_crop(Engine *e, const uint32_t crop[4]) {
+  const vlCamera *c = &e->wanted.camera.made;
+  const uint32_t whole[4] = {0, 0, c->width, c->height};
+  if (!crop[2]) {
+    memcpy(e->wanted.crop, whole, sizeof whole);
+    return true;
+  }
+  if (crop[0] >= crop[2] || crop[1] >= crop[3] || crop[2] > c->width || crop[3] > c->height) return false;
+  memcpy(e->wanted.crop, crop, sizeof whole);
+  return true;
+}
+
+static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
+  if (m->has_channel && !set_channel(e, m->channel)) post_refusal(e, client, m, "there is no such channel");
+  if (m->has_crop) {
+    if (set_crop(e, m->crop))
+      e->wanted.generation++;
+    else
+      post_refusal(e, client, m, "the rectangle is not inside the image");
+  }
+  if (m->has_spp) e->wanted.spp = m->spp;
+  if (m->has_paused) e->wanted.paused = m->paused;
+  if (m->has_crop || m->has_channel || e->wanted.paused) vl_cancel_request(e->stop);
+  e->wanted.change = m->change ? m->change : e->wanted.change;
+  engine_post_state(e, 0);
+}
+
+/* Adds a message to a list of tasks. */
+static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks, uint32_t *count) {
+  if (*count == MOST_TASKS) {
+    post_refusal(e, client, m, "too much at once");
+    return;
+  }
+  tasks[(*count)++] = (Task){.client = client, .message = *m};
+}
+
+/* Messages that change nothing that others see. */
+static bool is_harmless(MessageKind kind) {
+  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY;
+}
+
+void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
+  Engine *e = user;
+  pthread_mutex_lock(&e->lock);
+  if (!steers && !is_harmless(m->kind)) {
+    post_refusal(e, client, m, "another page steers");
+  } else {
+    switch (m->kind) {
+      case MESSAGE_CAMERA: edit_camera(e, client, m); break;
+      case MESSAGE_UNDO:
+      case MESSAGE_REDO:
+      case MESSAGE_RESET: step_history(e, m); break;
+      case MESSAGE_SETTINGS: change_settings(e, client, m); break;
+      case MESSAGE_SAVE:
+      case MESSAGE_COMMAND: add_task(e, client, m, e->tasks, &e->task_count); break;
+      case MESSAGE_PICK:
+      case MESSAGE_FOCUS:
+      case MESSAGE_OVERLAY: add_task(e, client, m, e->questions, &e->question_count); break;
+      case MESSAGE_SEEN:
+      case MESSAGE_STEER: break; /* the server's own */
+    }
+  }
+  pthread_cond_broadcast(&e->wake);
+  pthread_mutex_unlock(&e->lock);
+}

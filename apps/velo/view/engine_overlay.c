@@ -1,0 +1,69 @@
+/* view/engine_overlay.c: what the page draws over the image: vanishing points, horizon, boxes of objects. */
+#include <stdlib.h>
+
+#include "view/engine_status.h"
+
+enum { MOST_BOXES = 500 };
+
+static void put_vanishing(Json *json, const vlCamera *camera, const double up[3]) {
+  static const char *const kinds[] = {"none", "finite", "infinite"};
+  vlVanishingPoints points;
+  if (!vl_camera_vanishing_points(camera, up, &points)) return;
+  json_begin(json, "vanishing", '[');
+  for (int i = 0; i < 3; i++) {
+    const vlVanishingPoint *p = &points.axes[i];
+    json_begin(json, NULL, '{');
+    json_text(json, "kind", kinds[p->kind]);
+    for (int k = 0; k < 2; k++)
+      json_number(json, k ? "y" : "x", p->kind == VL_VANISHING_INFINITE ? p->direction[k] : p->pixel[k]);
+    json_end(json, '}');
+  }
+  json_end(json, ']');
+  if (!points.has_horizon) return;
+  json_begin(json, "horizon", '[');
+  for (int i = 0; i < 3; i++) json_number(json, NULL, points.horizon[i]);
+  json_end(json, ']');
+}
+
+/* Boxes of the objects, those with the most pixels first as long as there is room. */
+static void put_boxes(Json *json, Engine *e, const vlCamera *camera) {
+  uint32_t count = vl_world_id_count(e->model.world, VL_ID_OBJECT), put = 0;
+  vlIdBox *boxes = calloc(count ? count : 1, sizeof *boxes);
+  vlBoxesDef def = vl_default_boxes_def(camera->width, camera->height);
+  vlError error = {0};
+  def.cancel = e->end;
+  if (!boxes || vl_world_boxes(e->model.world, camera, &def, boxes, NULL, &error) != VL_OK) {
+    free(boxes);
+    return;
+  }
+  json_begin(json, "boxes", '[');
+  for (uint32_t i = 0; i < count && put < MOST_BOXES; i++) {
+    vlIdInfo info;
+    if (!boxes[i].seen || vl_world_id_info(e->model.world, VL_ID_OBJECT, i + 1, &info) != VL_OK) continue;
+    json_begin(json, NULL, '{');
+    json_integer(json, "id", i + 1);
+    json_text(json, "name", info.name ? info.name : "");
+    json_begin(json, "box", '[');
+    for (int k = 0; k < 4; k++) json_integer(json, NULL, boxes[i].seen_box[k]);
+    json_end(json, ']');
+    json_end(json, '}');
+    put++;
+  }
+  json_end(json, ']');
+  free(boxes);
+}
+
+void engine_overlay(Engine *e, const Task *task) {
+  JsonText text;
+  if (!json_text_begin(&text, "overlay")) return;
+  pthread_mutex_lock(&e->lock);
+  const ViewCamera camera = e->wanted.camera;
+  uint32_t change = e->wanted.change;
+  pthread_mutex_unlock(&e->lock);
+  const CameraPose pose = camera_pose(&camera);
+  json_integer(&text.json, "id", task->message.id);
+  json_integer(&text.json, "change", change);
+  put_vanishing(&text.json, &camera.made, pose.up);
+  if (task->message.boxes) put_boxes(&text.json, e, &camera.made);
+  json_text_post(&text, e->server, task->client);
+}

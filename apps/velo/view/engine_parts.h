@@ -1,0 +1,106 @@
+/* view/engine_parts.h: what the files of the engine share. Only engine*.c include it. */
+#ifndef APP_VIEW_ENGINE_PARTS_H
+#define APP_VIEW_ENGINE_PARTS_H
+
+#include <pthread.h>
+
+#include "view/camera_edit.h"
+#include "view/engine.h"
+
+enum { MOST_TASKS = 32, HISTORY = 256 };
+
+/* What the pages ask for. A new generation makes the image begin anew. */
+typedef struct Wanted {
+  ViewCamera camera;
+  uint32_t change;     /* the page's number of its last change */
+  uint32_t generation; /* counts changes of what the image shows */
+  uint32_t spp;        /* samples per pixel at which the image is done */
+  bool paused;
+  uint32_t crop[4]; /* pixels */
+  uint32_t channel; /* 1 + index of a ground truth channel; 0: the image */
+} Wanted;
+
+/* Cameras before the present one, for undo and redo. */
+typedef struct History {
+  ViewCamera cameras[HISTORY];
+  uint32_t count, at; /* cameras[at] is the present one */
+  uint32_t gesture;   /* edits of one gesture are one step */
+} History;
+
+/* A message that needs the world. */
+typedef struct Task {
+  uint32_t client;
+  ViewMessage message;
+} Task;
+
+struct Engine {
+  EngineDef def;
+  Server *server;
+  pthread_t thread, watcher, answerer;
+  bool started, watching, answering;
+  pthread_mutex_t lock;
+  pthread_cond_t wake;
+  pthread_rwlock_t model_lock; /* held by those who use the model outside the render thread */
+  vlCancel *stop;              /* stops the render; requested and withdrawn under the lock */
+  vlCancel *end;               /* stops everything */
+  /* under the lock */
+  bool quit;
+  uint32_t clients;
+  Wanted wanted;
+  ViewCamera scene_camera; /* as the scene and the command line give it */
+  History history;
+  char *last_status;                             /* the last state of the render, for pages that come; null: none */
+  Model *next;                                   /* the scene after a change of its files; null: none */
+  Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
+  uint32_t task_count, question_count;
+  /* the watcher's own */
+  FileList files; /* of which the scene was made */
+  /* the render thread's own; the model is replaced under the lock */
+  Model model;
+  Wanted now; /* what is being rendered */
+  vlFilm *film;
+  uint32_t serial;        /* of the last frame */
+  double pixel_seconds;   /* time of one sample of one pixel; 0: not known */
+  double publish_seconds; /* time to make a frame */
+  double begun, published, reported,
+      looked;      /* times of this image: begin, last frame, last status, last error estimate */
+  double rendered; /* seconds that this image has rendered */
+  uint64_t paths;  /* of this image */
+  double noise;    /* estimated standard error of the display values; NaN: not known */
+  double pass_start;
+};
+
+double engine_clock(void);
+/* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after reporting an error. */
+int engine_take_model(Engine *engine);
+/* Whether the render thread must stop what it does. Takes the lock. */
+bool engine_interrupted(Engine *engine);
+/* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per pixel of the frame. */
+void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale);
+/* The state of camera and settings as JSON text; the caller holds the lock and frees the text. */
+char *engine_state(const Engine *engine);
+/* Posts the state to a page, or to all (0); the caller holds the lock. */
+void engine_post_state(Engine *engine, uint32_t client);
+/* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of one gesture are one
+ * step; 0: none. */
+void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture);
+/* The thread that watches the files. */
+void *engine_watch(void *engine);
+/* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
+bool engine_swap_model(Engine *engine);
+/* Answers a task; on the render thread, without the lock. */
+void engine_answer(Engine *engine, const Task *task);
+/* The thread that answers questions while the render goes on. */
+void *engine_answer_questions(void *engine);
+/* Writes a camera or an image; posts its name. */
+void engine_save(Engine *engine, const Task *task);
+/* Writes the camera and posts the command that renders the present image. */
+void engine_command(Engine *engine, const Task *task);
+/* Posts vanishing points, horizon and, if asked for, the boxes of objects. */
+void engine_overlay(Engine *engine, const Task *task);
+/* The server's calls. */
+void engine_greet(void *user, uint32_t client);
+void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);
+void engine_clients(void *user, uint32_t count);
+
+#endif

@@ -1,0 +1,366 @@
+/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into a
+ * twentieth of a second; then come finer ones, then the film of the whole image, whose samples add up. */
+#include "view/engine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "cli/report.h"
+#include "view/engine_parts.h"
+#include "view/engine_status.h"
+
+static const double first_seconds = 0.05;  /* within which the first image should be there */
+static const double pass_seconds = 0.2;    /* of a pass at the beginning; */
+static const double longest_pass = 1.0;    /* later ones are longer */
+static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
+static const double status_seconds = 0.25; /* between two states of the render */
+
+double engine_clock(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static bool must_stop(const Engine *e) {
+  return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
+}
+
+bool engine_interrupted(Engine *engine) {
+  pthread_mutex_lock(&engine->lock);
+  bool stop = must_stop(engine) || engine->wanted.paused || !engine->clients;
+  pthread_mutex_unlock(&engine->lock);
+  return stop;
+}
+
+/* ---- frames ------------------------------------------------------------------------------------------------------ */
+
+/* Converts to linear Rec. 709, which the page shows. Null: the film has that space. */
+static const float *to_rec709(vlColorSpace space) {
+  /* The primaries of the spaces; the white of ACES is not adapted, as in image/display.c. */
+  static const float p3[9] = {1.2249402f, -0.2249404f, 0,           -0.0420569f, 1.0420571f,
+                              0,          -0.0196376f, -0.0786361f, 1.0982735f};
+  static const float rec2020[9] = {1.6604910f,  -0.5876411f, -0.0728499f, -0.1245505f, 1.1328999f,
+                                   -0.0083494f, -0.0181508f, -0.1005789f, 1.1187297f};
+  static const float aces[9] = {2.5589994f,  -1.1194568f, -0.3959560f, -0.2769877f, 1.3706185f,
+                                -0.0936305f, -0.0171289f, -0.1485457f, 1.0813307f};
+  switch (space) {
+    case VL_SPACE_SRGB: return NULL;
+    case VL_SPACE_DCI_P3: return p3;
+    case VL_SPACE_REC2020: return rec2020;
+    case VL_SPACE_ACES2065_1: return aces;
+  }
+  return NULL;
+}
+
+void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale) {
+  double start = engine_clock();
+  const float *matrix = format == FRAME_HALF ? to_rec709(e->model.job.defs->film.space) : NULL;
+  ViewFrame *frame = frame_make(image, format, channels, matrix);
+  if (!frame) return;
+  frame->serial = ++e->serial;
+  frame->change = e->now.change;
+  frame->width = e->now.camera.made.width, frame->height = e->now.camera.made.height;
+  frame->x0 = e->now.crop[0] / scale * scale, frame->y0 = e->now.crop[1] / scale * scale;
+  frame->scale = scale;
+  frame->channel = e->now.channel;
+  frame->spp = scale == 1 && e->film ? vl_film_spp(e->film) : 0;
+  server_show(e->server, frame);
+  frame_drop(frame);
+  e->published = engine_clock();
+  e->publish_seconds = e->published - start;
+}
+
+static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
+  double start = engine_clock();
+  vlImage *image = NULL;
+  if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
+    engine_publish(e, image, FRAME_HALF, 3, scale);
+    e->publish_seconds = engine_clock() - start;
+  }
+  vl_image_destroy(image);
+}
+
+/* ---- coarse images ----------------------------------------------------------------------------------------------- */
+
+static void note_speed(Engine *e, const vlRenderStats *stats, double seconds) {
+  double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
+  if (stats->camera_rays > 1000) e->pixel_seconds = e->pixel_seconds > 0 ? 0.5 * (e->pixel_seconds + one) : one;
+}
+
+/* False: interrupted. */
+static bool render_coarse(Engine *e, uint32_t scale) {
+  vlCamera camera;
+  vlFilmDef whole = e->model.job.defs->film;
+  vlRenderDef render = e->model.job.defs->render;
+  vlFilm *film = NULL;
+  vlError error = {0};
+  vlRenderStats stats = {0};
+  memcpy(whole.crop, e->now.crop, sizeof whole.crop);
+  const vlFilmDef def = vl_coarse_film_def(&whole, scale);
+  render.spp = 1, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
+  render.cancel = e->stop, render.priority = 1;
+  vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
+  if (result == VL_OK) result = vl_film_create(e->def.context, &def, &film);
+  double start = engine_clock();
+  if (result == VL_OK) result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
+  if (result == VL_OK) {
+    note_speed(e, &stats, engine_clock() - start);
+    publish_film(e, film, scale);
+  }
+  vl_film_destroy(film);
+  return result == VL_OK;
+}
+
+/* Coarse images until one pass of the whole image is next. False: interrupted. */
+static bool render_coarse_images(Engine *e) {
+  double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
+  uint32_t scale = e->pixel_seconds > 0 ? 1 : 8;
+  while (scale < 16 && pixels * e->pixel_seconds / ((double)scale * scale) > first_seconds) scale *= 2;
+  for (; scale > 1; scale /= 2)
+    if (!render_coarse(e, scale)) return false;
+  return true;
+}
+
+/* ---- the whole image --------------------------------------------------------------------------------------------- */
+
+static void make_film(Engine *e) {
+  vlFilmDef def = e->model.job.defs->film;
+  def.errors = true;
+  memcpy(def.crop, e->now.crop, sizeof def.crop);
+  vl_film_destroy(e->film);
+  e->film = NULL;
+  vlResult result = vl_film_create(e->def.context, &def, &e->film);
+  if (result != VL_OK) report_reason(result, e->def.path, "no film for the image");
+}
+
+/* The number of samples of the next pass. */
+static uint32_t pass_samples(const Engine *e) {
+  double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
+  double seconds = fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
+         n = seconds / (e->pixel_seconds * pixels + 1e-9);
+  uint32_t done = vl_film_spp(e->film), left = e->now.spp - done;
+  n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
+  if (done == 0) n = 1;
+  return n < left ? (uint32_t)n : left;
+}
+
+static void publish_if_due(Engine *e) {
+  double now = engine_clock(), share = 0.25 / (1 + 2 * e->rendered);
+  bool last = vl_film_spp(e->film) >= e->now.spp;
+  if (share < publish_share) share = publish_share;
+  if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share) return;
+  publish_film(e, e->film, 1);
+}
+
+static void tell_if_due(Engine *e, bool always) {
+  double now = engine_clock();
+  if (!always && now - e->reported < status_seconds) return;
+  e->reported = now;
+  status_tell(e, always);
+}
+
+/* Adds samples until the image is done or something else is asked for. */
+static void render_film(Engine *e) {
+  vlRenderDef render = e->model.job.defs->render;
+  render.cancel = e->stop;
+  render.first_sample = 0, render.time_limit = 0;
+  if (!e->film) make_film(e);
+  while (e->film && vl_film_spp(e->film) < e->now.spp && !engine_interrupted(e)) {
+    vlError error = {0};
+    vlRenderStats stats = {0};
+    render.spp = vl_film_spp(e->film) + pass_samples(e);
+    double start = engine_clock();
+    vlResult result = vl_render(e->model.world, &e->now.camera.made, e->film, &render, &stats, &error);
+    double seconds = engine_clock() - start;
+    if (result == VL_CANCELLED) return;
+    if (result != VL_OK) {
+      status_error(e, &error, result);
+      e->now.spp = 0; /* until the next change */
+      return;
+    }
+    e->rendered += seconds;
+    e->paths += stats.paths;
+    note_speed(e, &stats, seconds);
+    publish_if_due(e);
+    tell_if_due(e, vl_film_spp(e->film) >= e->now.spp);
+  }
+}
+
+/* ---- ground truth ------------------------------------------------------------------------------------------------ */
+
+static void render_channel(Engine *e) {
+  vlChannelsDef def = vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
+  vlImage *floats = NULL, *ids = NULL;
+  vlError error = {0};
+  def.channels = 1u << (e->now.channel - 1);
+  def.space = e->model.job.defs->film.space;
+  memcpy(def.crop, e->now.crop, sizeof def.crop);
+  def.render = &e->model.job.defs->render;
+  def.film = e->film;
+  def.exposure = e->model.job.defs->develop.exposure;
+  def.cancel = e->stop;
+  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return;
+  vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
+  const vlImage *image = floats ? floats : ids;
+  if (result == VL_OK && image)
+    engine_publish(e, image, FRAME_FLOAT, vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
+  if (result != VL_OK && result != VL_CANCELLED) status_error(e, &error, result);
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+}
+
+/* ---- the thread -------------------------------------------------------------------------------------------------- */
+
+/* Takes over what is wanted. Returns whether the image begins anew. */
+static bool take_wanted(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  bool anew = e->wanted.generation != e->now.generation;
+  bool channel = e->wanted.channel != e->now.channel;
+  e->now = e->wanted;
+  if (!e->quit && !e->next) vl_cancel_clear(e->stop);
+  pthread_mutex_unlock(&e->lock);
+  if (!anew) return channel;
+  vl_film_destroy(e->film);
+  e->film = NULL;
+  e->paths = 0;
+  e->rendered = 0;
+  e->noise = NAN;
+  e->looked = 0;
+  e->begun = engine_clock();
+  return true;
+}
+
+/* Waits until there is something to do. False: the end. */
+static bool wait_for_work(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  for (;;) {
+    bool unfinished = !e->film || vl_film_spp(e->film) < e->wanted.spp;
+    bool changed = e->wanted.channel != e->now.channel || e->wanted.spp != e->now.spp;
+    if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed))) break;
+    if (e->clients && e->wanted.channel != e->now.channel) break;
+    pthread_cond_wait(&e->wake, &e->lock);
+  }
+  bool quit = e->quit;
+  pthread_mutex_unlock(&e->lock);
+  return !quit;
+}
+
+static void answer_tasks(Engine *e) {
+  static Task task; /* the render thread alone uses it */
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    bool any = e->task_count > 0 && !e->quit;
+    if (any) {
+      task = e->tasks[0];
+      memmove(e->tasks, e->tasks + 1, --e->task_count * sizeof *e->tasks);
+    }
+    pthread_mutex_unlock(&e->lock);
+    if (!any) return;
+    engine_answer(e, &task);
+  }
+}
+
+static void *run(void *user) {
+  Engine *e = user;
+  while (wait_for_work(e)) {
+    engine_swap_model(e);
+    answer_tasks(e);
+    bool anew = take_wanted(e);
+    if (anew && e->now.channel) {
+      render_channel(e);
+    } else if (anew && e->film) {
+      publish_film(e, e->film, 1);
+    } else if (anew && !render_coarse_images(e)) {
+      tell_if_due(e, true);
+      continue;
+    }
+    if (e->now.channel == 0 || e->now.channel == 15) render_film(e);
+    tell_if_due(e, true);
+  }
+  return NULL;
+}
+
+int engine_take_model(Engine *e) {
+  const vlSceneDefs *defs = e->model.job.defs;
+  Wanted *w = &e->wanted;
+  vlError error = {0};
+  vlResult result = camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
+  if (result != VL_OK) return report_error(&error, result, e->def.path);
+  e->scene_camera = w->camera;
+  memcpy(w->crop, defs->film.crop, sizeof w->crop);
+  w->spp = defs->render.spp;
+  w->generation++;
+  e->history.cameras[0] = w->camera;
+  e->history.count = 1;
+  e->history.at = 0;
+  return -1;
+}
+
+int engine_create(const EngineDef *def, Engine **result) {
+  Engine *engine = calloc(1, sizeof *engine);
+  if (!engine) return report_failure(STATUS_OTHER, "out of memory");
+  engine->def = *def;
+  pthread_mutex_init(&engine->lock, NULL);
+  pthread_cond_init(&engine->wake, NULL);
+  pthread_rwlock_init(&engine->model_lock, NULL);
+  bool made =
+      vl_cancel_create(def->context, &engine->stop) == VL_OK && vl_cancel_create(def->context, &engine->end) == VL_OK;
+  int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
+  if (status < 0)
+    status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
+  if (status < 0) status = engine_take_model(engine);
+  *result = engine;
+  return status;
+}
+
+ServerCalls engine_calls(Engine *engine) {
+  return (ServerCalls){.user = engine, .greet = engine_greet, .message = engine_message, .clients = engine_clients};
+}
+
+int engine_start(Engine *engine, Server *server) {
+  engine->server = server;
+  if (pthread_create(&engine->thread, NULL, run, engine) != 0)
+    return report_failure(STATUS_OTHER, "the system refuses to start a thread");
+  engine->started = true;
+  engine->answering = pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
+  engine->watching = pthread_create(&engine->watcher, NULL, engine_watch, engine) == 0;
+  return -1;
+}
+
+int engine_stop(Engine *engine) {
+  if (!engine->started) return STATUS_OK;
+  pthread_mutex_lock(&engine->lock);
+  engine->quit = true;
+  vl_cancel_request(engine->stop);
+  vl_cancel_request(engine->end);
+  pthread_cond_broadcast(&engine->wake);
+  pthread_mutex_unlock(&engine->lock);
+  pthread_join(engine->thread, NULL);
+  if (engine->watching) pthread_join(engine->watcher, NULL);
+  if (engine->answering) pthread_join(engine->answerer, NULL);
+  engine->started = false;
+  if (!engine->def.film_path) return STATUS_OK;
+  if (!engine->film || !vl_film_spp(engine->film))
+    return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", engine->def.film_path);
+  vlError error = {0};
+  vlResult result = vl_film_write(engine->film, NULL, engine->def.film_path, &error);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, engine->def.film_path);
+}
+
+void engine_destroy(Engine *engine) {
+  if (!engine) return;
+  vl_film_destroy(engine->film);
+  model_free(&engine->model);
+  if (engine->next) model_free(engine->next);
+  free(engine->next);
+  file_list_free(&engine->files);
+  free(engine->last_status);
+  vl_cancel_destroy(engine->stop);
+  vl_cancel_destroy(engine->end);
+  pthread_rwlock_destroy(&engine->model_lock);
+  pthread_cond_destroy(&engine->wake);
+  pthread_mutex_destroy(&engine->lock);
+  free(engine);
+}

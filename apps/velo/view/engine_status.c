@@ -1,0 +1,97 @@
+/* view/engine_status.c: see engine_status.h. */
+#include "view/engine_status.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/job.h"
+
+bool json_text_begin(JsonText *json, const char *type) {
+  *json = (JsonText){.text = NULL};
+  json->json.out = open_memstream(&json->text, &json->size);
+  if (!json->json.out) return false;
+  json_begin(&json->json, NULL, '{');
+  json_text(&json->json, "type", type);
+  return true;
+}
+
+char *json_text_end(JsonText *json) {
+  json_end(&json->json, '}');
+  return fclose(json->json.out) == 0 ? json->text : NULL;
+}
+
+void json_text_post(JsonText *json, Server *server, uint32_t client) {
+  char *text = json_text_end(json);
+  if (text) server_post(server, client, text);
+  free(text);
+}
+
+/* ---- the error of the image -------------------------------------------------------------------------------------- */
+
+static double display_value(double linear) {
+  double x = linear > 0 ? linear < 1 ? linear : 1 : 0;
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+}
+
+/* The root mean square of the standard errors of the display values, at every fourth pixel of every fourth row. */
+static double display_noise(const vlImage *image, const vlImage *errors, double scale) {
+  double sum = 0, count = 0;
+  uint32_t width = vl_image_width(image), height = vl_image_height(image);
+  for (uint32_t y = 0; y < height; y += 4)
+    for (uint32_t x = 0; x < width; x += 4)
+      for (uint32_t c = 0; c < 3; c++) {
+        double value = scale * (double)vl_image_get(image, x, y, c);
+        double error = scale * (double)vl_image_get(errors, x, y, c);
+        double spread = 0.5 * (display_value(value + error) - display_value(value - error));
+        if (isfinite(spread)) sum += spread * spread, count++;
+      }
+  return count > 0 ? sqrt(sum / count) : NAN;
+}
+
+static void estimate_noise(Engine *e) {
+  vlImage *image = NULL, *errors = NULL;
+  const vlDevelopDef *develop = &e->model.job.defs->develop;
+  if (!e->film || vl_film_spp(e->film) < 2) return;
+  if (vl_film_develop(e->film, develop, &image) == VL_OK && vl_film_errors(e->film, develop, &errors) == VL_OK)
+    e->noise = display_noise(image, errors, exp2((double)e->model.exposure));
+  vl_image_destroy(image);
+  vl_image_destroy(errors);
+}
+
+void status_tell(Engine *e, bool estimate) {
+  double now = engine_clock(), cost = now - e->looked;
+  uint32_t spp = e->film ? vl_film_spp(e->film) : 0;
+  if (estimate || cost > 2 + 0.25 * e->rendered) {
+    estimate_noise(e);
+    e->looked = engine_clock();
+  }
+  JsonText json;
+  if (!json_text_begin(&json, "status")) return;
+  pthread_mutex_lock(&e->lock);
+  bool paused = e->wanted.paused;
+  pthread_mutex_unlock(&e->lock);
+  json_integer(&json.json, "spp", spp);
+  json_integer(&json.json, "target", e->now.spp);
+  json_number(&json.json, "paths_per_second", e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
+  json_number(&json.json, "seconds", e->rendered);
+  json_number(&json.json, "error", e->noise);
+  json_bool(&json.json, "paused", paused);
+  char *text = json_text_end(&json);
+  if (!text) return;
+  server_post(e->server, 0, text);
+  pthread_mutex_lock(&e->lock);
+  char *before = e->last_status;
+  e->last_status = text;
+  pthread_mutex_unlock(&e->lock);
+  free(before);
+}
+
+void status_error(Engine *e, const vlError *error, vlResult result) {
+  JsonText json;
+  if (!json_text_begin(&json, "error")) return;
+  if (error->file[0]) json_text(&json.json, "file", error->file);
+  if (error->file[0] && error->line) json_integer(&json.json, "line", error->line);
+  if (error->file[0] && error->line && error->column) json_integer(&json.json, "column", error->column);
+  json_text(&json.json, "message", error->message[0] ? error->message : vl_result_name(result));
+  json_text_post(&json, e->server, 0);
+}

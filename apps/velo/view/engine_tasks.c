@@ -1,0 +1,151 @@
+/* view/engine_tasks.c: answers to messages that need the world: of the render thread, which has the film, and of a
+ * thread beside it, with a higher priority. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view/engine_status.h"
+
+static void post_answer_error(Engine *e, const Task *task, const char *why) {
+  JsonText text;
+  if (!json_text_begin(&text, "refused")) return;
+  json_integer(&text.json, "id", task->message.id);
+  json_text(&text.json, "message", why);
+  json_text_post(&text, e->server, task->client);
+}
+
+static ViewCamera present_camera(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  ViewCamera camera = e->wanted.camera;
+  pthread_mutex_unlock(&e->lock);
+  return camera;
+}
+
+/* ---- a pixel ----------------------------------------------------------------------------------------------------- */
+
+static void put_values(Json *json, const char *key, const vlImage *image, const char *const *names, int count) {
+  json_begin(json, key, '[');
+  for (int i = 0; i < count; i++) {
+    int channel = vl_image_find_channel(image, names[i]);
+    json_number(json, NULL, channel < 0 ? NAN : (double)vl_image_get(image, 0, 0, (uint32_t)channel));
+  }
+  json_end(json, ']');
+}
+
+static void put_id(Json *json, const Engine *e, const vlImage *ids, const char *channel, vlIdKind kind,
+                   const char *key) {
+  int at = vl_image_find_channel(ids, channel);
+  const uint32_t id = at < 0 ? 0 : ((const uint32_t *)vl_image_const_pixels(ids))[at];
+  vlIdInfo info;
+  json_begin(json, key, '{');
+  json_integer(json, "id", id);
+  if (id && vl_world_id_info(e->model.world, kind, id, &info) == VL_OK) {
+    if (info.name) json_text(json, "name", info.name);
+    if (info.type) json_text(json, "type", info.type);
+    if (info.source.file) json_text(json, "file", info.source.file);
+    if (info.source.file) json_integer(json, "line", info.source.line);
+  }
+  json_end(json, '}');
+}
+
+static void pick(Engine *e, const Task *task) {
+  const ViewMessage *m = &task->message;
+  const ViewCamera camera = present_camera(e);
+  const vlCamera *c = &camera.made;
+  if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
+    post_answer_error(e, task, "the point is outside the image");
+    return;
+  }
+  vlChannelsDef def = vl_default_channels_def(c->width, c->height);
+  uint32_t x = (uint32_t)m->x, y = (uint32_t)m->y;
+  const uint32_t crop[4] = {x, y, x + 1, y + 1};
+  memcpy(def.crop, crop, sizeof crop);
+  def.priority = 2, def.cancel = e->end;
+  def.channels = VL_CHANNEL_ALL & ~(uint32_t)(VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM);
+  vlImage *floats = NULL, *ids = NULL;
+  vlError error = {0};
+  vlResult result = vl_render_channels(e->model.world, c, &def, &floats, &ids, &error);
+  JsonText text;
+  if (result != VL_OK) {
+    post_answer_error(e, task, error.message);
+  } else if (json_text_begin(&text, "picked")) {
+    static const char *const vectors[][4] = {{"P", "P.X", "P.Y", "P.Z"},
+                                             {"N", "N.X", "N.Y", "N.Z"},
+                                             {"Ng", "Ng.X", "Ng.Y", "Ng.Z"},
+                                             {"albedo", "albedo.R", "albedo.G", "albedo.B"},
+                                             {"ray", "ray.X", "ray.Y", "ray.Z"}};
+    static const char *const uv[] = {"uv.U", "uv.V"}, *const z[] = {"Z"}, *const distance[] = {"distance.Y"};
+    json_integer(&text.json, "id", m->id);
+    json_integer(&text.json, "x", x);
+    json_integer(&text.json, "y", y);
+    put_values(&text.json, "Z", floats, z, 1);
+    put_values(&text.json, "distance", floats, distance, 1);
+    put_values(&text.json, "uv", floats, uv, 2);
+    for (int i = 0; i < 5; i++) put_values(&text.json, vectors[i][0], floats, vectors[i] + 1, 3);
+    put_id(&text.json, e, ids, "id.object", VL_ID_OBJECT, "object");
+    put_id(&text.json, e, ids, "id.material", VL_ID_MATERIAL, "material");
+    put_id(&text.json, e, ids, "id.instance", VL_ID_INSTANCE, "instance");
+    json_text_post(&text, e->server, task->client);
+  }
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+}
+
+static void focus(Engine *e, const Task *task) {
+  const ViewMessage *m = &task->message;
+  const ViewCamera camera = present_camera(e);
+  ViewCamera next;
+  vlError error = {0};
+  double distance;
+  vlResult result = vl_autofocus(e->model.world, &camera.made, m->x, m->y, &distance, &error);
+  if (result == VL_OK) result = camera_set_focus(&camera, distance, &next, &error);
+  if (result != VL_OK) {
+    post_answer_error(e, task, error.message);
+    return;
+  }
+  pthread_mutex_lock(&e->lock);
+  e->wanted.change = m->change;
+  engine_remember(e, &next, 0);
+  e->wanted.camera = next;
+  e->wanted.generation++;
+  vl_cancel_request(e->stop);
+  pthread_cond_broadcast(&e->wake);
+  engine_post_state(e, 0);
+  pthread_mutex_unlock(&e->lock);
+}
+
+void engine_answer(Engine *e, const Task *task) {
+  switch (task->message.kind) {
+    case MESSAGE_PICK: pick(e, task); break;
+    case MESSAGE_FOCUS: focus(e, task); break;
+    case MESSAGE_SAVE: engine_save(e, task); break;
+    case MESSAGE_COMMAND: engine_command(e, task); break;
+    case MESSAGE_OVERLAY: engine_overlay(e, task); break;
+    case MESSAGE_SEEN: /* these need no world */
+    case MESSAGE_CAMERA:
+    case MESSAGE_UNDO:
+    case MESSAGE_REDO:
+    case MESSAGE_RESET:
+    case MESSAGE_SETTINGS:
+    case MESSAGE_STEER: break;
+  }
+}
+
+void *engine_answer_questions(void *user) {
+  Engine *e = user;
+  static Task task; /* this thread alone uses it */
+  for (;;) {
+    pthread_mutex_lock(&e->lock);
+    while (!e->quit && !e->question_count) pthread_cond_wait(&e->wake, &e->lock);
+    bool quit = e->quit;
+    if (!quit) {
+      task = e->questions[0];
+      memmove(e->questions, e->questions + 1, --e->question_count * sizeof *e->questions);
+    }
+    pthread_mutex_unlock(&e->lock);
+    if (quit) return NULL;
+    pthread_rwlock_rdlock(&e->model_lock);
+    engine_answer(e, &task);
+    pthread_rwlock_unlock(&e->model_lock);
+  }
+}

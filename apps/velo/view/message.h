@@ -1,0 +1,59 @@
+/* view/message.h: the messages that a page sends, one JSON object each, and their parser. It trusts nothing: sizes,
+ * types and ranges are checked here. docs/view.md lists the messages. */
+#ifndef APP_VIEW_MESSAGE_H
+#define APP_VIEW_MESSAGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+  MESSAGE_LARGEST = 65536, /* bytes */
+  MESSAGE_NAME = 200,      /* longest text of a message, bytes with the zero */
+  MESSAGE_NUMBERS = 16,    /* most numbers of a field */
+  MESSAGE_FIELDS = 40      /* most fields of an edit */
+};
+
+typedef enum MessageKind {
+  MESSAGE_SEEN,     /* a frame is drawn: serial */
+  MESSAGE_CAMERA,   /* edit the camera: change, gesture, fields */
+  MESSAGE_UNDO,     /* the camera before the last gesture */
+  MESSAGE_REDO,     /* the camera before the last undo */
+  MESSAGE_RESET,    /* the camera of the scene */
+  MESSAGE_SETTINGS, /* spp, paused, crop, channel, size: those that are given */
+  MESSAGE_PICK,     /* what a pixel sees: id, x, y */
+  MESSAGE_FOCUS,    /* focus on a pixel: x, y */
+  MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
+  MESSAGE_COMMAND,  /* write the camera and tell the command: id, exposure, view */
+  MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes: id, boxes */
+  MESSAGE_STEER     /* the sender wants to steer, if nobody does */
+} MessageKind;
+
+/* A field of an edit: numbers, or a text. */
+typedef struct MessageField {
+  char name[24];
+  uint32_t count; /* of numbers; 0: it is a text, or null (`null`) */
+  bool null;      /* removes the field */
+  double numbers[MESSAGE_NUMBERS];
+  char text[40];
+} MessageField;
+
+typedef struct ViewMessage {
+  MessageKind kind;
+  uint32_t serial, change, gesture, id;
+  double x, y; /* pixels */
+  uint32_t field_count;
+  MessageField fields[MESSAGE_FIELDS];
+  bool has_spp, has_paused, has_crop, has_channel, has_size; /* of settings */
+  uint32_t spp;
+  bool paused, boxes;
+  uint32_t crop[4]; /* all 0: none */
+  uint32_t size[2]; /* pixels */
+  char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME], view[MESSAGE_NAME];
+  double exposure; /* EV */
+} ViewMessage;
+
+/* Parses a message of `size` bytes. False: it is malformed; *why is then a constant string. */
+bool message_parse(const char *text, size_t size, ViewMessage *message, const char **why);
+
+#endif

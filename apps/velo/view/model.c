@@ -1,0 +1,75 @@
+/* view/model.c: see model.h. */
+#include "view/model.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cli/report.h"
+#include "render/exposure.h"
+#include "render/lens_options.h"
+
+static int choose_exposure(vlContext *context, const Arguments *arguments, Model *model) {
+  bool meter;
+  int status = exposure_parse(&arguments->values[RENDER_EXPOSURE], &model->exposure, &meter);
+  bool wanted = meter || !arguments->values[RENDER_EXPOSURE].given;
+  if (status >= 0 || !model->opening.model || !wanted) return status;
+  return exposure_meter_model(context, model->world, &model->job.camera, model->job.defs,
+                              meter || model->opening.lamps ? 0 : 1, &model->exposure);
+}
+
+/* The depth of what the middle of the image shows; where it shows nothing, of the middle of the scene. */
+static double find_lookat(const Model *model) {
+  const vlCamera *c = &model->job.camera;
+  vlChannelsDef def = vl_default_channels_def(c->width, c->height);
+  const uint32_t x = c->width / 2, y = c->height / 2, crop[4] = {x, y, x + 1, y + 1};
+  memcpy(def.crop, crop, sizeof crop);
+  def.channels = VL_CHANNEL_DISTANCE;
+  vlImage *image = NULL;
+  double distance = INFINITY, middle = 0;
+  if (vl_render_channels(model->world, c, &def, &image, NULL, NULL) == VL_OK)
+    distance = (double)vl_image_get(image, 0, 0, 0);
+  vl_image_destroy(image);
+  if (distance > 0 && isfinite(distance)) return distance;
+  const double *m = c->world_from_camera;
+  for (int i = 0; i < 3; i++)
+    middle +=
+        m[4 * i + 2] * (0.5 * ((double)model->info.bounds_min[i] + (double)model->info.bounds_max[i]) - m[4 * i + 3]);
+  return middle > 0 && isfinite(middle) ? middle : 1;
+}
+
+int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
+               const vlCancel *cancel, Model *model, FileList *files) {
+  memset(model, 0, sizeof *model);
+  model->opening.cancel = cancel;
+  vlError error = {0};
+  vl_context_record_files(context, false);
+  vl_context_record_files(context, true);
+  model->job.records_files = true;
+  int status = scene_open(context, path, arguments, &model->scene, &model->opening);
+  if (status < 0) status = job_make(&model->job, context, model->scene, path, arguments);
+  if (status < 0) {
+    vlBuildDef build = model->job.defs->build;
+    build.previous = previous, build.cancel = cancel;
+    vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
+    if (result != VL_OK) status = report_error(&error, result, path);
+  }
+  file_list_add(files, path);
+  const vlFileRecord *file;
+  for (uint32_t i = 0; (file = vl_context_file(context, i)); i++) file_list_add(files, file->path);
+  vl_context_record_files(context, false);
+  if (status < 0) status = lens_autofocus(&model->job, model->scene, model->world);
+  if (status < 0) status = choose_exposure(context, arguments, model);
+  if (status >= 0) {
+    model_free(model);
+    return status;
+  }
+  vl_world_info(model->world, &model->info);
+  model->lookat = find_lookat(model);
+  return status;
+}
+
+void model_free(Model *model) {
+  vl_world_destroy(model->world);
+  vl_scene_destroy(model->scene);
+  memset(model, 0, sizeof *model);
+}

@@ -1,0 +1,28 @@
+/* view/model.h: a scene file as the viewer has it: the scene, its world, its job, and the files that it was made of. */
+#ifndef APP_VIEW_MODEL_H
+#define APP_VIEW_MODEL_H
+
+#include "render/job.h"
+#include "render/scene_options.h"
+#include "view/watch.h"
+
+typedef struct Model {
+  vlScene *scene;
+  vlWorld *world;
+  Job job;
+  SceneOpening opening;
+  vlWorldInfo info;
+  double lookat;  /* distance of what the middle of the image shows, or of the scene's middle */
+  float exposure; /* EV of the first view */
+  char **files;   /* paths of the files that were read */
+  uint32_t file_count;
+} Model;
+
+/* Loads, completes and builds. Adds the paths of the files that were read to the list. Returns -1, or the exit code
+ * after reporting the error; *model is empty then. */
+int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
+               const vlCancel *cancel, Model *model, FileList *files);
+/* Frees what the model has and empties it. */
+void model_free(Model *model);
+
+#endif

@@ -1,0 +1,120 @@
+/* view/view.c: `velo view`: its options. Also tells that a build without libwebsockets lacks it. */
+#include "view/view.h"
+
+#include <stddef.h>
+
+#include "cli/commands.h"
+#include "cli/report.h"
+
+static int run_view(const Command *command, const Arguments *arguments) {
+  (void)command;
+#ifdef VELO_HAS_VIEW
+  return view_run(arguments);
+#else
+  (void)arguments;
+  return report_failure(STATUS_OTHER, "velo view: this velo was built without libwebsockets, which the command needs");
+#endif
+}
+
+/* Families of velo/schema.h. */
+static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+
+const Option view_options[] = {
+    {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1, 65535, NULL},
+    {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
+     "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other machine can reach", 0, 0,
+     NULL},
+    {VIEW_NO_OPEN, 0, "no-open", OPTION_FLAG, NULL, "do not open a browser", 0, 0, NULL},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel at which the image is done", 1, 1 << 24, NULL},
+    {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE", "write the film of the last image to this file at the end", 0, 0,
+     NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
+     "image size in pixels; the field of view across the smaller side is kept", 1, 65536, NULL},
+    {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels at first", 0, 0, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera and the image size",
+     0, 0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, if the file of --camera has several", 0, 0, NULL},
+    {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for a file of --camera that does not give one", 1, 65536,
+     NULL},
+    {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: scene, by name or number from 0", 0, 0, NULL},
+    {RENDER_AT, 0, "at", OPTION_TEXT, "T[:T1]", "glTF: time of the animation, in seconds", 0, 0, NULL},
+    {RENDER_SHUTTER, 0, "shutter", OPTION_NUMBER, "SECONDS", "time for which the shutter is open, from --at on", 0, 1e6,
+     NULL},
+    {RENDER_ANIMATION, 0, "animation", OPTION_TEXT, "NAME", "glTF: animation to play", 0, 0, NULL},
+    {RENDER_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant", 0, 0, NULL},
+    {RENDER_ENVIRONMENT, 0, "environment", OPTION_TEXT, "FILE",
+     "environment map that lights the scene: studio, sky, white, none, or an image file", 0, 0, NULL},
+    {RENDER_ENVIRONMENT_ROTATION, 0, "environment-rotation", OPTION_NUMBER, "DEG",
+     "rotation of the environment map about the vertical axis, in degrees", -36000, 36000, NULL},
+    {RENDER_ENVIRONMENT_STRENGTH, 0, "environment-strength", OPTION_NUMBER, "X",
+     "factor on the radiance of the environment map", 0, 1e6, NULL},
+    {RENDER_GROUND, 0, "ground", OPTION_FLAG, NULL, "add a wide grey disk below the scene as ground", 0, 0, NULL},
+    {RENDER_NO_GROUND, 0, "no-ground", OPTION_FLAG, NULL, "add no ground below a model", 0, 0, NULL},
+    {RENDER_FRAMING, 0, "framing", OPTION_CHOICE, "NAME", "viewpoint of the camera that a model without one gets:", 0,
+     0, framing_choices},
+    {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME",
+     "closed models: hide the walls before the camera, or keep them:", 0, 0, walls_choices},
+    {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0, up_choices},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "light transport algorithm:", 0, 0, tracers},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers", 0, 4294967295.0, NULL},
+    {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N",
+     "number of samples per pixel for which the sampler arranges its points", 1, 1 << 24, NULL},
+    {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
+    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME", "method that chooses a light:", 0, 0,
+     light_sampler_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization:", 0, 0, regularize_choices},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
+     color_choices},
+    {RENDER_SENSOR, 0, "sensor", OPTION_CHOICE, "NAME", "camera whose spectral response the sensor has:", 0, 0,
+     sensor_choices},
+    {RENDER_VIEW, 0, "view", OPTION_CHOICE, "NAME", "view transform of the first view:", 0, 0, view_choices},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the first view: a number, or auto for models", 0,
+     0, NULL},
+    {RENDER_FOCUS_PIXEL, 0, "focus-pixel", OPTION_TEXT, "X,Y", "focus on the surface that is seen at this point", 0, 0,
+     NULL},
+    {RENDER_FOCUS_DISTANCE, 0, "focus-distance", OPTION_NUMBER, "D", "depth of the plane in focus, in scene units",
+     1e-30, 1e30, NULL},
+    {RENDER_LENS_RADIUS, 0, "lens-radius", OPTION_NUMBER, "R", "radius of the thin lens, in scene units", 0, 1e30,
+     NULL},
+    {RENDER_F_NUMBER, 0, "f-number", OPTION_NUMBER, "N", "f-number", 1e-6, 1e6, NULL},
+    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "worker threads; default: one for each processor", 1, 1024,
+     NULL},
+    {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE", "limit of the memory, such as 2G", 0, 0, NULL},
+    {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "FOLDER", "files that the scene names must be in this folder", 0, 0,
+     NULL},
+    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn of unsupported features instead of refusing them", 0,
+     0, NULL},
+    {RENDER_STRICT, 0, "strict", OPTION_FLAG, NULL, "glTF, OBJ: a missing image is an error", 0, 0, NULL},
+    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR", "further folder in which files of the scene are looked for",
+     0, 0, NULL},
+    {RENDER_QUIET, 'q', "quiet", OPTION_FLAG, NULL, "print only the address, warnings and errors", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+static const Section view_sections[] = {{VIEW_PORT, "the page"},
+                                        {RENDER_SPP, "the image"},
+                                        {RENDER_CAMERA, "camera and scene, as for velo render"},
+                                        {RENDER_TRACER, "light transport and sampling, as for velo render"},
+                                        {RENDER_COLOR, "colour, focus, exposure, as for velo render"},
+                                        {RENDER_THREADS, "processor, memory, reading the scene"},
+                                        {0, NULL}};
+
+const Command view_command = {
+    .name = "view",
+    .usage = "FILE [options]",
+    .summary = "see and steer a scene in the browser while it renders",
+    .text =
+        "Prints the address of a page and opens it in a browser. The page shows the scene while it renders,\n"
+        "moves the camera, edits it in every spelling, shows ground truth, and saves cameras and images\n"
+        "(docs/view.md). The address has a random token; only this machine can reach it. Through ssh, the\n"
+        "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.",
+    .examples =
+        "velo view scenes/lecture/pinhole.pbrt\n"
+        "velo view model.glb --resolution 1280x720 --port 8800 --no-open",
+    .options = view_options,
+    .sections = view_sections,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_view,
+};

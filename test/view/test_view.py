@@ -1,0 +1,397 @@
+#!/usr/bin/python3
+"""velo view, through a WebSocket client: frames, edits of the camera, refusals, files, copied commands, who may come in,
+malformed messages, pages that come and go."""
+import json
+import os
+import random
+import shlex
+import shutil
+import socket
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from live import Frame, Page, Refused, View  # noqa: E402
+
+ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
+SCENE = os.path.join(ROOT, "scenes/lecture/perspective_two_point.pbrt")
+failures = 0
+
+
+def check(name, good, *about):
+    global failures
+    print(("ok " if good else "not ok ") + name)
+    if not good:
+        failures += 1
+        print("  ", *about, file=sys.stderr)
+
+
+def state_after(page, **message):
+    """Sends an edit; the state or the refusal that answers it."""
+    page.change = getattr(page, "change", 100) + 1
+    page.send(change=page.change, **message)
+    return page.wait(lambda m: isinstance(m, dict) and m["type"] in ("state", "refused") and m["change"] == page.change)
+
+
+def edit(page, **fields):
+    return state_after(page, type="camera", set=fields)
+
+
+def near(a, b, share=1e-6):
+    return abs(a - b) <= share * max(abs(a), abs(b), 1)
+
+
+def answer(page, kind, **message):
+    page.id = getattr(page, "id", 0) + 1
+    page.send(id=page.id, **message)
+    return page.wait(lambda m: isinstance(m, dict) and m["type"] in (kind, "refused") and m.get("id") == page.id)
+
+
+# ---- who may come in ----
+
+def test_access(view):
+    good = f"{view.host}:{view.port}"
+    status, body = view.get(view.path)
+    check("page", status == 200 and b"<canvas" in body, status)
+    check("module", view.get(view.path + "app.js")[0] == 200)
+    check("no_token", view.get("/")[0] == 403 and view.get("/index.html")[0] == 403)
+    wrong = "/" + ("0" if view.path[1] != "0" else "1") + view.path[2:]
+    check("wrong_token", view.get(wrong)[0] == 403)
+    check("foreign_host", view.get(view.path, host="example.com")[0] == 403)
+    check("rebound_host", view.get(view.path, host=f"127.0.0.1.example.com:{view.port}")[0] == 403)
+    check("localhost", view.get(view.path, host=f"localhost:{view.port}")[0] == 200)
+    check("no_such_file", view.get(view.path + "../../etc/passwd")[0] in (403, 404))
+    check("only_get", view.get(view.path, method="POST")[0] == 405)
+
+    def refused(**arguments):
+        try:
+            Page(view, **arguments).close()
+        except (Refused, OSError):
+            return True
+        return False
+    check("socket_wrong_token", refused(path=wrong + "socket"))
+    check("socket_foreign_host", refused(host="example.com"))
+    check("socket_foreign_origin", refused(origin="http://example.com"))
+    check("socket_other_port", refused(origin=f"http://127.0.0.1:{view.port + 1}"))
+    check("socket_https_origin", refused(origin=f"https://{good}"))
+    check("socket_no_origin", refused(origin=""))
+    check("socket_no_protocol", refused(protocol=None))
+
+
+# ---- frames and edits ----
+
+def test_camera(page):
+    state = page.wait_text("state")
+    camera = state["camera"]
+    check("spelled", camera["spelled"] == "lecture", camera["spelled"])
+    d = camera["d"]
+    new = edit(page, d=2 * d)["camera"]
+    check("d_changes_fx", near(new["fx"], 2 * camera["fx"]) and near(new["d"], 2 * d), new["fx"])
+    check("d_changes_focal_mm", near(new["focal_mm"], 2 * camera["focal_mm"]))
+    new = edit(page, fx=camera["fx"], fy=camera["fy"])["camera"]
+    check("fx_changes_d", near(new["d"], d) and new["spelled"] == "matrix", new["d"])
+    new = edit(page, fov=40, fov_axis="horizontal")["camera"]
+    check("fov", near(new["fov_horizontal"], 40) and new["spelled"] == "fov", new["fov_horizontal"])
+    new = edit(page, focal_mm=35, sensor_width_mm=36)["camera"]
+    check("focal_mm", near(new["fx"], 35 / 36 * camera["width"]) and new["spelled"] == "focal", new["fx"])
+    new = edit(page, cx=camera["cx"] + 11.5)["camera"]
+    check("cx", near(new["cx"], camera["cx"] + 11.5))
+    new = edit(page, roll=30)["camera"]
+    check("roll", near(new["roll"], 30))
+    new = edit(page, eye=[1, 2, 3], lookat=[0, 0, 0], roll=0)["camera"]
+    check("eye", new["world_from_camera"][3::4][:3] == [1, 2, 3], new["world_from_camera"])
+    new = edit(page, distortion="opencv", coefficients=[-0.1, 0.01, 0, 0, 0])
+    check("distortion", new["type"] == "state" and new["camera"]["distortion"] == "opencv", new)
+    for name in ("equidistant fisheye", "equirectangular", "unified", "Panini", "orthographic", "perspective"):
+        answer_ = edit(page, projection=name)
+        check("projection_" + name.split()[0], answer_.get("camera", {}).get("projection") == name, answer_)
+
+    refused = edit(page, fov=200)
+    check("refused", refused["type"] == "refused" and "fov" in refused["message"] and refused["field"] == "fov", refused)
+    check("refused_eye", edit(page, eye=[0, 0, 0], lookat=[0, 0, 0])["type"] == "refused")
+    check("refused_field", edit(page, nonsense=1)["type"] == "refused")
+    before = state_after(page, type="undo")["camera"]
+    check("undo", before["projection"] == "orthographic", before["projection"])
+    check("redo", state_after(page, type="redo")["camera"]["projection"] == "perspective")
+    check("reset", near(state_after(page, type="reset")["camera"]["d"], d))
+
+
+def test_words(view, page, folder):
+    """A refusal has the command line's words."""
+    said = edit(page, near=5, far=3)["message"]
+    path = os.path.join(folder, "near.json")
+    saved = answer(page, "saved", type="save", what="camera", name="near.json", dialect="velo")
+    camera = json.load(open(path))
+    text = json.dumps(camera)
+    run = subprocess.run([VELO, "camera", "info", path], capture_output=True, text=True)
+    check("saved_camera_is_read", saved["type"] == "saved" and run.returncode == 0, run.stderr)
+    check("refusal_names_both", "5" in said and "3" in said and text, said)
+
+
+def test_latency(page):
+    times, frames, start = [], 0, time.monotonic()
+    eye = page.wait_camera["eye"]
+    for i in range(20):
+        page.change += 1
+        begun = time.monotonic()
+        page.send(type="camera", change=page.change, gesture=7, set={"eye": [eye[0] + 0.01 * i, eye[1], eye[2]]})
+        page.wait_frame(lambda f: f.change == page.change)
+        times.append(time.monotonic() - begun)
+        time.sleep(0.02)
+    print(f"   from a change to its first frame: median {1e3 * statistics.median(times):.0f} ms, "
+          f"longest {1e3 * max(times):.0f} ms", file=sys.stderr)
+    check("latency", statistics.median(times) < 5, times)
+    start, i = time.monotonic(), 0
+    while time.monotonic() - start < 2:
+        i += 1
+        page.change += 1
+        page.send(type="camera", change=page.change, gesture=8, set={"eye": [eye[0] - 0.01 * i, eye[1], eye[2]]})
+        page.wait_frame(lambda f: f.change == page.change)
+        frames += 1
+    print(f"   while moving: {frames / 2:.1f} frames/s", file=sys.stderr)
+
+
+def test_tasks(page):
+    picked = answer(page, "picked", type="pick", x=page.wait_camera["width"] / 2, y=page.wait_camera["height"] / 2)
+    check("pick", picked["type"] == "picked" and picked["Z"][0] > 0 and picked["object"]["id"] > 0, picked)
+    check("pick_outside", answer(page, "picked", type="pick", x=60000, y=1)["type"] == "refused")
+    overlay = answer(page, "overlay", type="overlay", boxes=True)
+    check("overlay", len(overlay["vanishing"]) == 3 and len(overlay["boxes"]) > 0, overlay)
+    for channel in ("Z", "N", "P", "uv", "albedo", "id.object"):
+        state_after(page, type="settings", channel=channel)
+        frame = page.wait_frame(lambda f: f.channel > 0)
+        check("channel_" + channel, frame.format == 1 and frame.columns == frame.width, vars(frame))
+    state_after(page, type="settings", channel="image")
+    crop = [16, 8, 80, 40]
+    state_after(page, type="settings", crop=crop)
+    frame = page.wait_frame(lambda f: f.scale == 1 and f.columns == 64)
+    check("crop", (frame.x0, frame.y0, frame.rows) == (16, 8, 32), vars(frame))
+    check("crop_outside", state_after(page, type="settings", crop=[0, 0, 60000, 2])["type"] == "refused")
+    state_after(page, type="settings", crop=None)
+
+
+# ---- files ----
+
+def wait_done(page):
+    return page.wait(lambda m: isinstance(m, dict) and m["type"] == "status" and m["spp"] >= m["target"], 60)
+
+
+def test_files(page, folder):
+    state_after(page, type="settings", spp=3)
+    edit(page, eye=[300, 200, 470], zoom=1.25)
+    wait_done(page)
+    picture = dict(exposure=0.5, view="agx")
+    for suffix in ("png", "exr", "pfm", "hdr", "jpg", "tga"):
+        saved = answer(page, "saved", type="save", what="image", name=f"shown.{suffix}", **picture)
+        check("save_" + suffix, saved["type"] == "saved" and os.path.exists(os.path.join(folder, f"shown.{suffix}")), saved)
+    again = answer(page, "saved", type="save", what="image", name="shown.png", **picture)
+    check("save_keeps_files", again.get("file") == "shown-2.png", again)
+    for name in ("../up.png", "/tmp/up.png", ".hidden.png", "-o.png", "a.gif", ""):
+        check("refused_name", answer(page, "saved", type="save", what="image", name=name, **picture)["type"] == "refused", name)
+    command = answer(page, "command", type="command", **picture)
+    words = shlex.split(command["command"])
+    check("command", words[:2] == ["velo", "render"] and "--camera" in words, command)
+    run = subprocess.run([VELO] + words[1:], cwd=folder, capture_output=True, text=True)
+    check("command_runs", run.returncode == 0, run.stderr)
+    same = lambda a, b: open(os.path.join(folder, a), "rb").read() == open(os.path.join(folder, b), "rb").read()
+    check("command_same_png", same(words[-1], "shown.png"))
+    for suffix in ("exr", "pfm"):
+        run = subprocess.run([VELO] + words[1:-1] + [f"copy.{suffix}"], cwd=folder, capture_output=True, text=True)
+        check("command_same_" + suffix, run.returncode == 0 and same(f"copy.{suffix}", f"shown.{suffix}"), run.stderr)
+    frame_equals_file(page, folder, words)
+    lists = page.lists["dialects"]
+    written = 0
+    for dialect in lists:
+        saved = answer(page, "saved", type="save", what="camera", name=f"camera-{dialect}.{SUFFIX.get(dialect, 'json')}", dialect=dialect)
+        written += saved["type"] == "saved"
+        if saved["type"] == "refused":
+            check("dialect_reason", len(saved["message"]) > 10, saved)
+    print(f"   {written} of {len(lists)} dialects hold this camera", file=sys.stderr)
+    check("dialects", written >= 15, written)
+
+
+SUFFIX = dict(opencv="yaml", ros="yaml", kalibr="yaml", colmap="txt", gltf="gltf", mitsuba="xml", usd="usda", pbrt="pbrt",
+              euroc="yaml", camodocal="yaml", orbslam="yaml", okvis="yaml", svo="yaml", kitti="txt", metashape="xml",
+              meshroom="sfm", visp="xml", blender="json")
+
+
+def frame_equals_file(page, folder, words):
+    """The half floats of the frame are the rounded values of the .pfm."""
+    data = open(os.path.join(folder, "shown.pfm"), "rb").read()
+    head, size, order, floats = data.split(b"\n", 3)
+    width, height = map(int, size.split())
+    values = struct.unpack(f"<{3 * width * height}f", floats)
+    rows = [values[3 * width * y:3 * width * (y + 1)] for y in range(height)][::-1]
+    shown = struct.unpack(f"<{3 * width * height}e", bytes(page.pixels))
+    exact = [v for row in rows for v in row]
+    worst = max(abs(a - b) / max(abs(b), 2 ** -14) for a, b in zip(shown, exact) if b < 65504)
+    check("frame_is_the_image", page.form[:2] == (width, height) and worst <= 2 ** -11 * 1.001, worst, page.form, width, height)
+
+
+# ---- malformed messages, many pages ----
+
+def closed(page):
+    try:
+        while True:
+            message = page.receive(5)
+            if isinstance(message, tuple):
+                return message
+    except (ConnectionError, OSError):
+        return ("closed", 0, "")
+
+
+def test_malformed(view):
+    rest = random.Random(5)
+    texts = [b"", b"{", b"[]", b"null", b'{"type":1}', b'{"type":"camera","set":[]}', b'{"type":"camera","change":-1}',
+             b'{"type":"camera","set":{"eye":[1,2,"x"]}}', b'{"type":"settings","spp":0}', b'{"type":"settings","spp":1e30}',
+             b'{"type":"pick","x":1e300}', b'{"type":"save","name":5}', b'{"type":"seen","seen":1,"type":"seen"}', b"\xff\xfe",
+             b'{"type":"camera","set":{' + b",".join(b'"f%d":1' % i for i in range(100)) + b"}}",
+             b'{"type":"camera","set":{"eye":' + b"[" * 5000 + b"]" * 5000 + b"}}", b'{"type":"x"}',
+             b'{"type":"save","name":"' + b"a" * 300 + b'"}', b'{"type":"save","name":"a\\u0000b"}']
+    refused = 0
+    for text in texts:
+        page = Page(view)
+        page.send_raw(1, text)
+        refused += closed(page)[1] in (0, 1007, 1008, 1009)
+        page.close()
+    check("malformed", refused == len(texts), refused, len(texts))
+    page = Page(view)
+    page.send_raw(2, b"binary")
+    check("binary", closed(page)[1] != 1000)
+    page = Page(view)
+    page.send_raw(1, b"x" * 70000)
+    check("too_long", closed(page)[1] in (1009, 0))
+    page = Page(view)
+    page.send_raw(1, b"{}", masked=False)
+    closed(page)
+    seed = b'{"type":"camera","change":3,"gesture":4,"set":{"eye":[1,2,3],"fov":30,"projection":"perspective"}}'
+    for i in range(1000):  # requests and messages of noise; most pages are closed by the first
+        s = socket.create_connection((view.host, view.port), 10)
+        if i % 2:
+            s.sendall(bytes(rest.randrange(256) for _ in range(rest.randrange(1, 300))) + b"\r\n\r\n")
+            s.close()
+            continue
+        s.close()
+        if i % 10 == 0:
+            text = bytearray(seed)
+            for _ in range(rest.randrange(1, 6)):
+                text[rest.randrange(len(text))] = rest.randrange(256)
+            page = Page(view)
+            page.send_raw(1, bytes(text), final=rest.random() < 0.9)
+            page.close()
+    check("still_there", view.get(view.path)[0] == 200)
+
+
+def test_many(view):
+    pages = []
+    for i in range(50):
+        pages.append(Page(view))
+        if i % 3 == 0:
+            pages.pop(0).close()
+    for page in pages[:5]:
+        page.wait_frame()
+    roles = [page.wait_text("role") if not page.texts else None for page in pages[5:6]]
+    for page in pages:
+        page.close()
+    page = Page(view)
+    role = page.wait_text("role")
+    until = time.monotonic() + 10
+    while not role["steers"] and time.monotonic() < until:  # the server learns that the others are gone
+        role = page.wait_text("role")
+    check("many_pages", role["steers"] and roles, role)
+    other = Page(view)
+    looks = other.wait_text("role")
+    other.change = 1
+    check("second_looks", not looks["steers"])
+    check("second_is_refused", edit(other, fov=20)["type"] == "refused")
+    page.close()
+    check("heir_steers", other.wait_text("role")["steers"])
+    check("heir_edits", edit(other, fov=20)["type"] == "state")
+    wait_done(other)
+    other.close()
+
+
+# ---- files that change ----
+
+def test_watch(folder):
+    inner = os.path.join(folder, "things.pbrt")
+    outer = os.path.join(folder, "watched.pbrt")
+    thing = 'Material "diffuse" "rgb reflectance" [%s]\nShape "sphere"\n'
+    open(inner, "w").write(thing % "0.8 0.1 0.1")
+    open(outer, "w").write('LookAt 0 0 5 0 0 0 0 1 0\nCamera "perspective" "float fov" 40\nSampler "halton" "integer '
+                           'pixelsamples" 4\nFilm "rgb" "integer xresolution" 64 "integer yresolution" 48\nWorldBegin\n'
+                           'LightSource "infinite"\nInclude "things.pbrt"\n')
+    view = View(VELO, outer, cwd=folder)
+    page = Page(view)
+    middle = lambda: struct.unpack_from("<3e", page.pixels, 6 * (24 * 64 + 32))
+    wait_done(page)
+    red = middle()
+    check("watch_first", red[0] > 2 * red[1], red)
+    moved = edit(page, eye=[0, 0, 4.5])
+    open(inner, "w").write(thing % "0.1 0.8 0.1")
+    page.wait_text("loaded")
+    state = page.wait_text("state")
+    page.wait_frame(lambda f: f.scale == 1 and middle()[1] > 2 * middle()[0])
+    check("watch_change", True)
+    check("watch_keeps_camera", state["camera"]["eye"] == moved["camera"]["eye"], state["camera"]["eye"])
+    open(inner, "w").write(thing % "0.1 0.8 0.1" + 'Shape "spere"\n')
+    error = page.wait_text("error")
+    check("watch_error", error["file"].endswith("things.pbrt") and error["line"] == 3 and error["column"] > 0 and
+          "spere" in error["message"], error)
+    edit(page, eye=[0, 0, 4.75])
+    page.wait_frame(lambda f: f.scale == 1)
+    check("watch_old_image_stays", middle()[1] > 2 * middle()[0], middle())
+    new = inner + ".new"  # as editors do it: another file takes its place
+    open(new, "w").write(thing % "0.1 0.1 0.8")
+    os.rename(new, inner)
+    page.wait_text("loaded")
+    page.wait_frame(lambda f: f.scale == 1 and middle()[2] > 2 * middle()[0])
+    check("watch_mended", True)
+    page.close()
+    check("watch_ends", view.end()[0] == 0)
+
+
+def main():
+    missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
+    if "without libwebsockets" in missing.stderr:
+        print("skip view: velo was built without libwebsockets")
+        return
+    check("missing_scene", missing.returncode == 4, missing.stderr)
+    folder = tempfile.mkdtemp(prefix="velo-view-")
+    film = os.path.join(folder, "end.film")
+    view = View(VELO, SCENE, "--resolution", "160x120", "--film", film, "--threads", "2", cwd=folder,
+                env={**os.environ, "SSH_CONNECTION": "192.0.2.1 50000 192.0.2.7 22"})
+    try:
+        test_access(view)
+        page = Page(view)
+        frame = page.wait_frame()
+        check("first_frame", frame.width == 160 and frame.scale >= 1, vars(frame))
+        page.close()
+        page = Page(view)
+        page.lists = page.wait_text("lists")
+        test_camera(page)
+        page.wait_camera = state_after(page, type="reset")["camera"]
+        test_words(view, page, folder)
+        test_latency(page)
+        test_tasks(page)
+        test_files(page, folder)
+        page.close()
+        test_malformed(view)
+        test_many(view)
+    finally:
+        code, errors = view.end()
+    check("ends", code == 0, code, errors)
+    check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
+    test_watch(folder)
+    info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
+    check("film", info.returncode == 0, info.stderr)
+    shutil.rmtree(folder)
+
+
+main()
+sys.exit(1 if failures else 0)

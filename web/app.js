@@ -1,0 +1,194 @@
+// The page: joins the connection, the image, the camera and the panels.
+import { Connection } from "./socket.js";
+import { parseFrame } from "./frame.js";
+import { Screen } from "./screen.js";
+import { Pointer, keyAction, tools } from "./pointer.js";
+import { pivot } from "./steer.js";
+import { Panel } from "./panel.js";
+import { Display } from "./display.js";
+import { Inspector } from "./inspect.js";
+import { Overlay } from "./overlay.js";
+import { Compare } from "./compare.js";
+import { Save } from "./save.js";
+import { byId, make, metric } from "./dom.js";
+import { addHelp } from "./help.js";
+
+const app = {
+  tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gesture: 1,
+
+  // The camera as the page has it: velo's last answer and the edits on their way.
+  camera: () => app.local,
+
+  // Edits the camera. Several edits within one frame of the screen are sent as one.
+  edit(set, gesture = 0) {
+    if (!app.local || !app.steers || !Object.keys(set).length) return;
+    Object.assign(app.local, set);
+    if (app.queued && app.queued.gesture !== gesture) app.flush();
+    app.queued = { set: { ...app.queued?.set, ...set }, gesture };
+    app.timer ??= requestAnimationFrame(app.flush);
+  },
+  flush() {
+    cancelAnimationFrame(app.timer);
+    app.timer = null;
+    if (!app.queued) return;
+    app.connection.send({ type: "camera", change: ++app.change, gesture: app.queued.gesture, set: app.queued.set });
+    app.queued = null;
+  },
+
+  // Sends a question; the answer calls back.
+  ask(message, answer) {
+    const id = app.nextId++;
+    app.waiting.set(id, answer);
+    app.connection.send({ ...message, id });
+  },
+
+  undo: () => app.connection.send({ type: "undo", change: ++app.change }),
+  redo: () => app.connection.send({ type: "redo", change: ++app.change }),
+  reset: () => app.connection.send({ type: "reset", change: ++app.change }),
+  pause: () => app.connection.send({ type: "settings", paused: !app.state.paused }),
+  settings: message => app.connection.send({ type: "settings", ...message }),
+  wholeImage: () => { screen.zoom = 1; screen.centre = [0.5, 0.5]; screen.draw(); screen.onplace?.(); },
+  crop: rectangle => app.settings({ crop: rectangle, change: ++app.change }),
+  escape: () => { byId("notice").hidden = true; if (app.cropped) app.crop(null); },
+  expose: step => display.expose(step),
+  keyGesture() {
+    clearTimeout(app.keyTimer);
+    app.keyTimer = setTimeout(() => { app.gesture++; }, 600);
+    return 1e6 + app.gesture;
+  },
+
+  choose(name) {
+    app.tool = name;
+    byId("stage").dataset.tool = name;
+    for (const button of byId("tools").children) button.setAttribute("aria-checked", String(button.dataset.tool === name));
+  },
+
+  pick(x, y, kind) {
+    if (kind === "focus") return app.connection.send({ type: "focus", x, y, change: ++app.change });
+    app.ask({ type: "pick", x, y }, answer => {
+      if (answer.type !== "picked") return;
+      inspector.picked(answer);
+      if (kind === "turn" && answer.object.id) app.edit(pivot(app.local, answer.P));
+    });
+  },
+  hover: (x, y) => inspector.hover(x, y),
+  band: rectangle => overlay.band(rectangle),
+  notice(text, calm = false) {
+    const box = byId("notice");
+    box.textContent = text;
+    box.hidden = !text;
+    box.classList.toggle("calm", calm);
+    clearTimeout(app.noticeTimer);
+    if (calm) app.noticeTimer = setTimeout(() => { box.hidden = true; }, 6000);
+  },
+};
+
+const screen = app.screen = new Screen(byId("screen"));
+const panel = new Panel(byId("camera"), (set, gesture) => app.edit(set, gesture));
+const display = app.display = new Display(byId("display"), app);
+const overlay = new Overlay(byId("overlays"), app);
+const compare = new Compare(byId("compare"), app);
+new Save(byId("save"), app);
+screen.onplace = () => { overlay.draw(); compare.draw(); };
+const inspector = new Inspector(byId("pixel"), app);
+new Pointer(byId("stage"), app);
+
+// ---- messages of velo ----
+
+function showState(state) {
+  const first = !app.state;
+  app.state = state;
+  if (first || !app.queued) app.local = structuredClone(state.camera);
+  const size = Math.hypot(...[0, 1, 2].map(i => state.bounds[i + 3] - state.bounds[i]));
+  panel.accepted();
+  panel.show(app.queued ? { ...state.camera, ...app.queued.set } : state.camera, size);
+  display.show(state, first);
+  byId("scene").textContent = state.scene.split("/").pop();
+  document.title = `${state.scene.split("/").pop()} – velo`;
+  byId("undo").disabled = !state.can_undo || !app.steers;
+  byId("redo").disabled = !state.can_redo || !app.steers;
+  byId("pause").setAttribute("aria-pressed", String(state.paused));
+  const c = state.crop;
+  app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
+  overlay.state(state);
+}
+
+function showStatus(s) {
+  const error = s.error === null ? "" : `  ·  error ${(100 * s.error).toPrecision(2)} %`;
+  const end = s.spp >= s.target ? "done" : s.paused ? "paused" : `${metric(s.paths_per_second)}paths/s`;
+  byId("status").textContent = `${s.spp} of ${s.target} spp  ·  ${end}${error}`;
+  byId("progress").firstElementChild.style.width = `${100 * s.spp / s.target}%`;
+}
+
+const handlers = {
+  state: showState,
+  status: showStatus,
+  lists: message => { panel.lists(message); display.lists(message); app.lists = message; app.onlists?.(message); },
+  role(message) {
+    app.steers = message.steers;
+    panel.enable(message.steers);
+    for (const id of ["reset", "pause"]) byId(id).disabled = !message.steers;
+    app.notice(message.steers ? "" : message.steering ? "Another page steers; this one looks on." : "This page looks on.", true);
+  },
+  refused(message) {
+    if (message.id && app.waiting.has(message.id)) return answered(message);
+    if (!panel.refused(message.field, message.message)) app.notice(message.message);
+  },
+  loading: () => { byId("status").textContent = "a file changed: loading"; },
+  loaded: () => app.notice("The scene was loaded again.", true),
+  warning: message => app.notice(message.message, true),
+  note: message => app.notice(message.message, true),
+  error(message) {
+    const place = message.file ? `${message.file}${message.line ? `:${message.line}` : ""}${message.column ? `:${message.column}` : ""}\n` : "";
+    app.notice(place + message.message);
+  },
+};
+
+function answered(message) {
+  app.waiting.get(message.id)?.(message);
+  app.waiting.delete(message.id);
+}
+
+app.connection = new Connection({
+  text(message) {
+    if (handlers[message.type]) handlers[message.type](message);
+    else if (message.id) answered(message);
+  },
+  frame(buffer) {
+    const frame = parseFrame(buffer);
+    display.frame(frame);
+    screen.take(frame);
+    app.connection.send({ type: "seen", serial: frame.serial });
+    inspector.frame();
+    compare.frame();
+    app.frames = (app.frames || 0) + 1;
+  },
+  state(connected, reason) {
+    document.body.classList.toggle("away", !connected);
+    if (!connected) byId("status").textContent = reason ? `closed: ${reason}` : "velo has ended or cannot be reached; trying again";
+  },
+});
+
+// ---- controls ----
+
+for (const tool of tools) {
+  const button = make("button", { textContent: tool.label, title: tool.title, role: "radio", onclick: () => app.choose(tool.name) });
+  button.dataset.tool = tool.name;
+  byId("tools").append(button);
+}
+app.choose("orbit");
+for (const name of ["undo", "redo", "reset", "pause"]) byId(name).onclick = app[name];
+byId("side-toggle").onclick = () => {
+  const side = byId("side");
+  side.hidden = !side.hidden;
+  byId("side-toggle").setAttribute("aria-expanded", String(!side.hidden));
+};
+document.addEventListener("keydown", event => {
+  if (!app.local || event.target.closest("input, select, textarea, summary, button")) return;
+  const action = keyAction(event, app);
+  if (!action) return;
+  event.preventDefault();
+  action();
+});
+addHelp(byId("help"));
+window.velo = app; // for tests

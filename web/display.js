@@ -1,0 +1,124 @@
+// How the image is shown: exposure, view transform, which channel, false colours and their legend, histogram.
+import { byId, make, row, short } from "./dom.js";
+import { fromHalf } from "./half.js";
+
+const kinds = { Z: 1, distance: 1, P: 3, N: 2, Ng: 2, uv: 4, albedo: 5, ray: 2, "id.object": 6, "id.material": 6,
+  "id.instance": 6, "id.primitive": 6, samples: 1, film: 4, error: 1 };
+const names = { image: "image", Z: "depth", distance: "distance", P: "position", N: "normals", Ng: "geometric normals",
+  uv: "uv", albedo: "albedo", ray: "ray directions", "id.object": "objects", "id.material": "materials",
+  "id.instance": "instances", "id.primitive": "faces", error: "standard error" };
+const left = ["samples", "film"];
+
+export class Display {
+  constructor(root, app) {
+    this.app = app;
+    this.channels = ["image"];
+    this.channel = make("select", { id: "channel", onchange: () => app.settings({ channel: this.channel.value }) });
+    this.exposure = make("input", { type: "range", id: "exposure", min: -8, max: 8, step: 0.05, oninput: () => this.set() });
+    this.number = make("input", { type: "text", size: 5, inputMode: "decimal", onchange: () => { this.exposure.value = this.number.value; this.set(); } });
+    this.number.setAttribute("aria-label", "exposure in stops");
+    this.view = make("select", { id: "view", onchange: () => this.set() });
+    for (const [i, name] of ["standard", "neutral", "agx", "raw"].entries()) this.view.append(make("option", { value: i, textContent: name }));
+    this.spp = make("input", { type: "text", id: "spp", inputMode: "numeric", onchange: () => app.settings({ spp: Math.max(1, Math.round(Number(this.spp.value)) || 1) }) });
+    this.histogram = make("canvas", { id: "histogram", width: 256, height: 64, title: "histogram of the display values" });
+    const label = (text, id) => make("label", { textContent: text, htmlFor: id });
+    this.number.style.width = "58px";
+    this.number.style.flex = "none";
+    root.append(row(label("show", "channel"), this.channel), row(label("exposure EV", "exposure"), this.exposure, this.number),
+      row(label("view", "view"), this.view), row(label("samples", "spp"), this.spp), this.histogram);
+  }
+
+  lists(message) {
+    this.channels = ["image", ...message.channels];
+    this.channel.replaceChildren(...this.channels.filter(c => !left.includes(c)).map(c => make("option", { value: c, textContent: names[c] || c })));
+  }
+
+  show(state, first) {
+    if (first) {
+      this.exposure.value = state.exposure;
+      this.view.value = state.view;
+      this.set();
+    }
+    this.channel.value = this.channels[state.channel] || "image";
+    if (document.activeElement !== this.spp) this.spp.value = state.spp;
+    for (const input of [this.channel, this.spp]) input.disabled = !this.app.steers;
+  }
+
+  expose(step) { this.exposure.value = Number(this.exposure.value) + step; this.set(); }
+
+  get ev() { return Number(this.exposure.value); }
+  get viewName() { return this.view.selectedOptions[0].textContent; }
+
+  set() {
+    this.number.value = short(this.ev, 4);
+    Object.assign(this.app.screen.display, { exposure: this.ev, view: Number(this.view.value) });
+    this.app.screen.redevelop();
+    this.count();
+  }
+
+  // Before a frame is drawn: the kind of its values and their range.
+  frame(frame) {
+    const name = this.channels[frame.channel] || "image", d = this.app.screen.display;
+    d.kind = kinds[name] || 0;
+    if (frame.tileCount === 1 && frame.tiles[0].w === frame.columns && frame.tiles[0].h === frame.rows) this.range(frame, name);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.count(), 150);
+  }
+
+  range(frame, name) {
+    const d = this.app.screen.display, n = frame.channels, data = frame.tiles[0].pixels;
+    d.low = [0, 0, 0], d.high = [1, 1, 1];
+    if (d.kind === 3) {
+      const b = this.app.state.bounds;
+      d.low = b.slice(0, 3), d.high = b.slice(3);
+    } else if (d.kind === 1) {
+      const values = [];
+      for (let i = 0; i < data.length; i += n * Math.max(1, Math.floor(data.length / n / 20000))) if (Number.isFinite(data[i])) values.push(data[i]);
+      values.sort((a, b) => a - b);
+      const at = share => values[Math.min(values.length - 1, Math.floor(share * values.length))] ?? 0;
+      d.low = [at(0.005), 0, 0], d.high = [Math.max(at(0.995), at(0.005) + 1e-9), 1, 1];
+    }
+    this.legend(name, d);
+  }
+
+  legend(name, d) {
+    const box = byId("legend"), text = {
+      2: "x, y, z from −1 to 1 are red, green, blue from 0 to 1", 3: "x, y, z within the scene's bounds are red, green, blue",
+      4: "the fractions of u and v are red and green", 6: "a colour for each number" }[d.kind];
+    box.hidden = d.kind === 0 || d.kind === 5;
+    if (box.hidden) return;
+    box.replaceChildren(make("strong", { textContent: names[name] || name }));
+    if (text) { box.append(make("div", { class: "hint", textContent: text })); return; }
+    const bar = make("canvas", { width: 128, height: 1 }), context = bar.getContext("2d");
+    for (let x = 0; x < 128; x++) { context.fillStyle = viridis(x / 127); context.fillRect(x, 0, 1, 1); }
+    box.append(bar, make("div", { class: "ends" }, make("span", { textContent: short(d.low[0], 4) }), make("span", { textContent: short(d.high[0], 4) })));
+  }
+
+  // Histogram of the display values (standard view) of the image, on a scale of stops.
+  count() {
+    const { frame, data } = this.app.screen.pixels, canvas = this.histogram, g = canvas.getContext("2d");
+    g.clearRect(0, 0, 256, 64);
+    if (!frame || frame.format !== 0) return;
+    const bins = [new Float32Array(256), new Float32Array(256), new Float32Array(256)], gain = 2 ** this.ev;
+    const step = 3 * Math.max(1, Math.floor(data.length / 3 / 40000));
+    for (let i = 0; i < data.length; i += step)
+      for (let c = 0; c < 3; c++) {
+        const v = Math.max(0, Math.min(1, fromHalf[data[i + c]] * gain));
+        bins[c][Math.min(255, Math.floor(256 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055)))]++;
+      }
+    const most = Math.max(...bins.map(b => Math.max(...b.subarray(1, 255)))) || 1;
+    g.globalCompositeOperation = matchMedia("(prefers-color-scheme: dark)").matches ? "lighter" : "multiply";
+    bins.forEach((bin, c) => {
+      g.fillStyle = g.globalCompositeOperation === "lighter" ? ["#b33", "#3a3", "#46c"][c] : ["#f99", "#9d9", "#9bf"][c];
+      for (let x = 0; x < 256; x++) { const h = 62 * Math.min(1, Math.sqrt(bin[x] / most)); g.fillRect(x, 64 - h, 1, h); }
+    });
+  }
+}
+
+function viridis(t) {
+  const k = [[0.2777273, 0.0054073, 0.3340998], [0.1050930, 1.4046135, 1.3845902], [-0.3308618, 0.2148476, 0.0950952],
+    [-4.6342305, -5.7991010, -19.3324410], [6.2282699, 14.1799334, 56.6905526], [4.7763850, -13.7451454, -65.3530326],
+    [-5.4354559, 4.6458526, 26.3124352]];
+  const c = [0, 1, 2].map(i => Math.round(255 * Math.max(0, Math.min(1, k.reduceRight((sum, row) => sum * t + row[i], 0)))));
+  return `rgb(${c})`;
+}

@@ -1,0 +1,46 @@
+// The fields of the camera panel, by group. Every group is a spelling of the same camera: an edit of one changes the
+// others. count: numbers of a field; slide: range of its slider; choices: names; min: smallest value of a drag.
+export const groups = [
+  { title: "Pose", fields: [
+    { name: "eye", label: "eye", count: 3, title: "position of the camera" },
+    { name: "lookat", label: "lookat", count: 3, title: "a point on the view axis" },
+    { name: "up", label: "up", count: 3, title: "direction of the image's up" },
+    { name: "roll", label: "roll °", slide: { from: -180, to: 180 }, title: "about the view direction" },
+  ] },
+  { title: "View plane (lecture)", spelling: "lecture", fields: [
+    { name: "d", label: "d", slide: { octaves: 3 }, title: "distance of the view plane, in units of s" },
+    { name: "zoom", label: "zoom", slide: { octaves: 3 } },
+    { name: "s", label: "s", slide: { octaves: 3 }, title: "size of a pixel on the view plane" },
+  ] },
+  { title: "Field of view", spelling: "fov", fields: [
+    { name: "fov", label: "fov °", slide: { from: 1, to: 175 } },
+    { name: "fov_axis", label: "across", choices: ["vertical", "horizontal", "diagonal", "smaller", "larger"] },
+  ] },
+  { title: "Focal length", spelling: "focal", fields: [
+    { name: "focal_mm", label: "focal mm" },
+    { name: "sensor_width_mm", label: "sensor mm", title: "width of the sensor" },
+  ] },
+  { title: "Calibration matrix", spelling: "matrix", fields: [
+    { name: "fx", label: "fx px" }, { name: "fy", label: "fy px" }, { name: "cx", label: "cx px" },
+    { name: "cy", label: "cy px" }, { name: "skew", label: "skew px" },
+  ] },
+  { title: "Projection", fields: [
+    { name: "projection", label: "projection", list: "projections" },
+    { name: "shape", label: "shape", count: 2, title: "parameters of the projection", empty: true },
+    { name: "max_angle", label: "circle °", title: "radius of the image circle", empty: true },
+    { name: "distortion", label: "distortion", choices: ["none", "opencv", "radial", "thin prism"] },
+    { name: "coefficients", label: "coefficients", text: true, title: "in the order of the model" },
+  ] },
+  { title: "Lens", fields: [
+    { name: "lens_radius", label: "radius", slide: { from: 0, to: 0.5, relative: true }, title: "0: a pinhole" },
+    { name: "f_number", label: "f-number", empty: true },
+    { name: "focus_distance", label: "focus at", slide: { octaves: 4 }, empty: true, title: "depth of the plane in focus" },
+    { name: "blades", label: "blades", title: "0: a round opening" }, { name: "rotation", label: "rotation °" },
+    { name: "ratio", label: "ratio", title: "height of the opening divided by its width" },
+    { name: "tilt_x", label: "tilt x °", title: "of the plane in focus" }, { name: "tilt_y", label: "tilt y °" },
+    { name: "lens_tilt_x", label: "lens tilt x °", title: "Scheimpflug" }, { name: "lens_tilt_y", label: "lens tilt y °" },
+  ] },
+  { title: "Clipping", fields: [
+    { name: "near", label: "near" }, { name: "far", label: "far", empty: true },
+  ] },
+];

@@ -223,7 +223,8 @@ static void maps(void **state) {
              "newmtl normal\nnorm -bm 3 i.ppm\nKd 0.5\nKe 1\nmap_Ke i.ppm\n"
              "newmtl solid\nKd 0 0 0\nNi 1.3\nillum 6\nd 0.4\nmap_d i.ppm\n");
   Loaded l;
-  load_obj(&l, "mtllib i.mtl\n" SQUARE "usemtl all\nf 1 2 3\nusemtl named\nf 1 2 3\nusemtl normal\nf 1 2 3\n"
+  load_obj(&l, "mtllib i.mtl\n" SQUARE
+               "usemtl all\nf 1 2 3\nusemtl named\nf 1 2 3\nusemtl normal\nf 1 2 3\n"
                "usemtl solid\nf 1 2 3\n");
   assert_int_equal(l.result, VL_OK);
   assert_non_null(strstr(l.log, "i.xcf\": velo does not read images of this kind"));
@@ -369,8 +370,8 @@ static void memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(corners), cmocka_unit_test(polygons),  cmocka_unit_test(smoothing),
-      cmocka_unit_test(colors),  cmocka_unit_test(materials), cmocka_unit_test(missing),
-      cmocka_unit_test(errors),  cmocka_unit_test(damaged),   cmocka_unit_test(memory), cmocka_unit_test(maps)};
+      cmocka_unit_test(corners),   cmocka_unit_test(polygons), cmocka_unit_test(smoothing), cmocka_unit_test(colors),
+      cmocka_unit_test(materials), cmocka_unit_test(missing),  cmocka_unit_test(errors),    cmocka_unit_test(damaged),
+      cmocka_unit_test(memory),    cmocka_unit_test(maps)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

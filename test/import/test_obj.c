@@ -209,6 +209,77 @@ static void materials(void **state) {
   end_load(&l);
 }
 
+/* Images of each kind, with the options before their names. */
+static void maps(void **state) {
+  (void)state;
+  write_text("i.ppm", "P3 2 1 255 255 0 0 0 255 0\n");
+  write_text("wall_normal.ppm", "P3 1 1 255 128 128 255\n");
+  write_text("i.xcf", "gimp");
+  write_text("i.mtl",
+             "newmtl all\nKd 0 0 0\nmap_Kd -clamp on -o 0.5 0.25 -s 2 3 1 -mm 0.1 0.7 i.ppm\n"
+             "Pm 0.5\nmap_Pm -imfchan r i.ppm\nmap_Pr -mm 0.25 0.5 -imfchan g -type sphere i.ppm\n"
+             "map_d -blendu off -texres 8 -t 1 i.ppm\nmap_Ke i.ppm\nmap_Bump -bm 0.5 i.ppm\nPs 0.25\n"
+             "newmtl named\nbump -bm 2 wall_normal.ppm\nmap_Kd i.xcf\nKe xyz 1 1 1\nKs spectral a.rfl 1\n"
+             "newmtl normal\nnorm -bm 3 i.ppm\nKd 0.5\nKe 1\nmap_Ke i.ppm\n"
+             "newmtl solid\nKd 0 0 0\nNi 1.3\nillum 6\nd 0.4\nmap_d i.ppm\n");
+  Loaded l;
+  load_obj(&l, "mtllib i.mtl\n" SQUARE
+               "usemtl all\nf 1 2 3\nusemtl named\nf 1 2 3\nusemtl normal\nf 1 2 3\n"
+               "usemtl solid\nf 1 2 3\n");
+  assert_int_equal(l.result, VL_OK);
+  assert_non_null(strstr(l.log, "i.xcf\": velo does not read images of this kind"));
+  assert_non_null(strstr(l.log, "Ks spectral: velo does not read .rfl files"));
+  const vlMaterialDef *m = l.scene->materials.items;
+  const vlTextureDef *t = l.scene->textures.items;
+  const vlTextureDef *kd = &t[m[0].reflectance.texture.index - 1];
+  assert_non_null(strstr(kd->path, "i.ppm"));
+  assert_int_equal(kd->wrap, VL_WRAP_CLAMP);
+  assert_float_equal(kd->du, 0.5, 0);
+  assert_float_equal(kd->dv, 0.25, 0);
+  assert_float_equal(kd->su, 2, 0);
+  assert_float_equal(kd->sv, 3, 0);
+  assert_float_equal(kd->scale, 0.7, 1e-6);
+  assert_float_equal(kd->tint[1], 1, 0); /* Kd is black: the image alone gives the colour */
+  const vlTextureDef *metal = &t[m[0].principled.metallic.texture.index - 1];
+  assert_int_equal(metal->channel, 0);
+  assert_float_equal(metal->scale, 0.5, 0);
+  const vlTextureDef *rough = &t[m[0].principled.roughness.texture.index - 1];
+  assert_int_equal(rough->channel, 1);
+  assert_float_equal(rough->bias, 0.25, 0);
+  assert_float_equal(rough->scale, 0.5, 0);
+  assert_int_not_equal(l.scene->shapes.items[0].alpha.texture.index, 0);
+  assert_float_equal(m[0].principled.sheen_color.value.rgb[0], 0.25, 0);
+  assert_float_equal(t[m[0].displacement.texture.index - 1].scale, 0.002 * sqrt(2) * 0.5, 1e-7);
+  assert_non_null(strstr(t[m[1].principled.normal.index - 1].path, "wall_normal.ppm"));
+  assert_float_equal(m[1].principled.normal_scale, 2, 0);
+  assert_float_equal(m[2].principled.normal_scale, 3, 0);
+  assert_int_equal(l.scene->emissions.count, 3);
+  assert_int_not_equal(l.scene->emissions.items[0].texture.index, 0);
+  assert_float_equal(l.scene->emissions.items[1].radiance.rgb[0], 1.2048, 1e-3); /* xyz 1 1 1 */
+  assert_float_equal(m[3].principled.transmission.value, 0.6, 1e-6);
+  assert_float_equal(m[3].reflectance.value.rgb[2], 1, 0);
+  assert_int_equal(l.scene->shapes.items[3].alpha.texture.index, 0);
+  end_load(&l);
+  static const char *const broken[][2] = {{"map_Kd -bm i.ppm", "-bm: 0 numbers, 1 are needed"},
+                                          {"map_Kd -clamp", "-clamp: its value is missing"},
+                                          {"map_Kd -imfchan", "-imfchan: its value is missing"},
+                                          {"map_Kd -mm 1 i.ppm", "-mm: 1 numbers, 2 are needed"},
+                                          {"map_Kd -s i.ppm", "0 numbers, 1 are needed"},
+                                          {"map_Kd -cc on", "the name of an image is missing"},
+                                          {"Ns fast", "Ns"},
+                                          {"Tr", "Tr needs a number"}};
+  for (size_t i = 0; i < sizeof broken / sizeof *broken; i++) {
+    char text[100];
+    snprintf(text, sizeof text, "newmtl a\n%s\n", broken[i][0]);
+    write_text("b.mtl", text);
+    load_obj(&l, "mtllib b.mtl\n");
+    assert_int_equal(l.result, VL_ERROR_SCENE);
+    if (!strstr(l.error.message, broken[i][1])) fail_msg("%s: %s", broken[i][0], l.error.message);
+    assert_int_equal(l.error.line, 2);
+    end_load(&l);
+  }
+}
+
 /* Missing files are reported as warnings, and the import continues without them. */
 static void missing(void **state) {
   (void)state;
@@ -299,8 +370,8 @@ static void memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(corners), cmocka_unit_test(polygons),  cmocka_unit_test(smoothing),
-      cmocka_unit_test(colors),  cmocka_unit_test(materials), cmocka_unit_test(missing),
-      cmocka_unit_test(errors),  cmocka_unit_test(damaged),   cmocka_unit_test(memory)};
+      cmocka_unit_test(corners),   cmocka_unit_test(polygons), cmocka_unit_test(smoothing), cmocka_unit_test(colors),
+      cmocka_unit_test(materials), cmocka_unit_test(missing),  cmocka_unit_test(errors),    cmocka_unit_test(damaged),
+      cmocka_unit_test(memory),    cmocka_unit_test(maps)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

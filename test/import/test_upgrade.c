@@ -193,7 +193,122 @@ static const struct {
      "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 1 \"integer ny\" 1 \"integer nz\" 1 \"float "
      "density\" 1 \"rgb sigma_a\" [ 1 1 1 ]\n",
      0},
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"bool trilinear\" \"true\" \"bool gamma\" "
+     "true\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string filter\" \"trilinear\" "
+     "\"string encoding\" \"sRGB\"\n",
+     0},
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"float gamma\" 2.5 \"bool trilinear\" "
+     "false\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string encoding\" \"gamma 2.5\"\n",
+     0},
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\" \"float gamma\" 1\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\" \"string encoding\" \"linear\"\n",
+     0},
+    {"Texture \"t\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nMaterial \"uber\" \"texture opacity\" "
+     "\"t\"\n",
+     "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"t-float\" \"float\" "
+     "\"imagemap\" \"string filename\" \"../old/a.png\"\nMakeNamedMaterial \"see-through\" \"string type\" "
+     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" 0.1 \"rgb "
+     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] "
+     "\"texture amount\" \"t-float\"\n",
+     0},
+    {"Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex1\" \"a\" \"float tex2\" "
+     ".5\n",
+     "Texture \"a\" \"float\" \"constant\"\nTexture \"t\" \"float\" \"scale\" \"texture tex\" \"a\" \"float scale\" "
+     ".5\n",
+     0},
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"rgb tex2\" [ 1 "
+     ".5 0 ]\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float "
+     "scale\" 0.5\n",
+     1},
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"spectrum tex2\" "
+     "[ 400 1 700 2 ]\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\"\n", 1},
+    {"Texture \"a\" \"color\" \"constant\"\nTexture \"b\" \"color\" \"constant\"\nTexture \"t\" \"color\" \"scale\" "
+     "\"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nTexture \"b\" \"spectrum\" \"constant\"\nTexture \"t\" \"spectrum\" "
+     "\"scale\" \"texture tex\" \"a\"\n",
+     1},
+    {"Texture \"a\" \"color\" \"imagemap\" \"string filename\" \"a.png\"\nTexture \"b\" \"color\" \"imagemap\" "
+     "\"string filename\" \"a.png\"\nTexture \"t\" \"color\" \"scale\" \"texture tex1\" \"a\" \"texture tex2\" \"b\"\n",
+     "Texture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"b\" \"spectrum\" "
+     "\"imagemap\" \"string filename\" \"../old/a.png\"\nTexture \"b-float\" \"float\" \"imagemap\" \"string "
+     "filename\" \"../old/a.png\"\nTexture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"texture scale\" "
+     "\"b-float\"\n",
+     1},
+    {"LightSource \"goniometric\" \"string mapname\" \"around.exr\" \"rgb I\" [ 1 2 3 ] \"rgb scale\" [ 2 1 1 ]\n",
+     "LightSource \"goniometric\" \"string filename\" \"around-equiarea.exr\" \"rgb I\" [ 2 2 3 ]\n", 0},
+    {"LightSource \"projection\" \"string mapname\" \"a.png\" \"rgb I\" [ 1 2 3 ] \"rgb scale\" [ 2 1 1 ]\n",
+     "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float fov\" 45\n", 2},
+    {"LightSource \"projection\" \"string mapname\" \"a.png\" \"blackbody I\" [ 3000 2 ]\n",
+     "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float fov\" 45\n", 1},
+    {"LightSource \"projection\" \"string mapname\" \"a.png\" \"rgb I\" [ 2 2 2 ]\n",
+     "LightSource \"projection\" \"string filename\" \"../old/a.png\" \"float scale\" 2 \"float fov\" 45\n", 0},
+    {"LightSource \"infinite\" \"string mapname\" \"around.exr\" \"rgb L\" [ 1 2 3 ]\n",
+     "LightSource \"infinite\" \"string filename\" \"around-equiarea.exr\"\n", 0},
+    {"LightSource \"infinite\" \"string mapname\" \"\" \"rgb L\" [ 1 2 3 ]\n",
+     "LightSource \"infinite\" \"rgb L\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"point\" \"rgb scale\" [ 1 2 3 ]\n", "LightSource \"point\" \"rgb I\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"distant\" \"rgb scale\" [ 1 2 3 ]\n", "LightSource \"distant\" \"rgb L\" [ 1 2 3 ]\n", 0},
+    {"LightSource \"point\" \"spectrum I\" [ 360 1 830 1 ] \"rgb scale\" [ 1 2 3 ]\n",
+     "LightSource \"point\" \"spectrum I\" [ 360 1 830 1 ]\n", 1},
+    {"LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"spectrum scale\" [ 400 1 700 1 ]\n",
+     "LightSource \"point\" \"rgb I\" [ 1 1 1 ]\n", 1},
+    {"LightSource \"beam\"\n", "", 1},
+    {"AreaLightSource \"sphere\"\n", "", 1},
+    {"MakeNamedMaterial \"m\" \"string type\" \"uber\" \"rgb opacity\" [ .5 .25 .75 ] \"rgb Kr\" [ 0 0 0 "
+     "]\nNamedMaterial \"m\"\n",
+     "MakeNamedMaterial \"see-through\" \"string type\" \"interface\"\nMakeNamedMaterial \"m-solid\" \"string type\" "
+     "\"coateddiffuse\" \"float roughness\" 0.1 \"rgb reflectance\" [ 0.25 0.25 0.25 ]\nMakeNamedMaterial \"m\" "
+     "\"string type\" \"mix\" \"string materials\" [ \"see-through\" \"m-solid\" ] \"float amount\" 0.5\nNamedMaterial "
+     "\"m\"\n",
+     1},
+    {"Texture \"a\" \"color\" \"constant\"\nMaterial \"uber\" \"texture opacity\" \"a\"\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nMakeNamedMaterial \"see-through\" \"string type\" "
+     "\"interface\"\nMakeNamedMaterial \"solid-1\" \"string type\" \"coateddiffuse\" \"float roughness\" 0.1 \"rgb "
+     "reflectance\" [ 0.25 0.25 0.25 ]\nMaterial \"mix\" \"string materials\" [ \"see-through\" \"solid-1\" ] \"float "
+     "amount\" 0.5\n",
+     1},
+    {"Texture \"a\" \"color\" \"constant\"\nMaterial \"translucent\" \"texture Kd\" \"a\"\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"texture reflectance\" \"a\" "
+     "\"texture transmittance\" \"a\" \"float scale\" 0.5\n",
+     0},
+    {"Texture \"a\" \"color\" \"constant\"\nMaterial \"translucent\" \"texture Kd\" \"a\" \"rgb reflect\" [ 0 0 0 ]\n",
+     "Texture \"a\" \"spectrum\" \"constant\"\nMaterial \"diffusetransmission\" \"rgb reflectance\" [ 0 0 0 ] "
+     "\"texture transmittance\" \"a\"\n",
+     1},
+    {"Material \"translucent\" \"spectrum Kd\" [ 400 1 700 1 ] \"spectrum reflect\" [ 400 1 700 1 ]\n",
+     "Material \"diffusetransmission\" \"rgb reflectance\" [ 0.125 0.125 0.125 ] \"rgb transmittance\" [ 0.125 0.125 "
+     "0.125 ]\n",
+     2},
+    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" \"string "
+     "namedmaterial2\" \"a\" \"rgb amount\" [ .5 .25 .75 ]\n",
+     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"a\" ] "
+     "\"float amount\" 0.5\n",
+     1},
+    {"MakeNamedMaterial \"a\" \"string type\" \"matte\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" \"string "
+     "namedmaterial2\" \"a\"\n",
+     "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMaterial \"mix\" \"string materials\" [ \"a\" \"a\" ]\n", 0},
 };
+
+/* Two images that the statements name. */
+static void write_images(void) {
+  vlContext *context;
+  vlImage *image;
+  vlError error;
+  vlContextDef cd = vl_default_context_def();
+  assert_int_equal(vl_context_create(&cd, &context), VL_OK);
+  vlImageDef def = vl_default_image_def(4, 2, 3);
+  def.type = VL_PIXEL_F32;
+  assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
+  for (int i = 0; i < 24; i++) ((float *)vl_image_pixels(image))[i] = 0.5f;
+  assert_int_equal(vl_image_write(image, in_folder("old/around.exr"), NULL, &error), VL_OK);
+  assert_int_equal(vl_image_write(image, in_folder("old/a.png"), NULL, &error), VL_OK);
+  vl_image_destroy(image);
+  vl_context_destroy(context);
+}
 
 /* Each statement becomes the expected one, and the result is a scene that velo loads. */
 static void statements(void **state) {
@@ -201,6 +316,7 @@ static void statements(void **state) {
   Notes notes;
   vlError error;
   int wrong = 0;
+  write_images();
   for (size_t i = 0; i < sizeof world / sizeof *world; i++) {
     char text[4096], wanted[4096];
     snprintf(text, sizeof text, "Film \"rgb\"\nPixelFilter \"box\"\nWorldBegin\n%sWorldEnd\n", world[i].from);

@@ -14,6 +14,7 @@
 #include "velo/export.h"
 #include "velo/film.h"
 #include "velo/focus.h"
+#include "velo/group.h"
 #include "velo/image.h"
 #include "velo/receipt.h"
 #include "velo/render.h"

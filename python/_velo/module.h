@@ -187,6 +187,7 @@ int find_kind(const vlKindFamily *family, PyObject *name);
 PyObject *image_object(Context *context, vlImage *image); /* takes the image, also when it fails */
 bool scene_open(const Scene *self);                       /* false: an exception is set */
 PyObject *scene_add(Scene *self, PyObject *arguments);
+PyObject *scene_load_group(Scene *self, PyObject *arguments);
 PyObject *scene_add_instance(Scene *self, PyObject *arguments);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[];

@@ -165,6 +165,7 @@ static PyMethodDef scene_methods[] = {
     {"_complete", (PyCFunction)scene_complete, METH_O, "Adds camera, light and ground."},
     {"_save", (PyCFunction)scene_save, METH_VARARGS, "Writes a scene file."},
     {"_add", (PyCFunction)scene_add, METH_VARARGS, "Adds a texture, material, medium, emission, light or shape."},
+    {"_load_group", (PyCFunction)scene_load_group, METH_VARARGS, "Loads a file as one group."},
     {"_add_instance", (PyCFunction)scene_add_instance, METH_VARARGS, "Places a group."},
     {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
     {"_set_camera", (PyCFunction)scene_set_camera, METH_O, "Sets the scene's camera and image size."},

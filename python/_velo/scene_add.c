@@ -404,3 +404,34 @@ PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
   if (vl_scene_result(self->scene, NULL) != VL_OK) return scene_error(self);
   Py_RETURN_NONE;
 }
+
+/* _load_group(path, name or None, keywords): handle, {what: number}. */
+PyObject *scene_load_group(Scene *self, PyObject *arguments) {
+  PyObject *path, *name, *keywords, *keep = PyList_New(0), *result = NULL;
+  vlLoadDef def = vl_default_load_def();
+  const char *file, *text = NULL;
+  const Target target = {(char *)&def, keep, self, false};
+  if (!keep || !PyArg_ParseTuple(arguments, "OOO!:_load_group", &path, &name, &PyDict_Type, &keywords) ||
+      !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
+      !(file = keep_path(keep, path)) || (name != Py_None && !(text = keep_text(keep, name))))
+    goto end;
+  Call call;
+  if (!call_begin(&call, self->context, &self->busy)) goto end;
+  vlError error = {0};
+  vlLoadedGroup loaded;
+  vlResult done = vl_scene_load_group(self->scene, file, &def, text, &loaded, &error);
+  call_end(&call);
+  if (done != VL_OK) {
+    raise_result(done, &error);
+    goto end;
+  }
+  PyObject *group = new_handle(self, GROUPS, loaded.group.index);
+  if (group)
+    result =
+        Py_BuildValue("N{s:I,s:I,s:I,s:I,s:(ddd),s:(ddd)}", group, "shapes", loaded.shapes, "first_object",
+                      loaded.first_object, "lights", loaded.lights, "emitters", loaded.emitters, "low", loaded.low[0],
+                      loaded.low[1], loaded.low[2], "high", loaded.high[0], loaded.high[1], loaded.high[2]);
+end:
+  Py_XDECREF(keep);
+  return result;
+}

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Iterator, Optional, Sequence, Union
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
 from velo import _velo
 from velo._context import default_context
@@ -41,6 +41,16 @@ class World(_velo.World):
 
 
 _velo.set_type("World", World)
+
+
+class Model(NamedTuple):
+    """A file that was loaded as a group."""
+    group: Handle  #: for add_instance
+    name: str  #: of the group and its instances
+    low: tuple[float, float, float]  #: the bounding box, in the file's own space
+    high: tuple[float, float, float]
+    shapes: int  #: number of shapes
+    first_object: int  #: id.object of the first shape; the others follow
 
 
 def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
@@ -145,6 +155,14 @@ class Scene(_velo.Scene):
     def add_group(self, name: Optional[str] = None) -> Handle:
         """Adds an empty group. Shapes join it (keyword group); add_instance places it."""
         return self._new("groups", name, {})
+
+    def load_group(self, path: Path, name: Optional[str] = None, **keywords: Any) -> "Model":
+        """Loads a model's file as one group, which add_instance places; the file's camera, lights and emission are ignored.
+        name: the name of its instances; default the file's name without suffix. Keywords: vlLoadDef's."""
+        self._world = None
+        name = name if name is not None else os.path.basename(os.fspath(path)).split(".")[0]
+        group, info = self._load_group(path, name, keywords)
+        return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
 
     def add_instance(self, group: Handle, transform: Any, times: Optional[Sequence[float]] = None) -> None:
         """Places a group: transform is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for each

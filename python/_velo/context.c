@@ -8,11 +8,26 @@
 _Thread_local const Film *open_film;
 _Thread_local bool inside_pass;
 
+/* Calls a function of velo/_errors.py. The name is looked up in the module's dict: getattr would keep each new str in
+ * the interpreter's cache of methods. */
+PyObject *call_package(const char *name, const char *format, ...) {
+  PyObject *module = PyImport_ImportModule("velo._errors");
+  PyObject *function = module ? PyDict_GetItemString(PyModule_GetDict(module), name) : NULL;
+  va_list arguments;
+  va_start(arguments, format);
+  PyObject *tuple = function ? Py_VaBuildValue(format, arguments) : NULL;
+  va_end(arguments);
+  PyObject *result = tuple ? PyObject_CallObject(function, tuple) : NULL;
+  if (module && !function) PyErr_Format(PyExc_ImportError, "velo._errors has no %s", name);
+  Py_XDECREF(tuple);
+  Py_XDECREF(module);
+  return result;
+}
+
 /* ---- exceptions -------------------------------------------------------------------------------------------------- */
 
 static PyObject *raise_error(vlResult result, const char *message, const char *file, unsigned line, unsigned column) {
-  PyObject *module = PyImport_ImportModule("velo._errors");
-  PyObject *error = module ? PyObject_CallMethod(module, "make", "isII", (int)result, message, line, column) : NULL;
+  PyObject *error = call_package("make", "(isII)", (int)result, message, line, column);
   if (error && file && file[0]) {
     PyObject *text = PyUnicode_DecodeFSDefault(file);
     if (!text || PyObject_SetAttrString(error, "file", text) < 0) Py_CLEAR(error);
@@ -20,7 +35,6 @@ static PyObject *raise_error(vlResult result, const char *message, const char *f
   }
   if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
   Py_XDECREF(error);
-  Py_XDECREF(module);
   return NULL;
 }
 
@@ -49,14 +63,9 @@ bool context_is_ours(const Context *context) {
 bool context_check(const Context *context) {
   if (!context || !context->context) return raise_usage("the context is closed"), false;
   if (context->pid != (long)getpid()) {
-    PyObject *module = PyImport_ImportModule("velo._errors");
-    PyObject *type = module ? PyObject_GetAttrString(module, "ForkError") : NULL;
-    if (type)
-      PyErr_SetString(type,
-                      "this object was made before fork(), which does not copy its threads: "
-                      "make it again in this process");
-    Py_XDECREF(type);
-    Py_XDECREF(module);
+    PyObject *error = call_package("fork_error", "()");
+    if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+    Py_XDECREF(error);
     return false;
   }
   if (inside_pass) return raise_usage("a progress callback may use velo only when progress.pass_done is true"), false;
@@ -79,13 +88,8 @@ void call_end(Call *call) {
 }
 
 static PyObject *progress_object(const vlProgress *p) {
-  PyObject *module = PyImport_ImportModule("velo._errors");
-  PyObject *result = module ? PyObject_CallMethod(module, "Progress", "IIdddKKO", p->spp_done, p->spp_total, p->elapsed,
-                                                  p->remaining, p->fraction, (unsigned long long)p->paths,
-                                                  (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False)
-                            : NULL;
-  Py_XDECREF(module);
-  return result;
+  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed, p->remaining, p->fraction,
+                      (unsigned long long)p->paths, (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
 }
 
 bool progress_call(void *user, const vlProgress *progress) {
@@ -126,13 +130,10 @@ static void log_message(void *user, vlLogLevel level, const vlError *where, cons
   PyGILState_STATE state = PyGILState_Ensure();
   PyObject *type, *value, *trace;
   PyErr_Fetch(&type, &value, &trace);
-  PyObject *module = PyImport_ImportModule("velo._errors");
-  PyObject *answer = module ? PyObject_CallMethod(module, "log", "issII", (int)level, message, where ? where->file : "",
-                                                  where ? where->line : 0, where ? where->column : 0)
-                            : NULL;
+  PyObject *answer = call_package("log", "(issII)", (int)level, message, where ? where->file : "",
+                                  where ? where->line : 0, where ? where->column : 0);
   if (!answer) PyErr_WriteUnraisable(NULL);
   Py_XDECREF(answer);
-  Py_XDECREF(module);
   PyErr_Restore(type, value, trace);
   PyGILState_Release(state);
 }

@@ -123,6 +123,8 @@ bool stop_call(void *user);                                 /* a vlStopFn; user 
 extern _Thread_local const Film *open_film;
 extern _Thread_local bool inside_pass;
 
+/* Calls a function of velo/_errors.py with arguments as Py_BuildValue("(...)") makes them. */
+PyObject *call_package(const char *name, const char *format, ...);
 /* Sets the exception of a result, or of `error` where it has a message; returns null. */
 PyObject *raise_result(vlResult result, const vlError *error);
 /* Sets velo.UsageError; returns null. */

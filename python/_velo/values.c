@@ -39,11 +39,9 @@ static bool same_word(const char *a, const char *b) {
 }
 
 bool raise_unknown(const char *thing, const char *name, PyObject *names) {
-  PyObject *module = names ? PyImport_ImportModule("velo._errors") : NULL;
-  PyObject *error = module ? PyObject_CallMethod(module, "unknown", "ssO", thing, name, names) : NULL;
+  PyObject *error = names ? call_package("unknown", "(ssO)", thing, name, names) : NULL;
   if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
   Py_XDECREF(error);
-  Py_XDECREF(module);
   Py_XDECREF(names);
   return false;
 }
@@ -127,12 +125,20 @@ const vlParameter *find_parameter(const vlParameter *rows, size_t count, const c
 
 /* ---- spectra and ids --------------------------------------------------------------------------------------------- */
 
+/* An attribute. The name is interned, since the interpreter's cache of methods keeps the str. */
+static PyObject *get_attribute(PyObject *object, const char *name) {
+  PyObject *text = PyUnicode_InternFromString(name);
+  PyObject *value = text ? PyObject_GetAttr(object, text) : NULL;
+  Py_XDECREF(text);
+  return value;
+}
+
 /* The parts of velo.Spectrum: kind, scale, value. */
 static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s, const char *what) {
   static const char *const kinds[] = {"constant", "rgb", "blackbody", "sampled", "named", NULL};
   static const char *const spaces[] = {"srgb", "dci_p3", "rec2020", "aces2065_1", NULL};
-  PyObject *kind = PyObject_GetAttrString(object, "kind"), *value = PyObject_GetAttrString(object, "value");
-  PyObject *scale = PyObject_GetAttrString(object, "scale"), *space = PyObject_GetAttrString(object, "space");
+  PyObject *kind = get_attribute(object, "kind"), *value = get_attribute(object, "value");
+  PyObject *scale = get_attribute(object, "scale"), *space = get_attribute(object, "space");
   int k = kind && value && scale && space ? find_choice(kinds, what, kind) : -1;
   int place = k >= 0 ? find_choice(spaces, what, space) : -1;
   bool fine = k >= 0 && place >= 0;
@@ -177,8 +183,12 @@ bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *w
     *s = vl_spectrum_named(name);
     return true;
   }
-  if (PyObject_HasAttrString(value, "kind") && PyObject_HasAttrString(value, "space"))
+  PyObject *space = get_attribute(value, "space");
+  if (space) {
+    Py_DECREF(space);
     return read_spectrum_object(keep, value, s, what);
+  }
+  PyErr_Clear();
   if (PyFloat_Check(value) || PyLong_Check(value) || (PyNumber_Check(value) && !PySequence_Check(value))) {
     double number = PyFloat_AsDouble(value);
     if (number == -1.0 && PyErr_Occurred()) return false;

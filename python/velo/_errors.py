@@ -69,6 +69,11 @@ def make(result: int, message: str, line: int, column: int) -> Error:
     return error
 
 
+def fork_error() -> ForkError:
+    """The error of an object of the parent process."""
+    return ForkError("this object was made before fork(), which does not copy its threads: make it again in this process")
+
+
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     """There is no `thing` of that name: the message has the nearest names."""
     known = sorted(set(names))

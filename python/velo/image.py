@@ -89,7 +89,7 @@ class Image(_velo.Image):
         return self._compare(reference, True)[1]
 
     def denoise(self, denoiser: str = "velo") -> "Image":
-        """A denoised copy. The image must have the channels "error" and should have "feature" (scene.render(channels=...)).
+        """A denoised copy. The image must have the channels "error" and should have "features" (scene.render(channels=...)).
         denoiser: velo, or oidn (the user's Open Image Denoise)."""
         if len(self.parts) == 1:
             return self._denoise(denoiser)

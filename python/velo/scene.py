@@ -272,7 +272,7 @@ class Scene(_velo.Scene):
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
                  denoise: bool) -> Image:
         image = film.image(exposure=settings.get("exposure"))
-        wanted = list(channels) + [name for name in ("error", "feature") if denoise and name not in channels]
+        wanted = list(channels) + [name for name in ("error", "features") if denoise and name not in channels]
         if wanted and film.spp:
             join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None))
         if not denoise:

@@ -15,6 +15,7 @@
 #include "velo/export.h"
 #include "velo/film.h"
 #include "velo/focus.h"
+#include "velo/group.h"
 #include "velo/image.h"
 #include "velo/paths.h"
 #include "velo/receipt.h"

@@ -1,0 +1,548 @@
+/* _velo/camera.c: cameras: keywords, projection of arrays, camera files, trajectories. */
+#include <math.h>
+#include <string.h>
+
+#include "module.h"
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static PyObject *camera_wrap(const vlCameraDef *def, const vlCamera *compiled, const char *warning, PyObject *keep) {
+  Camera *self = make_object(TYPE_CAMERA);
+  if (!self) return NULL;
+  self->def = *def;
+  self->camera = *compiled;
+  Py_XINCREF(keep);
+  self->keep = keep;
+  self->warning = warning ? PyUnicode_FromString(warning) : (Py_INCREF(Py_None), Py_None);
+  return (PyObject *)self;
+}
+
+PyObject *camera_object(const vlCameraDef *def, PyObject *keep) {
+  vlCamera compiled;
+  const char *warning = NULL;
+  vlError error = {0};
+  vlResult done = vl_camera_make(def, &compiled, &warning, &error);
+  if (done != VL_OK) return raise_result(done, &error);
+  return camera_wrap(def, &compiled, warning, keep);
+}
+
+static void camera_dealloc(Camera *self) {
+  Py_XDECREF(self->keep);
+  Py_XDECREF(self->warning);
+  free_object((PyObject *)self);
+}
+
+/* The numbers that give the focal length. One that is set replaces the others. */
+#define FOCAL(X)   \
+  X(fov)           \
+  X(view_distance) \
+  X(zoom)          \
+  X(pixel_size)    \
+  X(focal_mm) X(sensor_width_mm) X(fx) X(fy) X(screen_min_x) X(screen_max_x) X(screen_min_y) X(screen_max_y)
+
+static bool names_focal(const char *name) {
+#define SAME(field) \
+  if (strcmp(name, #field) == 0) return true;
+  FOCAL(SAME)
+#undef SAME
+  return strcmp(name, "K") == 0 || strcmp(name, "focallength") == 0 || strcmp(name, "d") == 0;
+}
+
+static bool set_k(vlCameraDef *def, PyObject *value) {
+  double k[9];
+  if (!numbers_copy(value, "K", 9, k)) return false;
+  if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
+    return raise_usage("K must be [fx skew cx; 0 fy cy; 0 0 1]"), false;
+  def->fx = k[0], def->skew = k[1], def->cx = k[2], def->fy = k[4], def->cy = k[5];
+  return true;
+}
+
+static bool set_coefficients(vlCameraDef *def, PyObject *value) {
+  Numbers n;
+  if (!numbers_read(value, 'd', "distortion_coefficients", &n)) return false;
+  bool fine = n.count <= 14;
+  if (fine) {
+    memcpy(def->distortion_coefficients, n.data, n.count * sizeof(double));
+    def->distortion_count = (uint32_t)n.count;
+  } else {
+    raise_usage("distortion_coefficients: at most 14 numbers");
+  }
+  numbers_release(&n);
+  return fine;
+}
+
+static bool set_shutter(vlCameraDef *def, PyObject *value) {
+  Numbers n;
+  if (!numbers_read(value, 'd', "shutter", &n)) return false;
+  bool fine = n.dimensions == 2 && n.shape[1] == 2 && n.shape[0] <= VL_SHUTTER_POINTS;
+  if (!fine) raise_usage("shutter: at most %d pairs of time and opening", VL_SHUTTER_POINTS);
+  const double *pairs = n.data;
+  for (size_t i = 0; fine && i < n.shape[0]; i++)
+    def->shutter_at[i] = pairs[2 * i], def->shutter_value[i] = pairs[2 * i + 1];
+  if (fine) def->shutter_points = (uint32_t)n.shape[0];
+  numbers_release(&n);
+  return fine;
+}
+
+/* colmap: (model, parameters) */
+static bool set_colmap(vlCameraDef *def, PyObject *keep, PyObject *value) {
+  PyObject *model = PySequence_GetItem(value, 0), *parameters = model ? PySequence_GetItem(value, 1) : NULL;
+  Numbers n = {0};
+  const char *name = parameters ? keep_text(keep, model) : NULL;
+  bool fine = name && numbers_read(parameters, 'd', "colmap", &n);
+  vlError error = {0};
+  if (fine) {
+    vlResult done = vl_camera_def_colmap(def, name, n.data, (uint32_t)n.count, &error);
+    fine = done == VL_OK || raise_result(done, &error) != NULL;
+    numbers_release(&n);
+  }
+  Py_XDECREF(model), Py_XDECREF(parameters);
+  return fine;
+}
+
+/* 1: set; 0: not one of these names; -1: an exception. */
+static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObject *value) {
+  bool fine;
+  if (strcmp(name, "K") == 0) {
+    fine = set_k(def, value);
+  } else if (strcmp(name, "world_from_camera") == 0) {
+    def->has_matrix = true;
+    fine = numbers_copy(value, name, 16, def->world_from_camera);
+  } else if (strcmp(name, "camera_from_world") == 0) {
+    vlCameraDef other = vl_default_camera_def(1, 1);
+    vlCamera inverse;
+    other.has_matrix = def->has_matrix = true;
+    fine = numbers_copy(value, name, 16, other.world_from_camera);
+    vlError error = {0};
+    vlResult done = fine ? vl_camera_make(&other, &inverse, NULL, &error) : VL_OK;
+    if (done != VL_OK) return raise_result(done, &error), -1;
+    if (fine) memcpy(def->world_from_camera, inverse.camera_from_world, sizeof inverse.camera_from_world);
+  } else if (strcmp(name, "world_from_camera_close") == 0) {
+    def->has_matrix_close = true;
+    fine = numbers_copy(value, name, 16, def->world_from_camera_close);
+  } else if (strcmp(name, "pose_times") == 0) {
+    fine = numbers_copy(value, name, 2, def->pose_times);
+  } else if (strcmp(name, "focus_pixel") == 0) {
+    fine = numbers_copy(value, name, 2, def->lens.focus_pixel);
+  } else if (strcmp(name, "shape") == 0) {
+    Numbers n;
+    fine = numbers_read(value, 'd', name, &n);
+    if (fine && (n.count < 1 || n.count > 2)) fine = raise_usage("shape: one or two numbers") != NULL;
+    for (size_t i = 0; fine && i < n.count; i++) def->shape[i] = ((const double *)n.data)[i];
+    numbers_release(&n);
+  } else if (strcmp(name, "distortion_coefficients") == 0) {
+    fine = set_coefficients(def, value);
+  } else if (strcmp(name, "shutter") == 0) {
+    fine = set_shutter(def, value);
+  } else if (strcmp(name, "colmap") == 0) {
+    fine = set_colmap(def, keep, value);
+  } else {
+    return 0;
+  }
+  return fine ? 1 : -1;
+}
+
+static const char *const special_names[] = {"K",
+                                            "world_from_camera",
+                                            "camera_from_world",
+                                            "world_from_camera_close",
+                                            "pose_times",
+                                            "focus_pixel",
+                                            "shape",
+                                            "distortion_coefficients",
+                                            "shutter",
+                                            "colmap",
+                                            NULL};
+
+static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
+  PyObject *name, *value;
+  Py_ssize_t position = 0;
+  bool focal = false;
+  const Target target = {(char *)def, keep, NULL, false};
+  while (PyDict_Next(keywords, &position, &name, &value)) {
+    const char *text = keep_text(keep, name);
+    if (!text) return false;
+    if (names_focal(text) && !focal) {
+#define UNSET(field) def->field = VL_UNSET;
+      FOCAL(UNSET)
+#undef UNSET
+      focal = true;
+    }
+    if (strcmp(text, "eye") == 0 || strcmp(text, "lookat") == 0 || strcmp(text, "up") == 0) def->has_matrix = false;
+    int special = set_special(def, keep, text, value);
+    if (special < 0) return false;
+    if (special) continue;
+    const vlParameter *row = find_parameter(camera_rows.rows, camera_rows.count, text);
+    const vlKindFamily *family = row ? NULL : vl_kind_family_find("cameras");
+    for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
+      row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, text);
+      if (row && row->type == VL_PARAMETER_BLOCK) row = NULL;
+    }
+    if (!row) {
+      PyObject *names = PyList_New(0);
+      for (int i = 0; names && special_names[i]; i++) {
+        PyObject *word = PyUnicode_FromString(special_names[i]);
+        if (!word || PyList_Append(names, word) < 0) Py_CLEAR(names);
+        Py_XDECREF(word);
+      }
+      if (names && !append_names(names, camera_rows.rows, camera_rows.count)) Py_CLEAR(names);
+      return raise_unknown("keyword of a camera", text, names);
+    }
+    if (!set_parameter(&target, row, value)) return false;
+  }
+  return true;
+}
+
+/* camera_new(width, height, keywords) */
+static PyObject *camera_new(PyObject *module, PyObject *arguments) {
+  (void)module;
+  unsigned width, height;
+  PyObject *keywords;
+  if (!PyArg_ParseTuple(arguments, "IIO!:camera_new", &width, &height, &PyDict_Type, &keywords)) return NULL;
+  vlCameraDef def = vl_default_camera_def(width, height);
+  PyObject *keep = PyList_New(0);
+  PyObject *result = keep && set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
+  Py_XDECREF(keep);
+  return result;
+}
+
+/* _replace(keywords): this camera with other parameters. */
+static PyObject *camera_replace(Camera *self, PyObject *keywords) {
+  vlCameraDef def = self->def;
+  PyObject *keep = PyList_New(0);
+  if (!keep || (self->keep && !keep_object(keep, self->keep)) || !PyDict_Check(keywords)) return Py_XDECREF(keep), NULL;
+  PyObject *result = set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
+  Py_XDECREF(keep);
+  return result;
+}
+
+/* ---- changes of the compiled camera ------------------------------------------------------------------------------ */
+
+static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made, const vlError *error) {
+  if (done != VL_OK) return raise_result(done, error);
+  vlCameraDef def = self->def;
+  def.width = made->width, def.height = made->height;
+  def.has_matrix = true;
+  memcpy(def.world_from_camera, made->world_from_camera, sizeof def.world_from_camera);
+  return camera_wrap(&def, made, NULL, self->keep);
+}
+
+static PyObject *camera_resize(Camera *self, PyObject *arguments) {
+  unsigned width, height;
+  if (!PyArg_ParseTuple(arguments, "II:_resize", &width, &height)) return NULL;
+  if (width == self->camera.width && height == self->camera.height)
+    return Py_INCREF((PyObject *)self), (PyObject *)self;
+  vlCamera made;
+  vlResult done = vl_camera_resize(&self->camera, width, height, &made);
+  PyObject *result = with_compiled(self, done, &made, NULL);
+  if (result) {
+    vlCameraDef *def = &((Camera *)result)->def;
+#define UNSET(field) def->field = VL_UNSET;
+    FOCAL(UNSET)
+#undef UNSET
+    def->fx = made.fx, def->fy = made.fy, def->cx = made.cx, def->cy = made.cy, def->skew = made.skew;
+  }
+  return result;
+}
+static PyObject *camera_move(Camera *self, PyObject *matrix) {
+  double m[16];
+  if (!numbers_copy(matrix, "world_from_camera", 16, m)) return NULL;
+  vlCamera made;
+  vlError error = {0};
+  vlResult done = vl_camera_move(&self->camera, m, &made, &error);
+  return with_compiled(self, done, &made, &error);
+}
+static PyObject *camera_at(Camera *self, PyObject *time) {
+  double seconds = PyFloat_AsDouble(time);
+  if (seconds == -1.0 && PyErr_Occurred()) return NULL;
+  vlCamera made;
+  vlResult done = vl_camera_at(&self->camera, seconds, &made);
+  return with_compiled(self, done, &made, NULL);
+}
+static PyObject *camera_stereo(Camera *self, PyObject *unused) {
+  (void)unused;
+  vlCamera eyes[2];
+  vlError error = {0};
+  vlResult done = vl_camera_stereo(&self->def, &eyes[0], &eyes[1], NULL, &error);
+  if (done != VL_OK) return raise_result(done, &error);
+  return Py_BuildValue("(NN)", with_compiled(self, VL_OK, &eyes[0], NULL), with_compiled(self, VL_OK, &eyes[1], NULL));
+}
+
+/* ---- projection of arrays ---------------------------------------------------------------------------------------- */
+
+static bool read_rows(PyObject *object, const char *what, size_t columns, Numbers *n) {
+  if (!numbers_read(object, 'd', what, n)) return false;
+  if (n->count % columns == 0 && (n->dimensions == 0 || n->shape[n->dimensions - 1] == columns)) return true;
+  numbers_release(n);
+  return raise_usage("%s: an array of rows of %zu numbers", what, columns), false;
+}
+
+/* _project(points): pixels, z, valid as bytearrays. */
+static PyObject *camera_project(Camera *self, PyObject *points) {
+  Numbers n;
+  if (!read_rows(points, "points", 3, &n)) return NULL;
+  size_t count = n.count / 3;
+  void *data[3] = {NULL, NULL, NULL};
+  PyObject *pixels = make_bytes(count * 16, &data[0]), *z = make_bytes(count * 8, &data[1]),
+           *valid = make_bytes(count, &data[2]);
+  if (pixels && z && valid) {
+    PyThreadState *thread = PyEval_SaveThread();
+    vl_camera_project_batch(&self->camera, count, n.data, data[0], data[1], data[2]);
+    PyEval_RestoreThread(thread);
+  }
+  numbers_release(&n);
+  return Py_BuildValue("(NNN)", pixels, z, valid);
+}
+
+/* _unproject(pixels): origins, directions, valid as bytearrays. */
+static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
+  Numbers n;
+  if (!read_rows(pixels, "pixels", 2, &n)) return NULL;
+  size_t count = n.count / 2;
+  void *data[3] = {NULL, NULL, NULL};
+  PyObject *origins = make_bytes(count * 24, &data[0]), *directions = make_bytes(count * 24, &data[1]),
+           *valid = make_bytes(count, &data[2]);
+  if (origins && directions && valid) {
+    PyThreadState *thread = PyEval_SaveThread();
+    vl_camera_unproject_batch(&self->camera, count, n.data, data[0], data[1], data[2]);
+    PyEval_RestoreThread(thread);
+  }
+  numbers_release(&n);
+  return Py_BuildValue("(NNN)", origins, directions, valid);
+}
+
+static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
+  double x, y;
+  if (!PyArg_ParseTuple(arguments, "dd:solid_angle", &x, &y)) return NULL;
+  return PyFloat_FromDouble(vl_camera_solid_angle(&self->camera, x, y));
+}
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+static PyObject *numbers_tuple(const double *values, int count) {
+  PyObject *tuple = PyTuple_New(count);
+  for (int i = 0; tuple && i < count; i++) PyTuple_SetItem(tuple, i, PyFloat_FromDouble(values[i]));
+  return tuple;
+}
+static PyObject *camera_k(Camera *self, void *unused) {
+  (void)unused;
+  const vlCamera *c = &self->camera;
+  const double k[9] = {c->fx, c->skew, c->cx, 0, c->fy, c->cy, 0, 0, 1};
+  return numbers_tuple(k, 9);
+}
+static PyObject *camera_pose(Camera *self, void *unused) {
+  (void)unused;
+  return numbers_tuple(self->camera.world_from_camera, 16);
+}
+static PyObject *camera_inverse(Camera *self, void *unused) {
+  (void)unused;
+  return numbers_tuple(self->camera.camera_from_world, 16);
+}
+static PyObject *camera_size(Camera *self, void *unused) {
+  (void)unused;
+  return Py_BuildValue("(II)", self->camera.width, self->camera.height);
+}
+static PyObject *camera_projection(Camera *self, void *unused) {
+  (void)unused;
+  return PyUnicode_FromString(vl_projection_name(self->camera.projection));
+}
+static PyObject *camera_coefficients(Camera *self, void *unused) {
+  (void)unused;
+  return numbers_tuple(self->def.distortion_coefficients, (int)self->def.distortion_count);
+}
+static PyObject *camera_outside(Camera *self, void *unused) {
+  (void)unused;
+  return PyFloat_FromDouble(self->camera.outside);
+}
+static PyObject *camera_warning(Camera *self, void *unused) {
+  (void)unused;
+  Py_INCREF(self->warning);
+  return self->warning;
+}
+static PyObject *camera_get(Camera *self, PyObject *name) {
+  PyObject *bytes = PyUnicode_AsUTF8String(name);
+  if (!bytes) return NULL;
+  const vlParameter *row = find_parameter(camera_rows.rows, camera_rows.count, PyBytes_AsString(bytes));
+  PyObject *result =
+      row ? get_parameter((const char *)&self->def, row) : raise_usage("a camera has no %s", PyBytes_AsString(bytes));
+  Py_DECREF(bytes);
+  return result;
+}
+
+/* ---- camera files ------------------------------------------------------------------------------------------------ */
+
+static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, PyObject *frame, PyObject *drop,
+                     const char **drops) {
+  const char *known[VL_CAMERA_DIALECT_COUNT + 1] = {0};
+  for (int i = 0; i < VL_CAMERA_DIALECT_COUNT; i++) known[i] = vl_camera_dialect_name((vlCameraDialect)i);
+  if (dialect != Py_None) {
+    int found = find_choice(known, "dialect", dialect);
+    if (found < 0) return false;
+    def->dialect = (vlCameraDialect)found;
+  }
+  if (frame != Py_None) {
+    PyObject *text = PyObject_Str(frame);
+    def->frame = text ? keep_text(keep, text) : NULL;
+    Py_XDECREF(text);
+    if (!def->frame) return false;
+  }
+  Py_ssize_t count = drop == Py_None ? 0 : PySequence_Size(drop);
+  if (count < 0 || count > 32) return raise_usage("drop: at most 32 names of fields"), false;
+  for (Py_ssize_t i = 0; i < count; i++) {
+    PyObject *item = PySequence_GetItem(drop, i);
+    drops[i] = item ? keep_text(keep, item) : NULL;
+    Py_XDECREF(item);
+    if (!drops[i]) return false;
+  }
+  def->drop = drops;
+  def->drop_count = (uint32_t)count;
+  return true;
+}
+
+/* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name, size_assumed */
+static PyObject *camera_read(PyObject *module, PyObject *arguments) {
+  (void)module;
+  Context *context;
+  PyObject *path, *dialect, *frame, *keep = PyList_New(0), *result = NULL;
+  vlCameraFileDef def = vl_default_camera_file_def();
+  const char *file, *drops[32];
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "O!OOOII:camera_read", base_types[TYPE_CONTEXT], &context, &path, &dialect, &frame,
+                        &def.width, &def.height) ||
+      !file_def(&def, keep, dialect, frame, Py_None, drops) || !(file = keep_path(keep, path)))
+    goto end;
+  Call call;
+  if (!call_begin(&call, context, NULL)) goto end;
+  vlError error = {0};
+  vlCameraRecord record;
+  vlResult done = vl_camera_read(context->context, file, &def, &record, &error);
+  call_end(&call);
+  if (done != VL_OK) {
+    raise_result(done, &error);
+    goto end;
+  }
+  PyObject *camera = camera_object(&record.camera, NULL);
+  if (camera)
+    result = Py_BuildValue("(NsIsN)", camera, vl_camera_dialect_name(record.dialect), record.frames, record.name,
+                           PyBool_FromLong(record.size_assumed));
+end:
+  Py_XDECREF(keep);
+  return result;
+}
+
+/* _write(context, path, dialect, name, drop) */
+static PyObject *camera_write(Camera *self, PyObject *arguments) {
+  Context *context;
+  PyObject *path, *dialect, *drop, *keep = PyList_New(0);
+  const char *name, *file, *drops[32];
+  vlCameraFileDef def = vl_default_camera_file_def();
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "O!OOsO:_write", base_types[TYPE_CONTEXT], &context, &path, &dialect, &name,
+                        &drop) ||
+      !file_def(&def, keep, dialect, Py_None, drop, drops) || !(file = keep_path(keep, path)))
+    return Py_XDECREF(keep), NULL;
+  vlCameraRecord record = {.camera = self->def, .frames = 1};
+  if (strlen(name) >= sizeof record.name) return Py_DECREF(keep), raise_usage("the camera's name is too long");
+  memcpy(record.name, name, strlen(name));
+  Call call;
+  if (!call_begin(&call, context, NULL)) return Py_DECREF(keep), NULL;
+  vlError error = {0};
+  vlResult done = vl_camera_write(context->context, file, &def, &record, &error);
+  call_end(&call);
+  Py_DECREF(keep);
+  if (done != VL_OK) return raise_result(done, &error);
+  Py_RETURN_NONE;
+}
+
+/* trajectory_read(context, path, dialect, width, height): a list of (name, camera or None, matrix, time or None) */
+static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
+  (void)module;
+  Context *context;
+  PyObject *path, *dialect, *keep = PyList_New(0), *result = NULL;
+  vlCameraFileDef def = vl_default_camera_file_def();
+  const char *file, *drops[32];
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "O!OOII:trajectory_read", base_types[TYPE_CONTEXT], &context, &path, &dialect,
+                        &def.width, &def.height) ||
+      !file_def(&def, keep, dialect, Py_None, Py_None, drops) || !(file = keep_path(keep, path)))
+    goto end;
+  Call call;
+  if (!call_begin(&call, context, NULL)) goto end;
+  vlError error = {0};
+  vlTrajectory *trajectory = NULL;
+  vlResult done = vl_trajectory_load(context->context, file, &def, &trajectory, &error);
+  call_end(&call);
+  if (done != VL_OK) {
+    raise_result(done, &error);
+    goto end;
+  }
+  result = PyList_New(0);
+  for (uint32_t i = 0; result && i < vl_trajectory_frames(trajectory); i++) {
+    vlTrajectoryFrame frame;
+    vl_trajectory_frame(trajectory, i, &frame);
+    const vlCameraRecord *record = frame.camera < 0 ? NULL : vl_trajectory_camera(trajectory, (uint32_t)frame.camera);
+    PyObject *camera = Py_None, *time = Py_None;
+    if (record) {
+      vlCameraDef own = record->camera;
+      own.has_matrix = true;
+      memcpy(own.world_from_camera, frame.world_from_camera, sizeof own.world_from_camera);
+      camera = camera_object(&own, NULL);
+    } else {
+      Py_INCREF(Py_None);
+    }
+    if (!isnan(frame.time))
+      time = PyFloat_FromDouble(frame.time);
+    else
+      Py_INCREF(Py_None);
+    PyObject *entry =
+        camera ? Py_BuildValue("(sNNN)", frame.name, camera, numbers_tuple(frame.world_from_camera, 16), time) : NULL;
+    if (!entry || PyList_Append(result, entry) < 0) Py_CLEAR(result);
+    Py_XDECREF(entry);
+  }
+  vl_trajectory_destroy(trajectory);
+end:
+  Py_XDECREF(keep);
+  return result;
+}
+
+static PyMethodDef camera_methods[] = {
+    {"_replace", (PyCFunction)camera_replace, METH_O, "This camera with other parameters."},
+    {"_resize", (PyCFunction)camera_resize, METH_VARARGS, "For another image size."},
+    {"_move", (PyCFunction)camera_move, METH_O, "With another pose."},
+    {"_at", (PyCFunction)camera_at, METH_O, "Frozen at a time."},
+    {"_stereo", (PyCFunction)camera_stereo, METH_NOARGS, "Both eyes."},
+    {"_project", (PyCFunction)camera_project, METH_O, "Points to pixels."},
+    {"_unproject", (PyCFunction)camera_unproject, METH_O, "Pixels to rays."},
+    {"solid_angle", (PyCFunction)camera_solid_angle, METH_VARARGS,
+     "solid_angle(x, y)\n--\n\nSolid angle of the pixel around the film point (x, y), steradians."},
+    {"_write", (PyCFunction)camera_write, METH_VARARGS, "Writes a camera file."},
+    {"_get", (PyCFunction)camera_get, METH_O, "A parameter as it was given."},
+    {NULL, NULL, 0, NULL},
+};
+static PyGetSetDef camera_members[] = {
+    {"_k", (getter)camera_k, NULL, "K by rows.", NULL},
+    {"_world_from_camera", (getter)camera_pose, NULL, "The pose by rows.", NULL},
+    {"_camera_from_world", (getter)camera_inverse, NULL, "Its inverse.", NULL},
+    {"resolution", (getter)camera_size, NULL, "Width and height, pixels.", NULL},
+    {"projection", (getter)camera_projection, NULL, "Name of the projection.", NULL},
+    {"distortion_coefficients", (getter)camera_coefficients, NULL, "Coefficients of the distortion.", NULL},
+    {"outside", (getter)camera_outside, NULL, "Share of the image without rays, 0 to 1.", NULL},
+    {"warning", (getter)camera_warning, NULL, "What is questionable about the parameters; None: nothing.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot camera_slots[] = {
+    {Py_tp_doc, "A compiled camera. It never changes."},
+    {Py_tp_dealloc, camera_dealloc},
+    {Py_tp_methods, camera_methods},
+    {Py_tp_getset, camera_members},
+    {0, NULL},
+};
+PyType_Spec camera_spec = {"velo._velo.Camera", sizeof(Camera), 0,
+                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, camera_slots};
+
+PyMethodDef camera_functions[] = {
+    {"camera_new", camera_new, METH_VARARGS, "A camera: width, height, keywords."},
+    {"camera_read", camera_read, METH_VARARGS, "Reads a camera file."},
+    {"trajectory_read", trajectory_read, METH_VARARGS, "Reads a file of many poses."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,190 @@
+/* _velo/context.c: contexts, calls without the GIL, callbacks, exceptions. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "module.h"
+
+_Thread_local const Film *open_film;
+_Thread_local bool inside_pass;
+
+/* Calls a function of velo/_errors.py. The name is looked up in the module's dict: getattr would keep each new str in
+ * the interpreter's cache of methods. */
+PyObject *call_package(const char *name, const char *format, ...) {
+  PyObject *module = PyImport_ImportModule("velo._errors");
+  PyObject *function = module ? PyDict_GetItemString(PyModule_GetDict(module), name) : NULL;
+  va_list arguments;
+  va_start(arguments, format);
+  PyObject *tuple = function ? Py_VaBuildValue(format, arguments) : NULL;
+  va_end(arguments);
+  PyObject *result = tuple ? PyObject_CallObject(function, tuple) : NULL;
+  if (module && !function) PyErr_Format(PyExc_ImportError, "velo._errors has no %s", name);
+  Py_XDECREF(tuple);
+  Py_XDECREF(module);
+  return result;
+}
+
+/* ---- exceptions -------------------------------------------------------------------------------------------------- */
+
+static PyObject *raise_error(vlResult result, const char *message, const char *file, unsigned line, unsigned column) {
+  PyObject *error = call_package("make", "(isII)", (int)result, message, line, column);
+  if (error && file && file[0]) {
+    PyObject *text = PyUnicode_DecodeFSDefault(file);
+    if (!text || PyObject_SetAttrString(error, "file", text) < 0) Py_CLEAR(error);
+    Py_XDECREF(text);
+  }
+  if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+  Py_XDECREF(error);
+  return NULL;
+}
+
+PyObject *raise_result(vlResult result, const vlError *error) {
+  if (PyErr_Occurred()) return NULL;
+  const char *message = error && error->message[0] ? error->message : vl_result_name(result);
+  return error ? raise_error(result, message, error->file, error->line, error->column)
+               : raise_error(result, message, NULL, 0, 0);
+}
+
+PyObject *raise_usage(const char *format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return raise_error(VL_ERROR_ARGUMENT, text, NULL, 0, 0);
+}
+
+/* ---- calls ------------------------------------------------------------------------------------------------------- */
+
+bool context_is_ours(const Context *context) {
+  return context && context->context && context->pid == (long)getpid();
+}
+
+bool context_check(const Context *context) {
+  if (!context || !context->context) return raise_usage("the context is closed"), false;
+  if (context->pid != (long)getpid()) {
+    PyObject *error = call_package("fork_error", "()");
+    if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+    Py_XDECREF(error);
+    return false;
+  }
+  if (inside_pass) return raise_usage("a progress callback may use velo only when progress.pass_done is true"), false;
+  return true;
+}
+
+bool call_begin(Call *call, const Context *context, bool *busy) {
+  *call = (Call){0};
+  if (!context_check(context)) return false;
+  if (busy && *busy) return raise_usage("another thread is using this object"), false;
+  if (busy) *busy = true;
+  call->busy = busy;
+  call->thread = PyEval_SaveThread();
+  return true;
+}
+
+void call_end(Call *call) {
+  PyEval_RestoreThread(call->thread);
+  if (call->busy) *call->busy = false;
+}
+
+static PyObject *progress_object(const vlProgress *p) {
+  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed, p->remaining, p->fraction,
+                      (unsigned long long)p->paths, (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
+}
+
+bool progress_call(void *user, const vlProgress *progress) {
+  Progress *p = user;
+  PyEval_RestoreThread(p->call->thread);
+  bool go_on = !PyErr_Occurred() && PyErr_CheckSignals() == 0;
+  if (go_on && p->callback) {
+    const Film *film = open_film;
+    bool pass = inside_pass;
+    if (progress->pass_done)
+      open_film = p->film;
+    else
+      inside_pass = true;
+    PyObject *object = progress_object(progress);
+    PyObject *answer = object ? PyObject_CallFunctionObjArgs(p->callback, object, NULL) : NULL;
+    open_film = film;
+    inside_pass = pass;
+    go_on = answer && answer != Py_False;
+    Py_XDECREF(answer);
+    Py_XDECREF(object);
+  }
+  p->call->thread = PyEval_SaveThread();
+  return go_on;
+}
+
+bool stop_call(void *user) {
+  Call *call = user;
+  PyEval_RestoreThread(call->thread);
+  bool stop = PyErr_Occurred() || PyErr_CheckSignals() != 0;
+  call->thread = PyEval_SaveThread();
+  return stop;
+}
+
+/* ---- contexts ---------------------------------------------------------------------------------------------------- */
+
+static void log_message(void *user, vlLogLevel level, const vlError *where, const char *message) {
+  (void)user;
+  PyGILState_STATE state = PyGILState_Ensure();
+  PyObject *type, *value, *trace;
+  PyErr_Fetch(&type, &value, &trace);
+  PyObject *answer = call_package("log", "(issII)", (int)level, message, where ? where->file : "",
+                                  where ? where->line : 0, where ? where->column : 0);
+  if (!answer) PyErr_WriteUnraisable(NULL);
+  Py_XDECREF(answer);
+  PyErr_Restore(type, value, trace);
+  PyGILState_Release(state);
+}
+
+static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
+  static char *names[] = {"threads", "max_memory", NULL};
+  vlContextDef def = vl_default_context_def();
+  unsigned long long memory = 0;
+  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|IK:Context", names, &def.threads, &memory)) return NULL;
+  if (def.threads > 4096) return raise_usage("threads must be at most 4096");
+  def.max_memory = (size_t)memory;
+  def.log = log_message;
+  Context *self = (Context *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
+  if (!self) return NULL;
+  self->pid = (long)getpid();
+  vlResult result = vl_context_create(&def, &self->context);
+  if (result == VL_OK) return (PyObject *)self;
+  Py_DECREF((PyObject *)self);
+  return raise_result(result, NULL);
+}
+
+static void context_dealloc(Context *self) {
+  if (context_is_ours(self)) {
+    PyThreadState *thread = PyEval_SaveThread();
+    vl_context_destroy(self->context);
+    PyEval_RestoreThread(thread);
+  }
+  free_object((PyObject *)self);
+}
+
+static PyObject *context_memory(Context *self, void *unused) {
+  (void)unused;
+  if (!context_check(self)) return NULL;
+  return PyLong_FromSize_t(vl_context_memory(self->context, NULL));
+}
+static PyObject *context_threads(Context *self, void *unused) {
+  (void)unused;
+  return PyLong_FromUnsignedLong(vl_context_threads(self->context));
+}
+
+static PyGetSetDef context_members[] = {
+    {"memory", (getter)context_memory, NULL, "Bytes that the context and its objects hold now.", NULL},
+    {"threads", (getter)context_threads, NULL, "Number of worker threads.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot context_slots[] = {
+    {Py_tp_doc, "Context(threads=processors, max_memory=0): memory, log and worker threads of all objects."},
+    {Py_tp_new, context_new},
+    {Py_tp_dealloc, context_dealloc},
+    {Py_tp_getset, context_members},
+    {0, NULL},
+};
+PyType_Spec context_spec = {"velo._velo.Context", sizeof(Context), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE,
+                            context_slots};

@@ -1,0 +1,132 @@
+/* _velo/module.c: the module: its classes, and functions without an object. */
+#include "module.h"
+
+#include <string.h>
+
+PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
+static const char *const type_names[TYPE_COUNT] = {"Context", "Scene",  "World",    "Film",  "Image",
+                                                   "Plane",   "Camera", "Settings", "Handle"};
+
+void *make_object(int type) {
+  allocfunc allocate = (allocfunc)PyType_GetSlot(types[type], Py_tp_alloc);
+  return allocate(types[type], 0);
+}
+
+void free_object(PyObject *self) {
+  PyTypeObject *type = Py_TYPE(self);
+  freefunc release = (freefunc)PyType_GetSlot(type, Py_tp_free);
+  release(self);
+  Py_DECREF(type);
+}
+
+bool is_object(PyObject *object, int type) {
+  return PyObject_TypeCheck(object, base_types[type]);
+}
+
+/* set_type(name, class): objects of this name are of this class from now on. */
+static PyObject *set_type(PyObject *module, PyObject *arguments) {
+  (void)module;
+  const char *name;
+  PyObject *type;
+  if (!PyArg_ParseTuple(arguments, "sO:set_type", &name, &type)) return NULL;
+  for (int i = 0; i < TYPE_COUNT; i++) {
+    if (strcmp(name, type_names[i]) != 0) continue;
+    if (!PyType_Check(type) || !PyType_IsSubtype((PyTypeObject *)type, base_types[i]))
+      return PyErr_Format(PyExc_TypeError, "not a subclass of %s", name);
+    Py_INCREF(type);
+    Py_DECREF(types[i]);
+    types[i] = (PyTypeObject *)type;
+    Py_RETURN_NONE;
+  }
+  return PyErr_Format(PyExc_ValueError, "no class %s", name);
+}
+
+static PyObject *version(PyObject *module, PyObject *unused) {
+  (void)module, (void)unused;
+  return PyUnicode_FromString(vl_version()->text);
+}
+
+static PyObject *texts(const char *(*name)(uint32_t)) {
+  PyObject *list = PyList_New(0);
+  for (uint32_t i = 0; list && name(i); i++) {
+    PyObject *text = PyUnicode_FromString(name(i));
+    if (!text || PyList_Append(list, text) < 0) Py_CLEAR(list);
+    Py_XDECREF(text);
+  }
+  return list;
+}
+
+static PyObject *spectrum_names(PyObject *module, PyObject *unused) {
+  (void)module, (void)unused;
+  return texts(vl_spectrum_name);
+}
+static PyObject *sensor_names(PyObject *module, PyObject *unused) {
+  (void)module, (void)unused;
+  return texts(vl_sensor_name);
+}
+static PyObject *channel_names(PyObject *module, PyObject *unused) {
+  (void)module, (void)unused;
+  return texts(vl_channel_name);
+}
+
+/* kinds(family): {kind: {keyword: description}} of a family of velo/schema.h. */
+static PyObject *kinds(PyObject *module, PyObject *arguments) {
+  (void)module;
+  const char *name;
+  if (!PyArg_ParseTuple(arguments, "s:kinds", &name)) return NULL;
+  const vlKindFamily *family = vl_kind_family_find(name);
+  if (!family) return raise_usage("there is no family of kinds %s", name);
+  PyObject *result = PyDict_New();
+  for (uint32_t k = 0; result && k < family->kind_count; k++) {
+    const vlKindRow *row = family->rows[k];
+    PyObject *words = PyDict_New();
+    for (uint32_t i = 0; words && i < row->parameter_count; i++) {
+      const vlParameter *p = &row->parameters[i];
+      if (p->flags & VL_PARAMETER_SHORTHAND || !p->member || !p->member[0]) continue;
+      const char *dot = strrchr(p->member, '.');
+      PyObject *text = PyUnicode_FromString(p->description ? p->description : "");
+      if (!text || PyDict_SetItemString(words, dot ? dot + 1 : p->member, text) < 0) Py_CLEAR(words);
+      Py_XDECREF(text);
+    }
+    char kind[64] = "";
+    for (size_t i = 0; family->constants[k][i] && i + 1 < sizeof kind; i++) {
+      char c = family->constants[k][i];
+      kind[i] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    }
+    if (!words || PyDict_SetItemString(result, kind, words) < 0) Py_CLEAR(result);
+    Py_XDECREF(words);
+  }
+  return result;
+}
+
+static PyMethodDef functions[] = {
+    {"set_type", set_type, METH_VARARGS, "Makes objects of this name instances of this class."},
+    {"version", version, METH_NOARGS, "The library's version."},
+    {"spectrum_names", spectrum_names, METH_NOARGS, "Names of the library's spectra."},
+    {"sensor_names", sensor_names, METH_NOARGS, "Names of the library's sensors."},
+    {"channel_names", channel_names, METH_NOARGS, "Names of ground truth channels."},
+    {"kinds", kinds, METH_VARARGS, "Kinds of a family with their keywords."},
+    {NULL, NULL, 0, NULL},
+};
+
+static struct PyModuleDef module_def = {PyModuleDef_HEAD_INIT, .m_name = "velo._velo",
+                                        .m_doc = "velo's library for the Python package velo.", .m_size = -1,
+                                        .m_methods = functions};
+
+PyMODINIT_FUNC PyInit__velo(void) {
+  PyType_Spec *specs[TYPE_COUNT] = {&context_spec, &scene_spec,  &world_spec,    &film_spec,  &image_spec,
+                                    &plane_spec,   &camera_spec, &settings_spec, &handle_spec};
+  PyObject *module = PyModule_Create(&module_def);
+  if (!module) return NULL;
+  for (int i = 0; i < TYPE_COUNT; i++) {
+    PyObject *type = PyType_FromSpec(specs[i]);
+    if (!type || PyModule_AddObjectRef(module, type_names[i], type) < 0) return NULL;
+    base_types[i] = (PyTypeObject *)type;
+    Py_INCREF(type);
+    types[i] = (PyTypeObject *)type;
+  }
+  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions, render_functions};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
+    if (PyModule_AddFunctions(module, tables[i]) < 0) return NULL;
+  return module;
+}

@@ -1,0 +1,197 @@
+/* _velo/module.h: what the files of the extension module share. The module uses velo's public headers and CPython's
+ * stable ABI only. Its classes are thin: python/velo adds the convenient methods. */
+#ifndef VELO_PYTHON_MODULE_H
+#define VELO_PYTHON_MODULE_H
+
+#ifndef Py_LIMITED_API
+#define Py_LIMITED_API 0x030B0000
+#endif
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#include <velo/schema.h>
+#include <velo/velo.h>
+
+/* ---- objects ----------------------------------------------------------------------------------------------------- */
+
+typedef struct Context {
+  PyObject_HEAD vlContext *context;
+  long pid; /* of the process that made it: after fork() its threads are missing */
+} Context;
+
+typedef struct Scene {
+  PyObject_HEAD Context *context;
+  vlScene *scene;
+  PyObject *keep; /* list: what the scene's defs point at */
+  bool busy;      /* a thread works on it without the GIL */
+} Scene;
+
+typedef struct World {
+  PyObject_HEAD Context *context;
+  vlWorld *world;
+  unsigned users; /* calls in progress */
+} World;
+
+typedef struct Film {
+  PyObject_HEAD Context *context;
+  vlFilm *film;
+  vlFilmDef def;
+  char sensor[64];
+  bool busy;
+} Film;
+
+typedef struct Image {
+  PyObject_HEAD Context *context;
+  vlImage *image;
+  Py_ssize_t exports; /* buffers in use */
+} Image;
+
+/* Channels `first` to `first + count - 1` of an image, as a buffer; flat: without the last dimension. */
+typedef struct Plane {
+  PyObject_HEAD Image *image;
+  uint32_t first, count;
+  bool flat;
+} Plane;
+
+typedef struct Camera {
+  PyObject_HEAD vlCameraDef def;
+  vlCamera camera;
+  PyObject *keep;    /* what the lens points at; may be null */
+  PyObject *warning; /* str or None */
+} Camera;
+
+/* A copy of a scene's defs, changed by keyword arguments. */
+typedef struct Settings {
+  PyObject_HEAD vlSceneDefs defs;
+  PyObject *keep; /* list */
+} Settings;
+
+/* The id of a texture, material, medium, emission, shape or group in a scene. */
+typedef struct Handle {
+  PyObject_HEAD Scene *scene;
+  const char *family; /* of velo/schema.h, or "groups" */
+  uint32_t index;
+} Handle;
+
+/* The classes that the module makes objects of. The Python package replaces them by its subclasses. */
+enum {
+  TYPE_CONTEXT,
+  TYPE_SCENE,
+  TYPE_WORLD,
+  TYPE_FILM,
+  TYPE_IMAGE,
+  TYPE_PLANE,
+  TYPE_CAMERA,
+  TYPE_SETTINGS,
+  TYPE_HANDLE,
+  TYPE_COUNT
+};
+extern PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
+extern PyType_Spec context_spec, scene_spec, world_spec, film_spec, image_spec, plane_spec, camera_spec, settings_spec,
+    handle_spec;
+
+/* A new object of a class, all zero; null with an exception. */
+void *make_object(int type);
+/* The end of every tp_dealloc. */
+void free_object(PyObject *self);
+bool is_object(PyObject *object, int type);
+
+/* ---- calls of the library ---------------------------------------------------------------------------------------- */
+
+/* A call of the library without the GIL. */
+typedef struct Call {
+  PyThreadState *thread;
+  bool *busy;
+} Call;
+/* Checks that the context may be used by this process and thread, marks `busy` (may be null) and releases the GIL.
+ * False: an exception is set. */
+bool call_begin(Call *call, const Context *context, bool *busy);
+void call_end(Call *call);
+/* The same check alone, for calls that keep the GIL. */
+bool context_check(const Context *context);
+/* Whether the context belongs to this process, without an exception. */
+bool context_is_ours(const Context *context);
+
+/* The progress callback of a render and what it needs. */
+typedef struct Progress {
+  Call *call;
+  PyObject *callback; /* null: none */
+  Film *film;
+} Progress;
+bool progress_call(void *user, const vlProgress *progress); /* a vlProgressFn; user is a Progress */
+bool stop_call(void *user);                                 /* a vlStopFn; user is a Call */
+/* The film that this thread may read, although a render runs: inside a callback after a pass. */
+extern _Thread_local const Film *open_film;
+extern _Thread_local bool inside_pass;
+
+/* Calls a function of velo/_errors.py with arguments as Py_BuildValue("(...)") makes them. */
+PyObject *call_package(const char *name, const char *format, ...);
+/* Sets the exception of a result, or of `error` where it has a message; returns null. */
+PyObject *raise_result(vlResult result, const vlError *error);
+/* Sets velo.UsageError; returns null. */
+PyObject *raise_usage(const char *format, ...);
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
+
+/* Numbers of a buffer or of nested sequences, as doubles, floats or uint32s. */
+typedef struct Numbers {
+  Py_buffer view; /* view.obj null: not used */
+  void *owned;    /* null: data is the view's */
+  const void *data;
+  size_t count;   /* of all numbers */
+  int dimensions; /* at most 4 */
+  size_t shape[4];
+} Numbers;
+/* type: 'd', 'f' or 'I'. False with an exception that names `what`. */
+bool numbers_read(PyObject *object, char type, const char *what, Numbers *numbers);
+void numbers_release(Numbers *numbers);
+/* Exactly `count` doubles. */
+bool numbers_copy(PyObject *object, const char *what, size_t count, double *result);
+/* A bytearray with `size` bytes; *data points at them. */
+PyObject *make_bytes(size_t size, void **data);
+
+/* Where a parameter's value comes from and what keeps it alive. */
+typedef struct Target {
+  char *def;
+  PyObject *keep;     /* list */
+  const Scene *scene; /* of textures and the like; may be null */
+  bool spectrum;      /* textures: which member EITHER_INPUT sets */
+} Target;
+/* The parameter with that name among `count`: its member, the member's last word, or its name in files. */
+const vlParameter *find_parameter(const vlParameter *rows, size_t count, const char *name);
+bool set_parameter(const Target *target, const vlParameter *row, PyObject *value);
+PyObject *get_parameter(const char *def, const vlParameter *row);
+/* velo.UsageError: there is no such keyword, with the nearest of names. `names` is a list, stolen. */
+bool raise_unknown(const char *thing, const char *name, PyObject *names);
+/* Appends the names of rows to a list. */
+bool append_names(PyObject *list, const vlParameter *rows, size_t count);
+/* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an exception. */
+int find_choice(const char *const *choices, const char *what, PyObject *value);
+/* UTF-8 text of a str, kept alive by the list; null with an exception. */
+const char *keep_text(PyObject *keep, PyObject *value);
+const char *keep_path(PyObject *keep, PyObject *value);
+bool keep_object(PyObject *keep, PyObject *object); /* appends, without stealing */
+bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *spectrum, const char *what);
+
+/* Rows of defs that velo/schema.h has no rows for. */
+typedef struct Rows {
+  const vlParameter *rows;
+  size_t count;
+} Rows;
+extern const Rows scene_rows, load_rows, complete_rows, camera_rows, channels_rows, write_rows;
+/* Sets each item of a dict. Unknown names are UsageErrors. */
+bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject *keywords);
+
+/* Kind `name` of a family; -1 with an exception. */
+int find_kind(const vlKindFamily *family, PyObject *name);
+
+/* ---- functions of the files -------------------------------------------------------------------------------------- */
+
+PyObject *image_object(Context *context, vlImage *image); /* takes the image, also when it fails */
+bool scene_open(const Scene *self);                       /* false: an exception is set */
+PyObject *scene_add(Scene *self, PyObject *arguments);
+PyObject *scene_load_group(Scene *self, PyObject *arguments);
+PyObject *scene_add_instance(Scene *self, PyObject *arguments);
+PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
+extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[];
+
+#endif

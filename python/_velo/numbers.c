@@ -1,0 +1,179 @@
+/* _velo/numbers.c: arrays of numbers from buffers and from nested sequences. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "module.h"
+
+static size_t item_size(char type) {
+  return type == 'd' ? sizeof(double) : type == 'f' ? sizeof(float) : sizeof(uint32_t);
+}
+
+/* Stores a number; an index must be a whole number that fits. */
+static bool store(double value, char type, const char *what, char *result) {
+  if (type == 'd') {
+    memcpy(result, &value, sizeof value);
+  } else if (type == 'f') {
+    float single = (float)value;
+    memcpy(result, &single, sizeof single);
+  } else {
+    if (!(value >= 0 && value <= 4294967295.0) || value != (double)(uint32_t)value)
+      return raise_usage("%s: %g is not an index", what, value), false;
+    uint32_t whole = (uint32_t)value;
+    memcpy(result, &whole, sizeof whole);
+  }
+  return true;
+}
+
+/* One item of a buffer as a double. False: the format is not one of numbers. */
+static bool load(const char *item, char format, Py_ssize_t size, double *value) {
+#define CASE(letter, Type)                          \
+  case letter: {                                    \
+    Type v;                                         \
+    if (size != (Py_ssize_t)sizeof v) return false; \
+    memcpy(&v, item, sizeof v);                     \
+    *value = (double)v;                             \
+    return true;                                    \
+  }
+  switch (format) {
+    CASE('d', double)
+    CASE('f', float)
+    CASE('b', signed char)
+    CASE('B', unsigned char)
+    CASE('?', unsigned char)
+    CASE('h', short)
+    CASE('H', unsigned short)
+    CASE('i', int)
+    CASE('I', unsigned)
+    CASE('l', long)
+    CASE('L', unsigned long)
+    CASE('q', long long)
+    CASE('Q', unsigned long long)
+  }
+#undef CASE
+  return false;
+}
+
+static char plain_format(const Py_buffer *view) {
+  const char *format = view->format ? view->format : "B";
+  if (*format == '@' || *format == '=' || *format == '<') format++;
+  return format[0] && !format[1] ? format[0] : 0;
+}
+
+static bool from_buffer(PyObject *object, char type, const char *what, Numbers *n) {
+  if (PyObject_GetBuffer(object, &n->view, PyBUF_FULL_RO) < 0) {
+    PyErr_Clear();
+    n->view.obj = NULL;
+    return raise_usage("%s: the buffer cannot be read", what), false;
+  }
+  char format = plain_format(&n->view);
+  if (n->view.ndim > 4) return raise_usage("%s has more than four dimensions", what), false;
+  n->dimensions = n->view.ndim;
+  n->count = 1;
+  for (int i = 0; i < n->view.ndim; i++) {
+    n->shape[i] = (size_t)n->view.shape[i];
+    n->count *= n->shape[i];
+  }
+  bool same =
+      format == type || (type == 'I' && (format == 'L' || format == 'i') && n->view.itemsize == 4 && format != 'i');
+  if (same && PyBuffer_IsContiguous(&n->view, 'C')) {
+    n->data = n->view.buf;
+    return true;
+  }
+  size_t size = item_size(type);
+  char *plain = malloc((size_t)n->view.len + 1);
+  n->owned = malloc(n->count * size + 1);
+  bool fine = plain && n->owned;
+  if (!fine)
+    PyErr_NoMemory();
+  else
+    fine = PyBuffer_ToContiguous(plain, &n->view, n->view.len, 'C') == 0;
+  for (size_t i = 0; fine && i < n->count; i++) {
+    double value;
+    fine = load(plain + i * (size_t)n->view.itemsize, format, n->view.itemsize, &value);
+    if (!fine)
+      raise_usage("%s: the array's type (format %s) is not one of numbers", what,
+                  n->view.format ? n->view.format : "B");
+    else
+      fine = store(value, type, what, (char *)n->owned + i * size);
+  }
+  free(plain);
+  n->data = n->owned;
+  return fine;
+}
+
+typedef struct Growing {
+  char *data;
+  size_t count, room;
+} Growing;
+
+static bool flatten(PyObject *object, char type, const char *what, int depth, Numbers *n, Growing *g) {
+  size_t size = item_size(type);
+  if (depth > 0 && (PyFloat_Check(object) || PyLong_Check(object) || PyNumber_Check(object)) &&
+      !PySequence_Check(object)) {
+    double value = PyFloat_AsDouble(object);
+    if (value == -1.0 && PyErr_Occurred()) return false;
+    if (depth != n->dimensions && g->count) return raise_usage("%s: its rows differ in length", what), false;
+    n->dimensions = depth;
+    if (g->count == g->room) {
+      size_t room = g->room ? 2 * g->room : 64;
+      char *more = realloc(g->data, room * size);
+      if (!more) return PyErr_NoMemory(), false;
+      g->data = more, g->room = room;
+    }
+    return store(value, type, what, g->data + size * g->count++);
+  }
+  if (depth >= 4 || !PySequence_Check(object) || PyUnicode_Check(object))
+    return raise_usage("%s must be numbers: an array or nested lists", what), false;
+  Py_ssize_t length = PySequence_Size(object);
+  if (length < 0) return false;
+  if (n->shape[depth] == 0) n->shape[depth] = (size_t)length;
+  if (n->shape[depth] != (size_t)length) return raise_usage("%s: its rows differ in length", what), false;
+  for (Py_ssize_t i = 0; i < length; i++) {
+    PyObject *item = PySequence_GetItem(object, i);
+    bool fine = item && flatten(item, type, what, depth + 1, n, g);
+    Py_XDECREF(item);
+    if (!fine) return false;
+  }
+  return true;
+}
+
+bool numbers_read(PyObject *object, char type, const char *what, Numbers *n) {
+  *n = (Numbers){0};
+  if (PyObject_CheckBuffer(object)) {
+    if (from_buffer(object, type, what, n)) return true;
+    numbers_release(n);
+    return false;
+  }
+  Growing g = {0};
+  bool fine = flatten(object, type, what, 0, n, &g);
+  n->owned = g.data;
+  n->data = g.data;
+  n->count = g.count;
+  if (!fine) numbers_release(n);
+  return fine;
+}
+
+void numbers_release(Numbers *n) {
+  if (n->view.obj) PyBuffer_Release(&n->view);
+  n->view.obj = NULL;
+  free(n->owned);
+  n->owned = NULL;
+}
+
+bool numbers_copy(PyObject *object, const char *what, size_t count, double *result) {
+  Numbers n;
+  if (!numbers_read(object, 'd', what, &n)) return false;
+  bool fine = n.count == count;
+  if (fine)
+    memcpy(result, n.data, count * sizeof *result);
+  else
+    raise_usage("%s must have %zu numbers, it has %zu", what, count, n.count);
+  numbers_release(&n);
+  return fine;
+}
+
+PyObject *make_bytes(size_t size, void **data) {
+  PyObject *bytes = PyByteArray_FromStringAndSize(NULL, (Py_ssize_t)size);
+  *data = bytes ? PyByteArray_AsString(bytes) : NULL;
+  return bytes;
+}

@@ -1,0 +1,412 @@
+/* _velo/render.c: settings, worlds, renders, ground truth and boxes. */
+#include <math.h>
+#include <string.h>
+
+#include "module.h"
+
+/* ---- settings ---------------------------------------------------------------------------------------------------- */
+
+static void settings_dealloc(Settings *self) {
+  Py_XDECREF(self->keep);
+  free_object((PyObject *)self);
+}
+
+static const vlParameter *settings_row(const char *name) {
+  static const char *const families[] = {"tracers", "films", "samplers"};
+  const vlParameter *row = find_parameter(scene_rows.rows, scene_rows.count, name);
+  for (size_t i = 0; !row && i < sizeof families / sizeof *families; i++) {
+    const vlKindFamily *family = vl_kind_family_find(families[i]);
+    for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
+      row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, name);
+      if (row && (row->type == VL_PARAMETER_BLOCK || row->flags & VL_PARAMETER_SHORTHAND)) row = NULL;
+    }
+  }
+  return row;
+}
+
+/* scene_settings(scene): a copy of its defs. */
+static PyObject *scene_settings(PyObject *module, PyObject *object) {
+  (void)module;
+  if (!is_object(object, TYPE_SCENE)) return raise_usage("expected a Scene");
+  Scene *scene = (Scene *)object;
+  if (!scene_open(scene)) return NULL;
+  Settings *self = make_object(TYPE_SETTINGS);
+  if (!self) return NULL;
+  self->defs = *vl_scene_defs(scene->scene);
+  self->keep = PyList_New(0);
+  if (!self->keep || !keep_object(self->keep, object)) return Py_DECREF((PyObject *)self), NULL;
+  return (PyObject *)self;
+}
+
+static PyObject *settings_set(Settings *self, PyObject *arguments) {
+  const char *name;
+  PyObject *value;
+  if (!PyArg_ParseTuple(arguments, "sO:set", &name, &value)) return NULL;
+  const vlParameter *row = settings_row(name);
+  if (!row) {
+    PyObject *names = PyList_New(0);
+    if (names && !append_names(names, scene_rows.rows, scene_rows.count)) Py_CLEAR(names);
+    return raise_unknown("keyword of render", name, names), NULL;
+  }
+  if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.tracer") == 0) {
+    int kind = find_kind(vl_kind_family_find("tracers"), value);
+    if (kind < 0) return NULL;
+    self->defs.render.tracer = (vlTracer)kind;
+  } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.sampler") == 0) {
+    int kind = find_kind(vl_kind_family_find("samplers"), value);
+    if (kind < 0) return NULL;
+    self->defs.render.sampler = (vlSamplerKind)kind;
+  } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "film.filter.kind") == 0) {
+    int kind = find_kind(vl_kind_family_find("filters"), value);
+    if (kind < 0) return NULL;
+    self->defs.film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
+  } else {
+    const Target target = {(char *)&self->defs, self->keep, NULL, false};
+    if (!set_parameter(&target, row, value)) return NULL;
+  }
+  Py_RETURN_NONE;
+}
+
+static PyObject *settings_get(Settings *self, PyObject *name) {
+  PyObject *bytes = PyUnicode_AsUTF8String(name);
+  if (!bytes) return NULL;
+  const vlParameter *row = settings_row(PyBytes_AsString(bytes));
+  PyObject *result =
+      row ? get_parameter((const char *)&self->defs, row) : raise_usage("no setting %s", PyBytes_AsString(bytes));
+  Py_DECREF(bytes);
+  return result;
+}
+
+static PyObject *settings_size(Settings *self, PyObject *arguments) {
+  unsigned width, height;
+  if (!PyArg_ParseTuple(arguments, "II:set_size", &width, &height)) return NULL;
+  if (width < 1 || height < 1 || width > 1u << 24 || height > 1u << 24)
+    return raise_usage("resolution: 1 to 2^24 pixels");
+  self->defs.film.width = width, self->defs.film.height = height;
+  self->defs.film.crop[0] = self->defs.film.crop[1] = 0;
+  self->defs.film.crop[2] = width, self->defs.film.crop[3] = height;
+  Py_RETURN_NONE;
+}
+
+static PyObject *settings_crop(Settings *self, PyObject *arguments) {
+  uint32_t *c = self->defs.film.crop;
+  if (!PyArg_ParseTuple(arguments, "IIII:set_crop", &c[0], &c[1], &c[2], &c[3])) return NULL;
+  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > self->defs.film.width || c[3] > self->defs.film.height)
+    return raise_usage("crop: x0, y0, x1, y1 must be inside the image");
+  Py_RETURN_NONE;
+}
+static PyObject *settings_get_size(Settings *self, void *unused) {
+  (void)unused;
+  return Py_BuildValue("(II)", self->defs.film.width, self->defs.film.height);
+}
+
+/* names(): all keywords. */
+static PyObject *settings_names(Settings *self, PyObject *unused) {
+  (void)self, (void)unused;
+  PyObject *names = PyList_New(0);
+  if (names && !append_names(names, scene_rows.rows, scene_rows.count)) Py_CLEAR(names);
+  return names;
+}
+
+static PyMethodDef settings_methods[] = {
+    {"set", (PyCFunction)settings_set, METH_VARARGS, "Sets a keyword."},
+    {"get", (PyCFunction)settings_get, METH_O, "The value of a keyword."},
+    {"set_size", (PyCFunction)settings_size, METH_VARARGS,
+     "Width and height, pixels; the crop becomes the whole image."},
+    {"set_crop", (PyCFunction)settings_crop, METH_VARARGS, "x0, y0, x1, y1, pixels."},
+    {"names", (PyCFunction)settings_names, METH_NOARGS, "All keywords."},
+    {NULL, NULL, 0, NULL},
+};
+static PyGetSetDef settings_members[] = {
+    {"size", (getter)settings_get_size, NULL, "Width and height, pixels.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot settings_slots[] = {
+    {Py_tp_doc, "The settings of a render."},
+    {Py_tp_dealloc, settings_dealloc},
+    {Py_tp_methods, settings_methods},
+    {Py_tp_getset, settings_members},
+    {0, NULL},
+};
+PyType_Spec settings_spec = {"velo._velo.Settings", sizeof(Settings), 0,
+                             Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, settings_slots};
+
+/* ---- worlds ------------------------------------------------------------------------------------------------------ */
+
+static PyObject *world_build(PyObject *module, PyObject *arguments) {
+  (void)module;
+  Scene *scene;
+  Settings *settings;
+  if (!PyArg_ParseTuple(arguments, "O!O!:world_build", base_types[TYPE_SCENE], &scene, base_types[TYPE_SETTINGS],
+                        &settings))
+    return NULL;
+  if (!scene->scene) return raise_usage("the scene is closed");
+  Call call;
+  if (!call_begin(&call, scene->context, &scene->busy)) return NULL;
+  vlError error = {0};
+  vlWorld *world = NULL;
+  vlResult done = vl_world_build(scene->scene, &settings->defs.build, &world, &error);
+  call_end(&call);
+  if (done != VL_OK) return raise_result(done, &error);
+  World *self = make_object(TYPE_WORLD);
+  if (!self) {
+    vl_world_destroy(world);
+    return NULL;
+  }
+  Py_INCREF((PyObject *)scene->context);
+  self->context = scene->context;
+  self->world = world;
+  return (PyObject *)self;
+}
+
+static void world_dealloc(World *self) {
+  if (context_is_ours(self->context)) vl_world_destroy(self->world);
+  Py_XDECREF((PyObject *)self->context);
+  free_object((PyObject *)self);
+}
+
+static PyObject *world_close(World *self, PyObject *unused) {
+  (void)unused;
+  if (self->users) return raise_usage("the world is in use");
+  if (context_is_ours(self->context)) vl_world_destroy(self->world);
+  self->world = NULL;
+  Py_RETURN_NONE;
+}
+
+static PyObject *world_info(World *self, void *unused) {
+  (void)unused;
+  if (!self->world) return raise_usage("the world is closed");
+  vlWorldInfo i;
+  vl_world_info(self->world, &i);
+  return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:(ddd),s:(ddd),s:d}", "triangles", (unsigned long long)i.triangles,
+                       "primitives", (unsigned long long)i.primitives, "instances", (unsigned long long)i.instances,
+                       "lights", (unsigned long long)i.lights, "texture_bytes", (unsigned long long)i.texture_bytes,
+                       "bytes", (unsigned long long)i.bytes, "bounds_min", (double)i.bounds_min[0],
+                       (double)i.bounds_min[1], (double)i.bounds_min[2], "bounds_max", (double)i.bounds_max[0],
+                       (double)i.bounds_max[1], (double)i.bounds_max[2], "build_seconds", i.build_seconds);
+}
+
+static PyObject *text_or_none(const char *text) {
+  if (!text) Py_RETURN_NONE;
+  return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
+}
+
+/* _ids(kind): a list of dicts, that of id 1 first. */
+static PyObject *world_ids(World *self, PyObject *name) {
+  static const char *const kinds[] = {"object", "material", "instance", NULL};
+  if (!self->world) return raise_usage("the world is closed");
+  int kind = find_choice(kinds, "kind of id", name);
+  if (kind < 0) return NULL;
+  PyObject *list = PyList_New(0);
+  for (uint32_t id = 1; list && id <= vl_world_id_count(self->world, (vlIdKind)kind); id++) {
+    vlIdInfo info;
+    vl_world_id_info(self->world, (vlIdKind)kind, id, &info);
+    PyObject *entry =
+        Py_BuildValue("{s:I,s:N,s:N,s:N,s:N,s:N,s:N,s:I,s:I}", "id", id, "name", text_or_none(info.name), "path",
+                      text_or_none(info.path), "place", text_or_none(info.place), "type", text_or_none(info.type),
+                      "shared_name", PyBool_FromLong(info.shared_name), "file", text_or_none(info.source.file), "line",
+                      info.source.line, "material", info.material);
+    if (!entry || PyList_Append(list, entry) < 0) Py_CLEAR(list);
+    Py_XDECREF(entry);
+  }
+  return list;
+}
+
+static PyMethodDef world_methods[] = {
+    {"_close", (PyCFunction)world_close, METH_NOARGS, "Frees the world."},
+    {"_ids", (PyCFunction)world_ids, METH_O, "What the ids of a kind stand for."},
+    {NULL, NULL, 0, NULL},
+};
+static PyGetSetDef world_members[] = {
+    {"info", (getter)world_info, NULL, "Counts, bytes, bounds (scene units) and seconds of the build.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot world_slots[] = {
+    {Py_tp_doc, "A compiled scene. It never changes."},
+    {Py_tp_dealloc, world_dealloc},
+    {Py_tp_methods, world_methods},
+    {Py_tp_getset, world_members},
+    {0, NULL},
+};
+PyType_Spec world_spec = {"velo._velo.World", sizeof(World), 0,
+                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, world_slots};
+
+/* ---- renders ----------------------------------------------------------------------------------------------------- */
+
+/* render(world, camera, film, settings, callback or None): {statistic: number}; None: the callback ended it. */
+static PyObject *render(PyObject *module, PyObject *arguments) {
+  (void)module;
+  World *world;
+  Camera *camera;
+  Film *film;
+  Settings *settings;
+  PyObject *callback;
+  if (!PyArg_ParseTuple(arguments, "O!O!O!O!O:render", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
+                        base_types[TYPE_FILM], &film, base_types[TYPE_SETTINGS], &settings, &callback))
+    return NULL;
+  if (!world->world || !film->film) return raise_usage(world->world ? "the film is closed" : "the world is closed");
+  if (callback != Py_None && !PyCallable_Check(callback)) return raise_usage("progress must be callable");
+  Call call;
+  Progress progress = {&call, callback == Py_None ? NULL : callback, film};
+  vlRenderDef def = settings->defs.render;
+  def.progress = progress_call;
+  def.progress_user = &progress;
+  if (!call_begin(&call, world->context, &film->busy)) return NULL;
+  world->users++;
+  vlError error = {0};
+  vlRenderStats s = {0};
+  vlResult done = vl_render(world->world, &camera->camera, film->film, &def, &s, &error);
+  call_end(&call);
+  world->users--;
+  if (PyErr_Occurred()) return NULL;
+  if (done == VL_CANCELLED) Py_RETURN_NONE;
+  if (done != VL_OK) return raise_result(done, &error);
+  return Py_BuildValue("{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp, "paths",
+                       (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays, "bounce_rays",
+                       (unsigned long long)s.bounce_rays, "shadow_rays", (unsigned long long)s.shadow_rays,
+                       "not_finite", (unsigned long long)s.not_finite, "seconds", s.seconds, "blocks", s.blocks,
+                       "noisy_blocks", s.noisy_blocks);
+}
+
+/* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward or None): (image of
+ * floats or None, image of ids or None). */
+static PyObject *channels(PyObject *module, PyObject *arguments) {
+  (void)module;
+  World *world;
+  Camera *camera;
+  Settings *settings;
+  PyObject *film, *names, *keywords, *forward, *backward;
+  if (!PyArg_ParseTuple(arguments, "O!O!OO!O!O!OO:channels", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
+                        &camera, &film, base_types[TYPE_SETTINGS], &settings, &PyList_Type, &names, &PyDict_Type,
+                        &keywords, &forward, &backward))
+    return NULL;
+  if (!world->world) return raise_usage("the world is closed");
+  vlChannelsDef def = vl_default_channels_def(settings->defs.film.width, settings->defs.film.height);
+  memcpy(def.crop, settings->defs.film.crop, sizeof def.crop);
+  def.space = settings->defs.film.space;
+  def.render = &settings->defs.render;
+  def.exposure = settings->defs.develop.exposure;
+  def.channels = 0;
+  const char *known[VL_CHANNEL_COUNT + 1] = {0};
+  for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++) known[i] = vl_channel_name(i);
+  for (Py_ssize_t i = 0; i < PyList_Size(names); i++) {
+    int channel = find_choice(known, "channel", PyList_GetItem(names, i));
+    if (channel < 0) return NULL;
+    def.channels |= 1u << channel;
+  }
+  if (film != Py_None) {
+    if (!is_object(film, TYPE_FILM) || !((Film *)film)->film) return raise_usage("expected a Film");
+    def.film = ((Film *)film)->film;
+    def.samples = vl_film_spp(def.film);
+  }
+  if (forward != Py_None && is_object(forward, TYPE_CAMERA)) def.forward = &((Camera *)forward)->camera;
+  if (backward != Py_None && is_object(backward, TYPE_CAMERA)) def.backward = &((Camera *)backward)->camera;
+  const Target target = {(char *)&def, settings->keep, NULL, false};
+  if (!set_parameters(&target, channels_rows, "keyword of channels", keywords)) return NULL;
+  Call call;
+  def.stop = stop_call;
+  def.stop_user = &call;
+  if (!call_begin(&call, world->context, film == Py_None ? NULL : &((Film *)film)->busy)) return NULL;
+  world->users++;
+  vlError error = {0};
+  vlImage *floats = NULL, *ids = NULL;
+  vlResult done = vl_render_channels(world->world, &camera->camera, &def, &floats, &ids, &error);
+  call_end(&call);
+  world->users--;
+  if (done != VL_OK) return raise_result(done, &error);
+  PyObject *images[2] = {Py_None, Py_None};
+  if (floats && !(images[0] = image_object(world->context, floats))) {
+    vl_image_destroy(ids);
+    return NULL;
+  }
+  if (ids && !(images[1] = image_object(world->context, ids))) return NULL;
+  PyObject *result = PyTuple_Pack(2, images[0], images[1]);
+  if (floats) Py_DECREF(images[0]);
+  if (ids) Py_DECREF(images[1]);
+  return result;
+}
+
+static PyObject *box_object(const vlIdBox *b) {
+  PyObject *outline = Py_None, *space = Py_None;
+  if (b->has_outline) outline = Py_BuildValue("(dddd)", b->outline[0], b->outline[1], b->outline[2], b->outline[3]);
+  if (b->has_space) {
+    PyObject *matrix = PyTuple_New(16);
+    for (int i = 0; matrix && i < 16; i++) PyTuple_SetItem(matrix, i, PyFloat_FromDouble(b->world_from_box[i]));
+    space = Py_BuildValue("{s:(ddd),s:(ddd),s:N}", "low", b->low[0], b->low[1], b->low[2], "high", b->high[0],
+                          b->high[1], b->high[2], "world_from_box", matrix);
+  }
+  if (outline == Py_None) Py_INCREF(Py_None);
+  if (space == Py_None) Py_INCREF(Py_None);
+  return Py_BuildValue("{s:K,s:K,s:(IIII),s:(IIII),s:N,s:N}", "seen", (unsigned long long)b->seen, "all",
+                       (unsigned long long)b->all, "seen_box", b->seen_box[0], b->seen_box[1], b->seen_box[2],
+                       b->seen_box[3], "all_box", b->all_box[0], b->all_box[1], b->all_box[2], b->all_box[3], "outline",
+                       outline, "space", space);
+}
+
+static PyObject *box_list(const vlIdBox *boxes, uint32_t count) {
+  PyObject *list = PyList_New(0);
+  for (uint32_t i = 0; list && i < count; i++) {
+    PyObject *box = box_object(&boxes[i]);
+    if (!box || PyList_Append(list, box) < 0) Py_CLEAR(list);
+    Py_XDECREF(box);
+  }
+  return list;
+}
+
+/* boxes(world, camera, settings): (list of objects' boxes, list of instances' boxes), that of id 1 first. */
+static PyObject *boxes(PyObject *module, PyObject *arguments) {
+  (void)module;
+  World *world;
+  Camera *camera;
+  Settings *settings;
+  if (!PyArg_ParseTuple(arguments, "O!O!O!:boxes", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
+                        base_types[TYPE_SETTINGS], &settings))
+    return NULL;
+  if (!world->world) return raise_usage("the world is closed");
+  uint32_t objects = vl_world_id_count(world->world, VL_ID_OBJECT),
+           instances = vl_world_id_count(world->world, VL_ID_INSTANCE);
+  vlIdBox *list = PyMem_Malloc(((size_t)objects + instances + 1) * sizeof *list);
+  if (!list) return PyErr_NoMemory();
+  vlBoxesDef def = vl_default_boxes_def(settings->defs.film.width, settings->defs.film.height);
+  memcpy(def.crop, settings->defs.film.crop, sizeof def.crop);
+  Call call;
+  def.stop = stop_call;
+  def.stop_user = &call;
+  if (!call_begin(&call, world->context, NULL)) return PyMem_Free(list), NULL;
+  world->users++;
+  vlError error = {0};
+  vlResult done = vl_world_boxes(world->world, &camera->camera, &def, list, list + objects, &error);
+  call_end(&call);
+  world->users--;
+  PyObject *result = done == VL_OK ? Py_BuildValue("(NN)", box_list(list, objects), box_list(list + objects, instances))
+                                   : raise_result(done, &error);
+  PyMem_Free(list);
+  return result;
+}
+
+static PyObject *autofocus(PyObject *module, PyObject *arguments) {
+  (void)module;
+  World *world;
+  Camera *camera;
+  double x, y, distance = 0;
+  if (!PyArg_ParseTuple(arguments, "O!O!dd:autofocus", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
+                        &x, &y))
+    return NULL;
+  if (!world->world) return raise_usage("the world is closed");
+  Call call;
+  if (!call_begin(&call, world->context, NULL)) return NULL;
+  vlError error = {0};
+  vlResult done = vl_autofocus(world->world, &camera->camera, x, y, &distance, &error);
+  call_end(&call);
+  return done == VL_OK ? PyFloat_FromDouble(distance) : raise_result(done, &error);
+}
+
+PyMethodDef render_functions[] = {
+    {"scene_settings", scene_settings, METH_O, "A copy of a scene's settings."},
+    {"world_build", world_build, METH_VARARGS, "Compiles a scene: scene, settings."},
+    {"render", render, METH_VARARGS, "Adds samples to a film."},
+    {"channels", channels, METH_VARARGS, "Ground truth."},
+    {"boxes", boxes, METH_VARARGS, "Bounding boxes of objects and instances."},
+    {"autofocus", autofocus, METH_VARARGS, "The focus distance for a pixel."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,227 @@
+/* _velo/scene.c: scenes: files, camera, contents; handles. */
+#include <string.h>
+
+#include "module.h"
+
+bool scene_open(const Scene *self) {
+  if (!self->scene) return raise_usage("the scene is closed"), false;
+  if (self->busy) return raise_usage("another thread is using the scene"), false;
+  return context_check(self->context);
+}
+
+/* scene_new(context) */
+static PyObject *scene_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
+  static char *names[] = {"context", NULL};
+  Context *context;
+  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "O!:Scene", names, base_types[TYPE_CONTEXT], &context))
+    return NULL;
+  Call call;
+  if (!call_begin(&call, context, NULL)) return NULL;
+  vlScene *scene = NULL;
+  vlResult done = vl_scene_create(context->context, &scene);
+  call_end(&call);
+  if (done != VL_OK) return raise_result(done, NULL);
+  Scene *self = (Scene *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
+  if (!self) {
+    vl_scene_destroy(scene);
+    return NULL;
+  }
+  Py_INCREF((PyObject *)context);
+  self->context = context;
+  self->scene = scene;
+  self->keep = PyList_New(0);
+  if (!self->keep) return Py_DECREF((PyObject *)self), NULL;
+  return (PyObject *)self;
+}
+
+static void scene_dealloc(Scene *self) {
+  if (context_is_ours(self->context)) vl_scene_destroy(self->scene);
+  Py_XDECREF(self->keep);
+  Py_XDECREF((PyObject *)self->context);
+  free_object((PyObject *)self);
+}
+
+static PyObject *scene_close(Scene *self, PyObject *unused) {
+  (void)unused;
+  if (self->busy) return raise_usage("another thread is using the scene");
+  if (context_is_ours(self->context)) vl_scene_destroy(self->scene);
+  self->scene = NULL;
+  Py_RETURN_NONE;
+}
+
+/* _load(path, keywords of vlLoadDef) */
+static PyObject *scene_load(Scene *self, PyObject *arguments) {
+  PyObject *path, *keywords, *keep = PyList_New(0), *result = NULL;
+  vlLoadDef def = vl_default_load_def();
+  const char *file;
+  const Target target = {(char *)&def, keep, self, false};
+  if (!keep || !PyArg_ParseTuple(arguments, "OO!:_load", &path, &PyDict_Type, &keywords) || !scene_open(self) ||
+      !set_parameters(&target, load_rows, "keyword of load", keywords) || !(file = keep_path(keep, path)))
+    goto end;
+  Call call;
+  if (!call_begin(&call, self->context, &self->busy)) goto end;
+  vlError error = {0};
+  vlResult done = vl_scene_load(self->scene, file, &def, &error);
+  call_end(&call);
+  if (done == VL_OK) {
+    Py_INCREF(Py_None);
+    result = Py_None;
+  } else {
+    raise_result(done, &error);
+  }
+end:
+  Py_XDECREF(keep);
+  return result;
+}
+
+/* _complete(keywords of vlCompleteDef) */
+static PyObject *scene_complete(Scene *self, PyObject *keywords) {
+  PyObject *keep = PyList_New(0);
+  vlCompleteDef def = vl_default_complete_def();
+  const Target target = {(char *)&def, keep, self, false};
+  Call call;
+  if (!keep || !PyDict_Check(keywords) || !scene_open(self) ||
+      !set_parameters(&target, complete_rows, "keyword of load", keywords) ||
+      !call_begin(&call, self->context, &self->busy))
+    return Py_XDECREF(keep), NULL;
+  vlError error = {0};
+  vlResult done = vl_scene_complete(self->scene, &def, &error);
+  call_end(&call);
+  Py_DECREF(keep);
+  if (done != VL_OK) return raise_result(done, &error);
+  Py_RETURN_NONE;
+}
+
+/* _save(path, strict): {what is lost: how often} */
+static void lost(void *user, const char *what, uint64_t count) {
+  PyGILState_STATE state = PyGILState_Ensure();
+  PyObject *number = PyLong_FromUnsignedLongLong(count);
+  if (!number || PyDict_SetItemString(user, what, number) < 0) PyErr_WriteUnraisable(NULL);
+  Py_XDECREF(number);
+  PyGILState_Release(state);
+}
+static PyObject *scene_save(Scene *self, PyObject *arguments) {
+  PyObject *path, *keep = PyList_New(0), *losses = PyDict_New();
+  int strict;
+  const char *file;
+  vlSaveDef def = vl_default_save_def();
+  Call call;
+  if (!keep || !losses || !PyArg_ParseTuple(arguments, "Op:_save", &path, &strict) || !scene_open(self) ||
+      !(file = keep_path(keep, path)) || !call_begin(&call, self->context, &self->busy))
+    return Py_XDECREF(keep), Py_XDECREF(losses), NULL;
+  def.strict = strict;
+  def.lost = lost;
+  def.lost_user = losses;
+  vlError error = {0};
+  vlResult done = vl_scene_save(self->scene, file, &def, &error);
+  call_end(&call);
+  Py_DECREF(keep);
+  if (done == VL_OK) return losses;
+  Py_DECREF(losses);
+  return raise_result(done, &error);
+}
+
+static PyObject *scene_info(Scene *self, void *unused) {
+  (void)unused;
+  if (!scene_open(self)) return NULL;
+  vlSceneInfo i;
+  vl_scene_info(self->scene, &i);
+#define COUNT(field) #field, (unsigned long long)i.field
+  return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K}", COUNT(shapes), COUNT(triangles), COUNT(vertices),
+                       COUNT(textures), COUNT(materials), COUNT(lights), COUNT(emissive_shapes), COUNT(groups),
+                       COUNT(instances), COUNT(media));
+#undef COUNT
+}
+
+static PyObject *scene_missing(Scene *self, void *unused) {
+  (void)unused;
+  if (!scene_open(self)) return NULL;
+  const vlSceneDefs *defs = vl_scene_defs(self->scene);
+  return Py_BuildValue("(NN)", PyBool_FromLong(defs->camera_missing), PyBool_FromLong(defs->light_missing));
+}
+
+static PyObject *scene_camera(Scene *self, PyObject *unused) {
+  (void)unused;
+  if (!scene_open(self)) return NULL;
+  return camera_object(&vl_scene_defs(self->scene)->camera, (PyObject *)self);
+}
+
+static PyObject *scene_set_camera(Scene *self, PyObject *object) {
+  if (!scene_open(self)) return NULL;
+  if (!is_object(object, TYPE_CAMERA)) return raise_usage("camera must be a velo.Camera");
+  if (!keep_object(self->keep, object)) return NULL;
+  const Camera *camera = (const Camera *)object;
+  vlSceneDefs *defs = vl_scene_defs(self->scene);
+  defs->camera = camera->def;
+  defs->camera_missing = false;
+  defs->film.width = camera->def.width, defs->film.height = camera->def.height;
+  const uint32_t whole[4] = {0, 0, camera->def.width, camera->def.height};
+  memcpy(defs->film.crop, whole, sizeof whole);
+  Py_RETURN_NONE;
+}
+
+static PyMethodDef scene_methods[] = {
+    {"_load", (PyCFunction)scene_load, METH_VARARGS, "Adds the contents of a file."},
+    {"_complete", (PyCFunction)scene_complete, METH_O, "Adds camera, light and ground."},
+    {"_save", (PyCFunction)scene_save, METH_VARARGS, "Writes a scene file."},
+    {"_add", (PyCFunction)scene_add, METH_VARARGS, "Adds a texture, material, medium, emission, light or shape."},
+    {"_load_group", (PyCFunction)scene_load_group, METH_VARARGS, "Loads a file as one group."},
+    {"_add_instance", (PyCFunction)scene_add_instance, METH_VARARGS, "Places a group."},
+    {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
+    {"_set_camera", (PyCFunction)scene_set_camera, METH_O, "Sets the scene's camera and image size."},
+    {"_close", (PyCFunction)scene_close, METH_NOARGS, "Frees the scene."},
+    {NULL, NULL, 0, NULL},
+};
+static PyObject *scene_context(Scene *self, void *unused) {
+  (void)unused;
+  Py_INCREF((PyObject *)self->context);
+  return (PyObject *)self->context;
+}
+
+static PyGetSetDef scene_members[] = {
+    {"context", (getter)scene_context, NULL, "The context that it was made from.", NULL},
+    {"info", (getter)scene_info, NULL, "Counts of shapes, triangles, textures and so on.", NULL},
+    {"_missing", (getter)scene_missing, NULL, "Whether camera and light are missing.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot scene_slots[] = {
+    {Py_tp_doc, "The description of a world and of how its image is taken."},
+    {Py_tp_new, scene_new},
+    {Py_tp_dealloc, scene_dealloc},
+    {Py_tp_methods, scene_methods},
+    {Py_tp_getset, scene_members},
+    {0, NULL},
+};
+PyType_Spec scene_spec = {"velo._velo.Scene", sizeof(Scene), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, scene_slots};
+
+/* ---- handles ----------------------------------------------------------------------------------------------------- */
+
+static void handle_dealloc(Handle *self) {
+  Py_XDECREF((PyObject *)self->scene);
+  free_object((PyObject *)self);
+}
+static PyObject *handle_repr(Handle *self) {
+  return PyUnicode_FromFormat("<velo.Handle: number %u of the scene's %s>", self->index, self->family);
+}
+static PyObject *handle_index_member(Handle *self, void *unused) {
+  (void)unused;
+  return PyLong_FromUnsignedLong(self->index);
+}
+static PyObject *handle_family(Handle *self, void *unused) {
+  (void)unused;
+  return PyUnicode_FromString(self->family);
+}
+static PyGetSetDef handle_members[] = {
+    {"index", (getter)handle_index_member, NULL, "Its number in the scene, from 1.", NULL},
+    {"family", (getter)handle_family, NULL, "textures, materials, media, emission, lights, shapes or groups.", NULL},
+    {NULL, NULL, NULL, NULL, NULL},
+};
+static PyType_Slot handle_slots[] = {
+    {Py_tp_doc, "A texture, material, medium, emission, light, shape or group of a scene."},
+    {Py_tp_dealloc, handle_dealloc},
+    {Py_tp_repr, handle_repr},
+    {Py_tp_getset, handle_members},
+    {0, NULL},
+};
+PyType_Spec handle_spec = {"velo._velo.Handle", sizeof(Handle), 0,
+                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, handle_slots};

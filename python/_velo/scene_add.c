@@ -1,0 +1,437 @@
+/* _velo/scene_add.c: adds textures, materials, media, emissions, lights, shapes, groups and instances to a scene. */
+#include <string.h>
+
+#include "module.h"
+
+enum { MOST_ARRAYS = 24 };
+
+/* A def under construction. */
+typedef struct Adding {
+  Scene *scene;
+  PyObject *keep;
+  Numbers arrays[MOST_ARRAYS];
+  int array_count;
+} Adding;
+
+/* The numbers of an array, which live until the call ends; null with an exception. */
+static const Numbers *array(Adding *a, PyObject *value, char type, const char *what) {
+  if (a->array_count == MOST_ARRAYS) return raise_usage("too many arrays"), NULL;
+  Numbers *n = &a->arrays[a->array_count];
+  if (!numbers_read(value, type, what, n)) return NULL;
+  a->array_count++;
+  return n;
+}
+
+/* The index of a handle; false with an exception. None is index 0. */
+static bool handle(const Adding *a, PyObject *value, const char *family, const char *what, uint32_t *index) {
+  *index = 0;
+  if (value == Py_None) return true;
+  const Handle *h = (const Handle *)value;
+  if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0)
+    return raise_usage("%s must be one of the scene's %s", what, family), false;
+  if (h->scene != a->scene) return raise_usage("%s is part of another scene", what), false;
+  *index = h->index;
+  return true;
+}
+
+static bool image_of(PyObject *value, const char *what, const vlImage **image) {
+  if (!is_object(value, TYPE_IMAGE) || !((Image *)value)->image)
+    return raise_usage("%s must be a velo.Image", what), false;
+  *image = ((Image *)value)->image;
+  return true;
+}
+
+static bool floats(PyObject *value, const char *what, size_t count, float *result) {
+  double numbers[16];
+  if (!numbers_copy(value, what, count, numbers)) return false;
+  for (size_t i = 0; i < count; i++) result[i] = (float)numbers[i];
+  return true;
+}
+
+#define IS(text) (strcmp(name, text) == 0)
+static const char *const spaces[] = {"srgb", "dci_p3", "rec2020", "aces2065_1", NULL};
+static const char *const wraps[] = {"repeat", "black", "clamp", "octahedral", "mirror", NULL};
+static const char *const encodings[] = {"linear", "srgb", "gamma", NULL};
+
+static bool choice(const char *const *choices, const char *what, PyObject *value, int *result) {
+  *result = find_choice(choices, what, value);
+  return *result >= 0;
+}
+
+/* Each of these sets a keyword that has no row. 1: set; 0: unknown; -1: an exception. */
+
+static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *value) {
+  int code;
+  bool fine;
+  if (IS("name")) {
+    fine = (d->name = keep_text(a->keep, value)) != NULL;
+  } else if (IS("image")) {
+    fine = image_of(value, name, &d->image);
+  } else if (IS("data")) {
+    const Numbers *n = NULL;
+    PyObject *bytes = PyBytes_FromObject(value);
+    fine = bytes && keep_object(a->keep, bytes);
+    if (fine) d->data = PyBytes_AsString(bytes), d->data_size = (size_t)PyBytes_Size(bytes);
+    Py_XDECREF(bytes);
+    (void)n;
+  } else if (IS("tint")) {
+    fine = floats(value, name, 4, d->tint);
+  } else if (IS("channel")) {
+    d->channel = (int)PyLong_AsLong(value);
+    fine = !PyErr_Occurred();
+  } else if (IS("texture_from_world")) {
+    fine = numbers_copy(value, name, 16, d->texture_from_world);
+  } else if (IS("st_from_uv")) {
+    d->st_from_uv_given = true;
+    fine = floats(value, name, 6, d->st_from_uv);
+  } else if (IS("encoding")) {
+    fine = choice(encodings, name, value, &code);
+    d->encoding_given = fine;
+    if (fine) d->encoding = (vlEncoding)code;
+  } else if (IS("wrap_t")) {
+    fine = choice(wraps, name, value, &code);
+    d->wrap_t_given = fine;
+    if (fine) d->wrap_t = (vlWrap)code;
+  } else if (IS("space")) {
+    fine = choice(spaces, name, value, &code);
+    if (fine) d->space = (vlColorSpace)code;
+  } else if (IS("spectrum")) {
+    fine = true; /* read before */
+  } else {
+    return 0;
+  }
+  return fine ? 1 : -1;
+}
+
+static int set_material(Adding *a, vlMaterialDef *d, const char *name, PyObject *value) {
+  if (IS("name")) return (d->name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("reflectance") && (d->kind == VL_MATERIAL_CONDUCTOR || d->kind == VL_MATERIAL_COATED_CONDUCTOR)) {
+    d->use_reflectance = true;
+    return 0;
+  }
+  if (IS("reflectance") && d->kind == VL_MATERIAL_SUBSURFACE) d->subsurface.from_reflectance = true;
+  if (IS("reflectance") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_REFLECTANCE;
+  if (IS("sigma_a") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_SIGMA_A;
+  if (IS("materials")) {
+    if (PySequence_Size(value) != 2) return PyErr_Clear(), raise_usage("materials: a pair of materials"), -1;
+    for (int i = 0; i < 2; i++) {
+      PyObject *item = PySequence_GetItem(value, i);
+      bool fine = item && handle(a, item, "materials", name, &d->materials[i].index);
+      Py_XDECREF(item);
+      if (!fine) return -1;
+    }
+    return 1;
+  }
+  return 0;
+}
+
+static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *value) {
+  static const struct {
+    const char *name;
+    size_t offset;
+    size_t per;
+  } grids[] = {{"density", offsetof(vlMediumDef, density), 1},
+               {"emission_scales", offsetof(vlMediumDef, emission_scales), 1},
+               {"temperature", offsetof(vlMediumDef, temperature), 1},
+               {"rgb_a", offsetof(vlMediumDef, rgb_a), 3},
+               {"rgb_s", offsetof(vlMediumDef, rgb_s), 3},
+               {"rgb_emission", offsetof(vlMediumDef, rgb_emission), 3}};
+  if (IS("name")) return (d->name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("transform") || IS("world_from_medium")) return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
+  for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
+    if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID)) continue;
+    const Numbers *n = array(a, value, 'f', name);
+    if (!n) return -1;
+    if (n->dimensions != (grids[i].per == 3 ? 4 : 3) || (grids[i].per == 3 && n->shape[3] != 3))
+      return raise_usage("%s: an array of nz x ny x nx%s", name, grids[i].per == 3 ? " x 3" : ""), -1;
+    if (d->nx > 1 && (d->nx != n->shape[2] || d->ny != n->shape[1] || d->nz != n->shape[0]))
+      return raise_usage("%s: the grids differ in size", name), -1;
+    d->nz = (uint32_t)n->shape[0], d->ny = (uint32_t)n->shape[1], d->nx = (uint32_t)n->shape[2];
+    memcpy((char *)d + grids[i].offset, &n->data, sizeof n->data);
+    return 1;
+  }
+  return 0;
+}
+
+static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value) {
+  int code;
+  if (IS("image")) return image_of(value, name, &d->image) ? 1 : -1;
+  if (IS("transform") || IS("world_from_light")) return numbers_copy(value, name, 16, d->world_from_light) ? 1 : -1;
+  if (IS("medium")) return handle(a, value, "media", name, &d->medium.index) ? 1 : -1;
+  if (IS("portal")) {
+    d->has_portal = true;
+    return floats(value, name, 12, &d->portal[0][0]) ? 1 : -1;
+  }
+  if (IS("space")) {
+    if (!choice(spaces, name, value, &code)) return -1;
+    d->space = (vlColorSpace)code;
+    return 1;
+  }
+  return 0;
+}
+
+static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value) {
+  static const struct {
+    const char *name;
+    char type;
+    size_t offset;
+    size_t per;
+  } arrays[] = {{"positions", 'f', offsetof(vlShapeDef, positions), 3},
+                {"normals", 'f', offsetof(vlShapeDef, normals), 3},
+                {"tangents", 'f', offsetof(vlShapeDef, tangents), 3},
+                {"uvs", 'f', offsetof(vlShapeDef, uvs), 2},
+                {"tangent_signs", 'f', offsetof(vlShapeDef, tangent_signs), 1},
+                {"colors", 'f', offsetof(vlShapeDef, colors), 4},
+                {"positions_close", 'f', offsetof(vlShapeDef, positions_close), 3},
+                {"normals_close", 'f', offsetof(vlShapeDef, normals_close), 3},
+                {"centers", 'd', offsetof(vlShapeDef, centers), 3},
+                {"radii", 'f', offsetof(vlShapeDef, radii), 1},
+                {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
+  if (IS("name")) return (d->label.name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("transform") || IS("group_from_shape")) return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
+  if (IS("material")) return handle(a, value, "materials", name, &d->material.index) ? 1 : -1;
+  if (IS("emission")) return handle(a, value, "emission", name, &d->emission.index) ? 1 : -1;
+  if (IS("group")) return handle(a, value, "groups", name, &d->group.index) ? 1 : -1;
+  if (IS("inside")) return handle(a, value, "media", name, &d->inside.index) ? 1 : -1;
+  if (IS("outside")) return handle(a, value, "media", name, &d->outside.index) ? 1 : -1;
+  if (IS("times")) return numbers_copy(value, name, 2, d->times) ? 1 : -1;
+  if (IS("reverse_orientation")) return d->reverse_orientation = PyObject_IsTrue(value) > 0, PyErr_Occurred() ? -1 : 1;
+  if (IS("backdrop")) return d->backdrop = PyObject_IsTrue(value) > 0, PyErr_Occurred() ? -1 : 1;
+  if (IS("indices")) {
+    const Numbers *n = array(a, value, 'I', name);
+    size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
+    if (!n) return -1;
+    if (n->count % per || n->count / per > 0x7fffffff) return raise_usage("indices: %zu numbers per face", per), -1;
+    d->faces = (uint32_t)(n->count / per);
+    d->indices = n->data;
+    return 1;
+  }
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    if (!IS(arrays[i].name)) continue;
+    const Numbers *n = array(a, value, arrays[i].type, name);
+    if (!n) return -1;
+    if (n->count % arrays[i].per || n->count / arrays[i].per > 0x7fffffff)
+      return raise_usage("%s: %zu numbers per element", name, arrays[i].per), -1;
+    memcpy((char *)d + arrays[i].offset, &n->data, sizeof n->data);
+    uint32_t count = (uint32_t)(n->count / arrays[i].per);
+    if (IS("positions")) d->vertices = count;
+    if (IS("positions") && d->kind == VL_SHAPE_CURVES) d->faces = count / 4;
+    if (IS("centers")) d->faces = count;
+    return 1;
+  }
+  return 0;
+}
+
+/* Arrays must be as long as the others: the library reads as many numbers as there are vertices. */
+static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
+  static const char *const names[] = {"normals",         "tangents",      "uvs",   "tangent_signs", "colors",
+                                      "positions_close", "normals_close", "radii", "widths",        NULL};
+  static const size_t pers[] = {3, 3, 2, 1, 4, 3, 3, 1, 2};
+  for (int i = 0; names[i]; i++) {
+    PyObject *value = PyDict_GetItemString(keywords, names[i]);
+    if (!value) continue;
+    Numbers n;
+    if (!numbers_read(value, 'd', names[i], &n)) return false;
+    size_t wanted = d->vertices;
+    if (i == 7 || i == 8) wanted = d->faces;
+    if (i == 0 && d->kind == VL_SHAPE_CURVES) wanted = 2 * (size_t)d->faces;
+    size_t got = n.count / pers[i];
+    numbers_release(&n);
+    if (got != wanted) return raise_usage("%s: %zu elements are needed, it has %zu", names[i], wanted, got), false;
+  }
+  return true;
+}
+
+/* ---- adding ------------------------------------------------------------------------------------------------------ */
+
+typedef union Def {
+  vlTextureDef texture;
+  vlMaterialDef material;
+  vlMediumDef medium;
+  vlEmissionDef emission;
+  vlLightDef light;
+  vlShapeDef shape;
+} Def;
+
+typedef enum Family { TEXTURES, MATERIALS, MEDIA, EMISSION, LIGHTS, SHAPES, GROUPS } Family;
+static const char *const family_names[] = {"textures", "materials", "media",  "emission",
+                                           "lights",   "shapes",    "groups", NULL};
+
+static void default_def(Family family, int kind, bool spectrum, Def *def) {
+  switch (family) {
+    case TEXTURES: def->texture = vl_default_texture_def((vlTextureKind)kind, spectrum); break;
+    case MATERIALS: def->material = vl_default_material_def((vlMaterialKind)kind); break;
+    case MEDIA: def->medium = vl_default_medium_def((vlMediumKind)kind); break;
+    case EMISSION: def->emission = vl_default_emission_def(); break;
+    case LIGHTS: def->light = vl_default_light_def((vlLightKind)kind); break;
+    case SHAPES: def->shape = vl_default_shape_def((vlShapeKind)kind); break;
+    case GROUPS: break;
+  }
+}
+
+static int set_extra(Adding *a, Family family, Def *def, const char *name, PyObject *value) {
+  switch (family) {
+    case TEXTURES: return set_texture(a, &def->texture, name, value);
+    case MATERIALS: return set_material(a, &def->material, name, value);
+    case MEDIA: return set_medium(a, &def->medium, name, value);
+    case LIGHTS: return set_light(a, &def->light, name, value);
+    case SHAPES: return set_shape(a, &def->shape, name, value);
+    case EMISSION:
+    case GROUPS: break;
+  }
+  return 0;
+}
+
+static uint32_t add(vlScene *scene, Family family, const Def *def) {
+  switch (family) {
+    case TEXTURES: return vl_scene_add_texture(scene, &def->texture).index;
+    case MATERIALS: return vl_scene_add_material(scene, &def->material).index;
+    case MEDIA: return vl_scene_add_medium(scene, &def->medium).index;
+    case EMISSION: return vl_scene_add_emission(scene, &def->emission).index;
+    case LIGHTS: return vl_scene_add_light(scene, &def->light).index;
+    case SHAPES: return vl_scene_add_shape(scene, &def->shape).index;
+    case GROUPS: break;
+  }
+  return 0;
+}
+
+static bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, PyObject *keywords,
+                    bool spectrum, Def *def) {
+  const Target target = {(char *)def, a->keep, a->scene, spectrum};
+  PyObject *name, *value;
+  Py_ssize_t position = 0;
+  while (PyDict_Next(keywords, &position, &name, &value)) {
+    const char *text = keep_text(a->keep, name);
+    int extra = text ? set_extra(a, family, def, text, value) : -1;
+    if (extra < 0) return false;
+    if (extra) continue;
+    const vlParameter *p = find_parameter(row->parameters, row->parameter_count, text);
+    if (!p && family == TEXTURES && spectrum && strncmp(text, "spectrum_", 9) == 0) {
+      char other[32] = "float_";
+      if (strlen(text) < 20) strcpy(other + 6, text + 9);
+      p = find_parameter(row->parameters, row->parameter_count, other);
+    }
+    if (!p) {
+      PyObject *names = PyList_New(0);
+      if (names && !append_names(names, row->parameters, row->parameter_count)) Py_CLEAR(names);
+      char what[96];
+      PyOS_snprintf(what, sizeof what, "keyword of this %s", thing);
+      return raise_unknown(what, text, names);
+    }
+    if (!set_parameter(&target, p, value)) return false;
+  }
+  return family != SHAPES || check_lengths(&def->shape, keywords);
+}
+
+static PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
+  Handle *h = make_object(TYPE_HANDLE);
+  if (!h) return NULL;
+  Py_INCREF((PyObject *)scene);
+  h->scene = scene;
+  h->family = family_names[family];
+  h->index = index;
+  return (PyObject *)h;
+}
+
+static PyObject *scene_error(Scene *self) {
+  vlError error = {0};
+  vlResult result = vl_scene_result(self->scene, &error);
+  return raise_result(result == VL_OK ? VL_ERROR_ARGUMENT : result, &error);
+}
+
+static PyObject *add_group(Scene *self, PyObject *name) {
+  PyObject *keep = PyList_New(0);
+  const char *text = !keep || name == Py_None ? NULL : keep_text(keep, name);
+  PyObject *result = NULL;
+  if (keep && (text || name == Py_None)) {
+    vlGroupId id = vl_scene_add_group(self->scene, text);
+    result = id.index ? new_handle(self, GROUPS, id.index) : scene_error(self);
+  }
+  Py_XDECREF(keep);
+  return result;
+}
+
+PyObject *scene_add(Scene *self, PyObject *arguments) {
+  PyObject *family_name, *kind_name, *keywords;
+  if (!PyArg_ParseTuple(arguments, "OOO!:_add", &family_name, &kind_name, &PyDict_Type, &keywords) || !scene_open(self))
+    return NULL;
+  int family = find_choice(family_names, "family", family_name);
+  if (family < 0) return NULL;
+  if (family == GROUPS) return add_group(self, kind_name);
+  const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
+  int kind = find_kind(kinds, kind_name);
+  if (kind < 0) return NULL;
+  PyObject *wanted = PyDict_GetItemString(keywords, "spectrum");
+  bool spectrum = family == TEXTURES &&
+                  (wanted ? PyObject_IsTrue(wanted) > 0 : !(kinds->rows[kind]->traits & VL_TEXTURE_FLOAT_ONLY));
+  Def def;
+  default_def((Family)family, kind, spectrum, &def);
+  Adding a = {.scene = self, .keep = PyList_New(0)};
+  PyObject *result = NULL;
+  if (a.keep && set_all(&a, (Family)family, kinds->rows[kind], kinds->thing, keywords, spectrum, &def)) {
+    Call call;
+    if (call_begin(&call, self->context, &self->busy)) {
+      uint32_t index = add(self->scene, (Family)family, &def);
+      call_end(&call);
+      result = index ? new_handle(self, (Family)family, index) : scene_error(self);
+    }
+  }
+  for (int i = 0; i < a.array_count; i++) numbers_release(&a.arrays[i]);
+  Py_XDECREF(a.keep);
+  return result;
+}
+
+/* _add_instance(group, matrices, times or None) */
+PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
+  PyObject *group, *matrices, *times;
+  if (!PyArg_ParseTuple(arguments, "OOO:_add_instance", &group, &matrices, &times) || !scene_open(self)) return NULL;
+  const Adding a = {.scene = self};
+  vlGroupId id;
+  if (!handle(&a, group, "groups", "group", &id.index)) return NULL;
+  Numbers poses = {0}, seconds = {0};
+  bool fine = numbers_read(matrices, 'd', "transform", &poses) &&
+              (times == Py_None || numbers_read(times, 'd', "times", &seconds));
+  size_t keys = times == Py_None ? 1 : seconds.count;
+  if (fine && (keys == 0 || keys > 65536 || poses.count != 16 * keys))
+    fine = raise_usage("an instance needs a matrix of 16 numbers for each time") != NULL;
+  if (fine && times == Py_None)
+    vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
+  else if (fine)
+    vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data, poses.data, (vlSource){0});
+  numbers_release(&poses);
+  numbers_release(&seconds);
+  if (!fine) return NULL;
+  if (vl_scene_result(self->scene, NULL) != VL_OK) return scene_error(self);
+  Py_RETURN_NONE;
+}
+
+/* _load_group(path, name or None, keywords): handle, {what: number}. */
+PyObject *scene_load_group(Scene *self, PyObject *arguments) {
+  PyObject *path, *name, *keywords, *keep = PyList_New(0), *result = NULL;
+  vlLoadDef def = vl_default_load_def();
+  const char *file, *text = NULL;
+  const Target target = {(char *)&def, keep, self, false};
+  if (!keep || !PyArg_ParseTuple(arguments, "OOO!:_load_group", &path, &name, &PyDict_Type, &keywords) ||
+      !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
+      !(file = keep_path(keep, path)) || (name != Py_None && !(text = keep_text(keep, name))))
+    goto end;
+  Call call;
+  if (!call_begin(&call, self->context, &self->busy)) goto end;
+  vlError error = {0};
+  vlLoadedGroup loaded;
+  vlResult done = vl_scene_load_group(self->scene, file, &def, text, &loaded, &error);
+  call_end(&call);
+  if (done != VL_OK) {
+    raise_result(done, &error);
+    goto end;
+  }
+  PyObject *group = new_handle(self, GROUPS, loaded.group.index);
+  if (group)
+    result =
+        Py_BuildValue("N{s:I,s:I,s:I,s:I,s:(ddd),s:(ddd)}", group, "shapes", loaded.shapes, "first_object",
+                      loaded.first_object, "lights", loaded.lights, "emitters", loaded.emitters, "low", loaded.low[0],
+                      loaded.low[1], loaded.low[2], "high", loaded.high[0], loaded.high[1], loaded.high[2]);
+end:
+  Py_XDECREF(keep);
+  return result;
+}

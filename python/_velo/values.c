@@ -1,0 +1,383 @@
+/* _velo/values.c: Python values in the members of defs, and back, through rows of velo/schema.h. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "module.h"
+
+bool keep_object(PyObject *keep, PyObject *object) {
+  return object && PyList_Append(keep, object) == 0;
+}
+
+const char *keep_text(PyObject *keep, PyObject *value) {
+  if (!PyUnicode_Check(value)) return raise_usage("expected a str"), NULL;
+  PyObject *bytes = PyUnicode_AsUTF8String(value);
+  const char *text = bytes && keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
+  Py_XDECREF(bytes);
+  return text;
+}
+
+const char *keep_path(PyObject *keep, PyObject *value) {
+  PyObject *bytes = NULL;
+  if (!PyUnicode_FSConverter(value, &bytes)) return NULL;
+  const char *text = keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
+  Py_XDECREF(bytes);
+  return text;
+}
+
+/* ---- names ------------------------------------------------------------------------------------------------------- */
+
+/* Compares letters and digits only, whatever their case: "blackman-harris" is "BLACKMAN_HARRIS". */
+static bool same_word(const char *a, const char *b) {
+  for (;; a++, b++) {
+    while (*a == '_' || *a == '-' || *a == ' ' || *a == '.') a++;
+    while (*b == '_' || *b == '-' || *b == ' ' || *b == '.') b++;
+    char x = *a >= 'A' && *a <= 'Z' ? (char)(*a + 32) : *a, y = *b >= 'A' && *b <= 'Z' ? (char)(*b + 32) : *b;
+    if (x != y) return false;
+    if (!x) return true;
+  }
+}
+
+bool raise_unknown(const char *thing, const char *name, PyObject *names) {
+  PyObject *error = names ? call_package("unknown", "(ssO)", thing, name, names) : NULL;
+  if (error) PyErr_SetObject((PyObject *)Py_TYPE(error), error);
+  Py_XDECREF(error);
+  Py_XDECREF(names);
+  return false;
+}
+
+/* Appends a text in lower case where it is a constant's name (AMBIENT_OCCLUSION). */
+static bool append_text(PyObject *list, const char *text) {
+  char lower[64] = "";
+  bool constant = strlen(text) < sizeof lower && strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") == strlen(text);
+  for (size_t i = 0; constant && text[i]; i++)
+    lower[i] = text[i] >= 'A' && text[i] <= 'Z' ? (char)(text[i] + 32) : text[i];
+  PyObject *object = PyUnicode_FromString(constant && text[1] ? lower : text);
+  bool fine = object && PyList_Append(list, object) == 0;
+  Py_XDECREF(object);
+  return fine;
+}
+
+static const char *last_word(const char *member) {
+  const char *dot = strrchr(member, '.');
+  return dot ? dot + 1 : member;
+}
+
+bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (rows[i].member && rows[i].member[0] && !(rows[i].flags & VL_PARAMETER_SHORTHAND) &&
+        !append_text(list, last_word(rows[i].member)))
+      return false;
+  return true;
+}
+
+int find_choice(const char *const *choices, const char *what, PyObject *value) {
+  PyObject *bytes = PyUnicode_Check(value) ? PyUnicode_AsUTF8String(value) : NULL;
+  const char *text = bytes ? PyBytes_AsString(bytes) : NULL;
+  if (!text) return Py_XDECREF(bytes), PyErr_Clear(), raise_usage("%s must be a str", what), -1;
+  int found = -1;
+  for (int i = 0; choices[i] && found < 0; i++)
+    if (same_word(choices[i], text)) found = i;
+  if (found < 0) {
+    PyObject *names = PyList_New(0);
+    for (int i = 0; names && choices[i]; i++)
+      if (!append_text(names, choices[i])) Py_CLEAR(names);
+    raise_unknown(what, text, names);
+  }
+  Py_DECREF(bytes);
+  return found;
+}
+
+int find_kind(const vlKindFamily *family, PyObject *name) {
+  PyObject *bytes = PyUnicode_Check(name) ? PyUnicode_AsUTF8String(name) : NULL;
+  const char *text = bytes ? PyBytes_AsString(bytes) : NULL;
+  if (!text) return Py_XDECREF(bytes), PyErr_Clear(), raise_usage("the kind of a %s must be a str", family->thing), -1;
+  int found = -1;
+  for (uint32_t k = 0; k < family->kind_count && found < 0; k++) {
+    const vlKindRow *row = family->rows[k];
+    if (same_word(family->constants[k], text) || (row->name && same_word(row->name, text)) ||
+        (row->alias && same_word(row->alias, text)))
+      found = (int)k;
+  }
+  if (found < 0) {
+    PyObject *names = PyList_New(0);
+    for (uint32_t k = 0; names && k < family->kind_count; k++)
+      if (!append_text(names, family->constants[k])) Py_CLEAR(names);
+    raise_unknown(family->thing, text, names);
+  }
+  Py_DECREF(bytes);
+  return found;
+}
+
+const vlParameter *find_parameter(const vlParameter *rows, size_t count, const char *name) {
+  for (int pass = 0; pass < 3; pass++)
+    for (size_t i = 0; i < count; i++) {
+      const vlParameter *p = &rows[i];
+      bool shorthand = p->flags & VL_PARAMETER_SHORTHAND;
+      if (!p->member || !p->member[0] || (shorthand && !p->second)) continue;
+      const char *candidate = pass == 0 ? p->member : pass == 1 ? last_word(p->member) : p->name;
+      if (!candidate || (shorthand && pass < 2)) continue;
+      if (pass == 0 ? same_word(candidate, name) && strlen(candidate) == strlen(name) : strcmp(candidate, name) == 0)
+        return p;
+    }
+  return NULL;
+}
+
+/* ---- spectra and ids --------------------------------------------------------------------------------------------- */
+
+/* An attribute. The name is interned, since the interpreter's cache of methods keeps the str. */
+static PyObject *get_attribute(PyObject *object, const char *name) {
+  PyObject *text = PyUnicode_InternFromString(name);
+  PyObject *value = text ? PyObject_GetAttr(object, text) : NULL;
+  Py_XDECREF(text);
+  return value;
+}
+
+/* The parts of velo.Spectrum: kind, scale, value. */
+static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s, const char *what) {
+  static const char *const kinds[] = {"constant", "rgb", "blackbody", "sampled", "named", NULL};
+  static const char *const spaces[] = {"srgb", "dci_p3", "rec2020", "aces2065_1", NULL};
+  PyObject *kind = get_attribute(object, "kind"), *value = get_attribute(object, "value");
+  PyObject *scale = get_attribute(object, "scale"), *space = get_attribute(object, "space");
+  int k = kind && value && scale && space ? find_choice(kinds, what, kind) : -1;
+  int place = k >= 0 ? find_choice(spaces, what, space) : -1;
+  bool fine = k >= 0 && place >= 0;
+  if (fine && k == VL_SPECTRUM_SAMPLED) {
+    PyObject *pairs[2] = {PySequence_GetItem(value, 0), PySequence_GetItem(value, 1)};
+    Numbers n[2];
+    memset(n, 0, sizeof n);
+    fine = pairs[0] && pairs[1] && numbers_read(pairs[0], 'f', what, &n[0]) && numbers_read(pairs[1], 'f', what, &n[1]);
+    if (fine && n[0].count != n[1].count)
+      fine = raise_usage("%s: a sampled spectrum needs as many values as wavelengths", what) != NULL;
+    const char *data[2] = {NULL, NULL};
+    for (int i = 0; fine && i < 2; i++) {
+      PyObject *bytes = PyBytes_FromStringAndSize(n[i].data, (Py_ssize_t)(n[i].count * sizeof(float)));
+      fine = keep_object(keep, bytes);
+      if (fine) data[i] = PyBytes_AsString(bytes);
+      Py_XDECREF(bytes);
+    }
+    *s = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED,
+                      .count = (uint32_t)n[0].count,
+                      .wavelengths = (const float *)(const void *)data[0],
+                      .values = (const float *)(const void *)data[1]};
+    for (int i = 0; i < 2; i++) numbers_release(&n[i]), Py_XDECREF(pairs[i]);
+  } else if (fine && k == VL_SPECTRUM_BLACKBODY) {
+    *s = vl_spectrum_blackbody((float)PyFloat_AsDouble(value));
+    fine = !PyErr_Occurred();
+  } else if (fine) {
+    fine = read_spectrum(keep, value, s, what);
+  }
+  if (fine) {
+    s->space = (vlColorSpace)place;
+    s->scale = (float)PyFloat_AsDouble(scale);
+    fine = !PyErr_Occurred();
+  }
+  Py_XDECREF(kind), Py_XDECREF(value), Py_XDECREF(scale), Py_XDECREF(space);
+  return fine;
+}
+
+bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *what) {
+  if (PyUnicode_Check(value)) {
+    const char *name = keep_text(keep, value);
+    if (!name) return false;
+    *s = vl_spectrum_named(name);
+    return true;
+  }
+  PyObject *space = get_attribute(value, "space");
+  if (space) {
+    Py_DECREF(space);
+    return read_spectrum_object(keep, value, s, what);
+  }
+  PyErr_Clear();
+  if (PyFloat_Check(value) || PyLong_Check(value) || (PyNumber_Check(value) && !PySequence_Check(value))) {
+    double number = PyFloat_AsDouble(value);
+    if (number == -1.0 && PyErr_Occurred()) return false;
+    *s = vl_spectrum_constant((float)number);
+    return true;
+  }
+  double rgb[3];
+  if (!numbers_copy(value, what, 3, rgb)) return false;
+  *s = vl_spectrum_rgb((float)rgb[0], (float)rgb[1], (float)rgb[2]);
+  return true;
+}
+
+/* The index of a handle of this family; UINT32_MAX with an exception. */
+static uint32_t handle_index(const Scene *scene, PyObject *value, const char *family, const char *what) {
+  const Handle *handle = (const Handle *)value;
+  if (strcmp(handle->family, family) != 0)
+    return raise_usage("%s: this is one of the scene's %s, not of its %s", what, handle->family, family), UINT32_MAX;
+  if (!scene || handle->scene != scene) return raise_usage("%s is part of another scene", what), UINT32_MAX;
+  return handle->index;
+}
+
+/* ---- members ----------------------------------------------------------------------------------------------------- */
+
+#define PUT(Type, number)                       \
+  do {                                          \
+    Type v_ = (Type)(number);                   \
+    memcpy(place, &v_, sizeof v_);              \
+    if (second) memcpy(second, &v_, sizeof v_); \
+  } while (0)
+
+static bool set_number(const vlParameter *p, PyObject *value, char *place, char *second) {
+  const char *what = last_word(p->member);
+  double number;
+  if (value == Py_None && p->type == VL_PARAMETER_DOUBLE) {
+    number = VL_UNSET;
+  } else {
+    if (PyUnicode_Check(value)) return raise_usage("%s must be a number", what), false;
+    number = PyFloat_AsDouble(value);
+    if (number == -1.0 && PyErr_Occurred()) return PyErr_Clear(), raise_usage("%s must be a number", what), false;
+  }
+  if (p->type == VL_PARAMETER_COUNT) {
+    if (!(number >= 0 && number <= 4294967295.0) || number != (double)(uint32_t)number)
+      return raise_usage("%s must be a whole number from 0, it is %g", what, number), false;
+    PUT(uint32_t, number);
+  } else if (p->type == VL_PARAMETER_FLOAT) {
+    PUT(float, number);
+  } else {
+    PUT(double, number);
+  }
+  return true;
+}
+
+static bool set_input(const Target *t, const vlParameter *p, PyObject *value, char *place, bool spectrum) {
+  const char *what = last_word(p->member);
+  vlTextureId texture = {0};
+  if (is_object(value, TYPE_HANDLE)) {
+    texture.index = handle_index(t->scene, value, "textures", what);
+    if (texture.index == UINT32_MAX) return false;
+  }
+  if (spectrum) {
+    vlSpectrumInput *input = (vlSpectrumInput *)(void *)place;
+    input->texture = texture;
+    return texture.index || read_spectrum(t->keep, value, &input->value, what);
+  }
+  vlFloatInput *input = (vlFloatInput *)(void *)place;
+  input->texture = texture;
+  if (texture.index) return true;
+  double number = PyFloat_AsDouble(value);
+  if (number == -1.0 && PyErr_Occurred())
+    return PyErr_Clear(), raise_usage("%s must be a number or a texture", what), false;
+  input->value = (float)number;
+  return true;
+}
+
+bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
+  const char *what = last_word(p->member);
+  char *place = t->def + p->offset, *second = p->second ? t->def + p->second : NULL;
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: {
+      int truth = PyObject_IsTrue(value);
+      if (truth < 0) return false;
+      PUT(bool, truth);
+      return true;
+    }
+    case VL_PARAMETER_COUNT:
+    case VL_PARAMETER_FLOAT:
+    case VL_PARAMETER_DOUBLE: return set_number(p, value, place, second);
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3: {
+      double three[3];
+      if (!numbers_copy(value, what, 3, three)) return false;
+      for (int i = 0; i < 3; i++) {
+        float single = (float)three[i];
+        if (p->type == VL_PARAMETER_FLOAT3)
+          memcpy(place + (size_t)i * sizeof single, &single, sizeof single);
+        else
+          memcpy(place + (size_t)i * sizeof *three, &three[i], sizeof *three);
+      }
+      return true;
+    }
+    case VL_PARAMETER_CHOICE: {
+      int choice = find_choice(p->choices, what, value);
+      if (choice < 0) return false;
+      PUT(int, choice);
+      return true;
+    }
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE: {
+      const char *text = NULL;
+      if (value != Py_None) {
+        text = p->type == VL_PARAMETER_FILE ? keep_path(t->keep, value) : keep_text(t->keep, value);
+        if (!text) return false;
+      }
+      memcpy(place, &text, sizeof text);
+      return true;
+    }
+    case VL_PARAMETER_SPECTRUM: return read_spectrum(t->keep, value, (vlSpectrum *)(void *)place, what);
+    case VL_PARAMETER_FLOAT_INPUT:
+      return set_input(t, p, value, place, false) && (!second || set_input(t, p, value, second, false));
+    case VL_PARAMETER_SPECTRUM_INPUT: return set_input(t, p, value, place, true);
+    case VL_PARAMETER_EITHER_INPUT: return set_input(t, p, value, t->spectrum ? second : place, t->spectrum);
+    case VL_PARAMETER_TEXTURE: {
+      vlTextureId id = {0};
+      if (value != Py_None) {
+        if (!is_object(value, TYPE_HANDLE)) return raise_usage("%s must be a texture", what), false;
+        id.index = handle_index(t->scene, value, "textures", what);
+        if (id.index == UINT32_MAX) return false;
+      }
+      memcpy(place, &id, sizeof id);
+      return true;
+    }
+    case VL_PARAMETER_BLOCK: return raise_usage("%s cannot be set by a keyword", what), false;
+  }
+  return false;
+}
+
+bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject *keywords) {
+  PyObject *name, *value;
+  Py_ssize_t position = 0;
+  while (PyDict_Next(keywords, &position, &name, &value)) {
+    PyObject *bytes = PyUnicode_AsUTF8String(name);
+    if (!bytes) return false;
+    const char *text = PyBytes_AsString(bytes);
+    const vlParameter *row = find_parameter(rows.rows, rows.count, text);
+    bool fine = row != NULL;
+    if (!row) {
+      PyObject *names = PyList_New(0);
+      if (names && !append_names(names, rows.rows, rows.count)) Py_CLEAR(names);
+      raise_unknown(thing, text, names);
+    } else {
+      fine = set_parameter(target, row, value);
+    }
+    Py_DECREF(bytes);
+    if (!fine) return false;
+  }
+  return true;
+}
+
+PyObject *get_parameter(const char *def, const vlParameter *p) {
+  const char *place = def + p->offset;
+  double three[3];
+  switch (p->type) {
+    case VL_PARAMETER_BOOL: return PyBool_FromLong(*(const bool *)place);
+    case VL_PARAMETER_COUNT: return PyLong_FromUnsignedLong(*(const uint32_t *)(const void *)place);
+    case VL_PARAMETER_FLOAT: return PyFloat_FromDouble((double)*(const float *)(const void *)place);
+    case VL_PARAMETER_DOUBLE: {
+      double value = *(const double *)(const void *)place;
+      if (isnan(value)) Py_RETURN_NONE;
+      return PyFloat_FromDouble(value);
+    }
+    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_DOUBLE3:
+      for (int i = 0; i < 3; i++)
+        three[i] = p->type == VL_PARAMETER_FLOAT3 ? (double)((const float *)(const void *)place)[i]
+                                                  : ((const double *)(const void *)place)[i];
+      return Py_BuildValue("(ddd)", three[0], three[1], three[2]);
+    case VL_PARAMETER_CHOICE: return PyUnicode_FromString(p->choices[*(const int *)(const void *)place]);
+    case VL_PARAMETER_STRING:
+    case VL_PARAMETER_FILE: {
+      const char *text = *(const char *const *)(const void *)place;
+      if (!text) Py_RETURN_NONE;
+      return PyUnicode_DecodeFSDefault(text);
+    }
+    case VL_PARAMETER_SPECTRUM:
+    case VL_PARAMETER_FLOAT_INPUT:
+    case VL_PARAMETER_SPECTRUM_INPUT:
+    case VL_PARAMETER_EITHER_INPUT:
+    case VL_PARAMETER_TEXTURE:
+    case VL_PARAMETER_BLOCK: break;
+  }
+  return raise_usage("%s cannot be read", p->member);
+}

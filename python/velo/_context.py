@@ -1,0 +1,34 @@
+"""The context that objects are made from, unless another is given."""
+from __future__ import annotations
+
+import os
+from typing import Any, Optional
+
+from velo import _velo
+
+Context = _velo.Context
+
+_default: Optional[Any] = None
+
+
+def default_context() -> Any:
+    """The context of this process: made at the first call, with a worker for each processor."""
+    global _default
+    if _default is None:
+        _default = _velo.Context()
+    return _default
+
+
+def set_threads(threads: int) -> None:
+    """Gives the default context this many workers. Objects that exist keep the context that they were made from."""
+    global _default
+    _default = _velo.Context(threads=threads)
+
+
+def _forget() -> None:
+    # The threads of a context do not survive fork(): the child makes a context of its own.
+    global _default
+    _default = None
+
+
+os.register_at_fork(after_in_child=_forget)

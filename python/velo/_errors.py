@@ -1,0 +1,104 @@
+"""Exceptions, the state of a render, messages of the library."""
+from __future__ import annotations
+
+import difflib
+import logging
+from typing import NamedTuple, Optional, Sequence
+
+
+class Error(Exception):
+    """What velo reports. `message` is one line; `file`, `line` and `column` (from 1) name the place, None: not known.
+    `code` is the exit code that the program velo has for such errors."""
+
+    code = 1
+    file: Optional[str] = None
+    line: Optional[int] = None
+    column: Optional[int] = None
+    message: str = ""
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(message)
+        self.message = message
+
+    def __str__(self) -> str:
+        place = ":".join(str(part) for part in (self.file, self.line, self.column) if part)
+        return f"{place}: {self.message}" if place else self.message
+
+
+class UsageError(Error, ValueError):
+    """A call is wrong: an unknown keyword, a value out of range, an object that is closed or in use."""
+    code = 2
+
+
+class SceneError(Error):
+    """The contents of a file or of a scene are wrong."""
+    code = 3
+
+
+class UnsupportedError(SceneError):
+    """Valid, but not supported."""
+
+
+class MissingFileError(Error, FileNotFoundError):
+    """A file does not exist."""
+    code = 4
+
+
+class OutputError(Error, OSError):
+    """Reading or writing failed: no such folder, disk full, permission."""
+    code = 5
+
+
+class OutOfMemoryError(Error, MemoryError):
+    """The memory does not suffice."""
+
+
+class ForkError(Error, RuntimeError):
+    """An object made before fork() was used after it."""
+
+
+# By vlResult.
+_CLASSES = {1: UsageError, 2: OutOfMemoryError, 3: SceneError, 4: MissingFileError, 5: OutputError, 6: UnsupportedError}
+
+
+def make(result: int, message: str, line: int, column: int) -> Error:
+    """The exception of a vlResult. The extension module calls it."""
+    error = _CLASSES.get(result, Error)(message)
+    error.line = line or None
+    error.column = column or None
+    return error
+
+
+def fork_error() -> ForkError:
+    """The error of an object of the parent process."""
+    return ForkError("this object was made before fork(), which does not copy its threads: make it again in this process")
+
+
+def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
+    """There is no `thing` of that name: the message has the nearest names."""
+    known = sorted(set(names))
+    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
+    if near:
+        return UsageError(f"unknown {thing} '{name}': did you mean {' or '.join(near)}?")
+    return UsageError(f"unknown {thing} '{name}' (known: {', '.join(known)})")
+
+
+class Progress(NamedTuple):
+    """The state of a render. While `pass_done` is false, a callback must not use velo."""
+    spp: int  #: samples per pixel of finished passes
+    spp_total: int  #: samples per pixel that were asked for
+    elapsed: float  #: seconds
+    remaining: float  #: seconds, an estimate; infinity before there is one
+    fraction: float  #: share of the work that is done, 0 to 1
+    paths: int  #: paths traced
+    rays: int  #: rays traced
+    pass_done: bool  #: a pass is finished: the film may be read
+
+
+_LEVELS = (logging.ERROR, logging.WARNING, logging.INFO, logging.DEBUG)
+
+
+def log(level: int, message: str, file: str, line: int, column: int) -> None:
+    """Passes a message of the library to logging's logger "velo"."""
+    place = ":".join(str(part) for part in (file, line, column) if part)
+    logging.getLogger("velo").log(_LEVELS[level], "%s", f"{place}: {message}" if place else message)

@@ -1,0 +1,145 @@
+"""Cameras: every model, K and poses as arrays, projection of arrays, camera files."""
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Optional, Sequence, Union
+
+from velo import _arrays, _velo
+from velo._context import default_context
+from velo.image import Path
+
+
+class Projection(NamedTuple):
+    """Where points are seen."""
+    pixels: Any  #: n x 2: x, y; the first pixel's centre is (0.5, 0.5)
+    z: Any  #: n: depth along the view axis, scene units
+    valid: Any  #: n: False for points behind the camera or outside its domain, whose numbers are 0
+
+
+class Rays(NamedTuple):
+    """What pixels look along, in world space."""
+    origins: Any  #: n x 3, scene units
+    directions: Any  #: n x 3, unit vectors
+    valid: Any  #: n: False for pixels outside the camera's domain, whose numbers are 0
+
+
+def _flags(data: bytearray, count: int) -> Any:
+    flags = _arrays.from_bytes(data, "B", (count,))
+    return flags.astype(bool) if _arrays.numpy_or_none() is not None else [bool(flag) for flag in flags]
+
+
+class Camera(_velo.Camera):
+    """A camera for an image of `width` x `height` pixels. It never changes; `replace` makes another one.
+
+    Keywords are the members of vlCameraDef (docs/cameras.md): projection, fov, fx, fy, cx, cy, skew, focal_mm,
+    sensor_width_mm, view_distance, zoom, pixel_size, eye, lookat, up, roll, lens_radius, f_number, focus_distance, shape,
+    distortion, distortion_coefficients and so on. Angles are in radians, lengths in scene units. Further ones:
+
+    K: 3 x 3, [fx skew cx; 0 fy cy; 0 0 1], pixels.
+    world_from_camera, camera_from_world: 4 x 4; the camera's x points right, y down, z forward.
+    colmap: (model, parameters), one of COLMAP's camera models.
+    shutter: pairs of time (0 to 1) and opening.
+
+    Without keywords it is a pinhole camera at the origin that looks along -z, with 90 degrees across the smaller side."""
+
+    def __new__(cls, width: int, height: int, **keywords: Any) -> "Camera":
+        return _velo.camera_new(width, height, keywords)
+
+    @property
+    def width(self) -> int:
+        """Pixels in a row."""
+        return self.resolution[0]
+
+    @property
+    def height(self) -> int:
+        """Number of rows."""
+        return self.resolution[1]
+
+    @property
+    def K(self) -> Any:
+        """3 x 3: [fx skew cx; 0 fy cy; 0 0 1], pixels. For the first pixel's centre at (0, 0), as OpenCV has it, subtract
+        0.5 from cx and cy."""
+        return _arrays.from_rows(self._k, 3, 3)
+
+    @property
+    def world_from_camera(self) -> Any:
+        """4 x 4: the pose; x right, y down, z forward."""
+        return _arrays.from_rows(self._world_from_camera, 4, 4)
+
+    @property
+    def camera_from_world(self) -> Any:
+        """4 x 4: the inverse of the pose."""
+        return _arrays.from_rows(self._camera_from_world, 4, 4)
+
+    def get(self, name: str) -> Any:
+        """A parameter as it was given; None: it was not."""
+        return self._get(name)
+
+    def replace(self, **keywords: Any) -> "Camera":
+        """This camera with other parameters. A given focal length replaces all that were given before."""
+        return self._replace(keywords)
+
+    def resize(self, width: int, height: int) -> "Camera":
+        """This camera for another image size. Focal length and principal point scale with the smaller side."""
+        return self._resize(width, height)
+
+    def move(self, world_from_camera: Any) -> "Camera":
+        """This camera with another pose, 4 x 4, at rest."""
+        return self._move(world_from_camera)
+
+    def at(self, time: float) -> "Camera":
+        """This camera frozen at a time, seconds."""
+        return self._at(time)
+
+    def eyes(self) -> tuple["Camera", "Camera"]:
+        """The left and the right camera of a stereo pair (keywords stereo_mode, interocular, convergence)."""
+        return self._stereo()
+
+    def project(self, points: Any) -> Projection:
+        """Where points (n x 3, world space) are seen."""
+        pixels, z, valid = self._project(points)
+        count = len(valid)
+        return Projection(_arrays.from_bytes(pixels, "d", (count, 2)), _arrays.from_bytes(z, "d", (count,)),
+                          _flags(valid, count))
+
+    def unproject(self, pixels: Any) -> Rays:
+        """The rays through film points (n x 2; the first pixel's centre is (0.5, 0.5))."""
+        origins, directions, valid = self._unproject(pixels)
+        count = len(valid)
+        return Rays(_arrays.from_bytes(origins, "d", (count, 3)), _arrays.from_bytes(directions, "d", (count, 3)),
+                    _flags(valid, count))
+
+    def write(self, path: Path, *, dialect: Optional[str] = None, name: str = "", drop: Sequence[str] = (),
+              context: Any = None) -> None:
+        """Writes a camera file of velo or of another tool (docs/camera-files.md).
+
+        dialect: "velo", "opencv", "colmap", "nerf", ...; default: by the suffix. drop: fields that may be lost."""
+        self._write(context or default_context(), path, dialect, name, list(drop))
+
+    def __repr__(self) -> str:
+        return f"<velo.Camera {self.projection}, {self.width} x {self.height}>"
+
+
+_velo.set_type("Camera", Camera)
+
+
+class TrajectoryFrame(NamedTuple):
+    """A pose of a trajectory."""
+    name: str  #: of the image; may be empty
+    camera: Optional[Camera]  #: with this pose; None: the file has only poses
+    world_from_camera: Any  #: 4 x 4
+    time: Optional[float]  #: seconds; None: not in the file
+
+
+def read_camera(path: Path, *, dialect: Optional[str] = None, frame: Union[str, int, None] = None, width: int = 0,
+                height: int = 0, context: Any = None) -> Camera:
+    """Reads a camera file of velo or of another tool; default: the file's contents decide the dialect.
+
+    frame: name or number (from 0) of one of several cameras. width, height: for files without an image size."""
+    return _velo.camera_read(context or default_context(), path, dialect, frame, width, height)[0]
+
+
+def read_trajectory(path: Path, *, dialect: Optional[str] = None, width: int = 0, height: int = 0,
+                    context: Any = None) -> list[TrajectoryFrame]:
+    """Reads a file of many poses and several cameras: COLMAP, transforms.json, Kalibr, TUM, KITTI, CSV (docs/rigs.md)."""
+    frames = _velo.trajectory_read(context or default_context(), path, dialect, width, height)
+    return [TrajectoryFrame(name, camera, _arrays.from_rows(pose, 4, 4), time) for name, camera, pose, time in frames]

@@ -1,0 +1,80 @@
+"""Writes the BOP challenge's format (https://github.com/thodan/bop_toolkit, docs/bop_datasets_format.md).
+
+Poses are those of the models in millimetres, model to camera; cameras are OpenCV's (x right, y down, z forward, the first
+pixel's centre at (0, 0)). depth * depth_scale is the depth along the view axis in millimetres; 0: nothing, or beyond 16 bits."""
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy
+
+from velo.dataset.files import write_bytes, write_json
+from velo.dataset.geometry import multiply
+from velo.dataset.png import png
+from velo.dataset.stage import Frame, Stage
+from velo.dataset.writer import Writer, box_of, display
+
+MM = 1000.0
+
+
+class BopWriter(Writer):
+    """OUT/bop: models/models_info.json, camera.json, and a scene for each camera: train_pbr/000000."""
+
+    def __init__(self, stage: Stage, folder: str, depth_scale: float = 0.1) -> None:
+        super().__init__(stage, os.path.join(folder, "bop"))
+        self.depth_scale = depth_scale
+        info = {}
+        for number, (low, high) in enumerate(stage.boxes):
+            size = [(b - a) * MM for a, b in zip(low, high)]
+            info[str(number + 1)] = {"name": stage.names[number], "diameter": sum(s * s for s in size) ** 0.5,
+                                     **{f"min_{axis}": value * MM for axis, value in zip("xyz", low)},
+                                     **{f"size_{axis}": value for axis, value in zip("xyz", size)}}
+        write_json(os.path.join(self.folder, "models", "models_info.json"), info)
+
+    def write(self, frame: Frame, scene: int) -> None:
+        folder = os.path.join(self.folder, "train_pbr", f"{scene:06d}")
+        name = f"{frame.frame:06d}"
+        write_bytes(os.path.join(folder, "rgb", f"{name}.png"), png(display(frame)))
+        steps = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * MM / self.depth_scale)
+        known = numpy.isfinite(steps) & (steps > 0) & (steps < 65536)
+        depth = numpy.where(known, steps, 0).astype("uint16")
+        write_bytes(os.path.join(folder, "depth", f"{name}.png"), png(depth))
+        k = numpy.array(frame.camera.K)
+        k[0, 2] -= 0.5
+        k[1, 2] -= 0.5
+        camera_from_world = [[float(value) for value in row] for row in frame.camera.camera_from_world]
+        camera = {"cam_K": k.ravel().tolist(), "depth_scale": self.depth_scale,
+                  "cam_R_w2c": [value for row in camera_from_world[:3] for value in row[:3]],
+                  "cam_t_w2c": [row[3] * MM for row in camera_from_world[:3]]}
+        truths, infos = [], []
+        for number, item in enumerate(frame.instances):
+            pose = multiply(camera_from_world, item.world_from_model)
+            truths.append({"cam_R_m2c": [value for row in pose[:3] for value in row[:3]],
+                           "cam_t_m2c": [row[3] * MM for row in pose[:3]], "obj_id": item.model + 1})
+            write_bytes(os.path.join(folder, "mask", f"{name}_{number:06d}.png"), png(item.whole))
+            write_bytes(os.path.join(folder, "mask_visib", f"{name}_{number:06d}.png"), png(item.mask))
+            whole, seen = int(item.whole.sum()), int(item.mask.sum())
+            infos.append({"bbox_obj": box_of(item.whole, (-1, -1, -1, -1)), "bbox_visib": box_of(item.mask, (-1, -1, -1, -1)),
+                          "px_count_all": whole, "px_count_valid": int((item.whole & (depth > 0)).sum()),
+                          "px_count_visib": seen, "visib_fract": seen / whole if whole else 0.0})
+        self.part(frame, {"scene": scene, "camera": camera, "gt": truths, "info": infos,
+                          "size": list(frame.camera.resolution)})
+
+    def finish(self) -> None:
+        scenes: dict[int, dict[str, dict[str, Any]]] = {}
+        first: Any = None
+        for number, part in self.parts():
+            first = first or part
+            tables = scenes.setdefault(part["scene"], {"scene_camera": {}, "scene_gt": {}, "scene_gt_info": {}})
+            tables["scene_camera"][str(number)] = part["camera"]
+            tables["scene_gt"][str(number)] = part["gt"]
+            tables["scene_gt_info"][str(number)] = part["info"]
+        for scene, tables in scenes.items():
+            for name, table in tables.items():
+                write_json(os.path.join(self.folder, "train_pbr", f"{scene:06d}", f"{name}.json"), table)
+        if first:
+            k = first["camera"]["cam_K"]
+            write_json(os.path.join(self.folder, "camera.json"),
+                       {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5], "width": first["size"][0], "height": first["size"][1],
+                        "depth_scale": self.depth_scale})

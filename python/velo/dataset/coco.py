@@ -1,0 +1,129 @@
+"""Writes COCO's annotations of instances and keypoints (https://cocodataset.org/#format-data).
+
+Masks are polygons along the pixels' edges, or run lengths (columns first) where a mask has holes or `rle` is set. Keypoints
+are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidden, 0: outside the image."""
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy
+
+from velo.dataset.files import write_bytes, write_json
+from velo.dataset.geometry import transform
+from velo.dataset.png import png
+from velo.dataset.stage import Frame, Instance, Stage
+from velo.dataset.writer import Writer, box_of, display
+
+
+def run_lengths(mask: Any) -> dict[str, Any]:
+    """COCO's uncompressed run lengths of a mask: numbers of 0s and 1s in turn, columns first, 0s first."""
+    flat = numpy.asarray(mask, dtype=bool).ravel(order="F")
+    changes = numpy.flatnonzero(flat[1:] != flat[:-1]) + 1
+    edges = numpy.concatenate([[0], changes, [len(flat)]])
+    counts = numpy.diff(edges).tolist()
+    if len(flat) and flat[0]:
+        counts = [0] + counts
+    return {"counts": counts, "size": [int(mask.shape[0]), int(mask.shape[1])]}
+
+
+def outlines(mask: Any) -> tuple[list[list[float]], bool]:
+    """The outer edges of a mask's parts as polygons x0, y0, x1, y1, ...; and whether a part has holes. Pixels that touch at a
+    corner only are separate parts."""
+    padded = numpy.pad(numpy.asarray(mask, dtype=bool), 1)
+    # Directed edges around set pixels, with the mask on the right (y points down): from corner to corner.
+    following: dict[tuple[int, int], list[tuple[int, int]]] = {}
+
+    def add(edges: Any, start: tuple[int, int], end: tuple[int, int]) -> None:
+        for y, x in zip(*numpy.nonzero(edges)):
+            following.setdefault((x + start[0], y + start[1]), []).append((x + end[0], y + end[1]))
+
+    inner = padded[1:-1, 1:-1]
+    add(inner & ~padded[:-2, 1:-1], (0, 0), (1, 0))  # upper edges, to the right
+    add(inner & ~padded[1:-1, 2:], (1, 0), (1, 1))  # right edges, down
+    add(inner & ~padded[2:, 1:-1], (1, 1), (0, 1))  # lower edges, to the left
+    add(inner & ~padded[1:-1, :-2], (0, 1), (0, 0))  # left edges, up
+    polygons, holes = [], False
+    while following:
+        start = next(iter(following))
+        points, position, direction = [start], start, (0, 0)
+        while True:
+            ends = following[position]
+            # At a corner where two pixels touch, the turn to the right stays with this pixel.
+            best = max(ends, key=lambda end: direction[0] * (end[1] - position[1]) - direction[1] * (end[0] - position[0]))
+            ends.remove(best)
+            if not ends:
+                del following[position]
+            direction = (best[0] - position[0], best[1] - position[1])
+            position = best
+            if position == start:
+                break
+            points.append(position)
+        corners = [p for i, p in enumerate(points)
+                   if not (points[i - 1][0] == p[0] == points[(i + 1) % len(points)][0]
+                           or points[i - 1][1] == p[1] == points[(i + 1) % len(points)][1])]
+        area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, corners[1:] + corners[:1]))
+        if area < 0:
+            holes = True
+        else:
+            polygons.append([float(value) for corner in corners for value in corner])
+    return polygons, holes
+
+
+class CocoWriter(Writer):
+    """OUT/coco: images/*.png and annotations.json."""
+
+    def __init__(self, stage: Stage, folder: str, rle: bool = False) -> None:
+        super().__init__(stage, os.path.join(folder, "coco"))
+        self.rle = rle
+
+    def write(self, frame: Frame, scene: int) -> None:
+        name = f"{frame.frame:06d}_{frame.view}.png"
+        write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
+        width, height = frame.camera.resolution
+        annotations = [self._annotation(frame, item) for item in frame.instances if item.mask.any()]
+        self.part(frame, {"image": {"file_name": f"images/{name}", "width": width, "height": height}, "annotations": annotations})
+
+    def _annotation(self, frame: Frame, item: Instance) -> dict[str, Any]:
+        polygons, holes = ([], True) if self.rle else outlines(item.mask)
+        result: dict[str, Any] = {"category_id": item.model + 1, "iscrowd": 0, "area": int(item.mask.sum()),
+                                  "bbox": box_of(item.mask, (0, 0, 0, 0)),
+                                  "segmentation": run_lengths(item.mask) if holes else polygons}
+        points = list(self.stage.recipe.models[item.model].keypoints.values())
+        if points:
+            keypoints, count = self._keypoints(frame, item, points)
+            result.update(keypoints=keypoints, num_keypoints=count)
+        return result
+
+    @staticmethod
+    def _keypoints(frame: Frame, item: Instance, points: Any) -> tuple[list[float], int]:
+        world = [transform(item.world_from_model, [value * item.scale for value in point]) for point in points]
+        seen = frame.camera.project(world)
+        depth = frame.image["Z"]
+        height, width = depth.shape
+        result: list[float] = []
+        count = 0
+        for (x, y), z, valid in zip(seen.pixels.tolist(), seen.z.tolist(), seen.valid.tolist()):
+            if not valid or not (0 <= x < width and 0 <= y < height):
+                result += [0, 0, 0]
+                continue
+            # Visible: the surface there is the object's, and not in front by more than 1 % of the distance.
+            here = item.mask[int(y), int(x)] and depth[int(y), int(x)] > 0.99 * z
+            result += [x, y, 2 if here else 1]
+            count += 1
+        return result, count
+
+    def finish(self) -> None:
+        categories = []
+        for number, (name, model) in enumerate(zip(self.stage.names, self.stage.recipe.models)):
+            category: dict[str, Any] = {"id": number + 1, "name": name, "supercategory": "object"}
+            if model.keypoints:
+                category.update(keypoints=list(model.keypoints), skeleton=[list(pair) for pair in model.skeleton])
+            categories.append(category)
+        images, annotations = [], []
+        for image, (_, part) in enumerate(self.parts(), 1):
+            images.append({"id": image, **part["image"]})
+            for annotation in part["annotations"]:
+                annotations.append({"id": len(annotations) + 1, "image_id": image, **annotation})
+        write_json(os.path.join(self.folder, "annotations.json"),
+                   {"images": images, "annotations": annotations, "categories": categories})

@@ -1,0 +1,30 @@
+"""Writes plain OpenEXR files: linear colours, depth, normals and ids as they are, and a JSON file beside each."""
+from __future__ import annotations
+
+import os
+
+from velo.dataset.files import write_json
+from velo.dataset.stage import Frame, Stage
+from velo.dataset.writer import Writer, box_of
+
+
+class ExrWriter(Writer):
+    """OUT/exr: 000000_camera.exr (R G B A, Z, N, id.instance, Recipe.channels) and 000000_camera.json."""
+
+    def __init__(self, stage: Stage, folder: str) -> None:
+        super().__init__(stage, os.path.join(folder, "exr"))
+
+    def write(self, frame: Frame, scene: int) -> None:
+        os.makedirs(self.folder, exist_ok=True)
+        name = os.path.join(self.folder, f"{frame.frame:06d}_{frame.view}")
+        frame.image.write(name + ".exr")
+        ids = frame.image["id.instance"]
+        write_json(name + ".json", {
+            "frame": frame.frame, "view": frame.view, "width": frame.camera.width, "height": frame.camera.height,
+            "K": [[float(value) for value in row] for row in frame.camera.K],
+            "distortion": frame.camera.get("distortion"), "distortion_coefficients": list(frame.camera.distortion_coefficients),
+            "world_from_camera": [[float(value) for value in row] for row in frame.camera.world_from_camera],
+            "instances": [{"class": item.name, "id_instance": int(ids[item.mask][0]) if item.mask.any() else 0,
+                           "world_from_model": item.world_from_model, "scale": item.scale,
+                           "box": box_of(item.mask, (0, 0, 0, 0)), "pixels": int(item.mask.sum()),
+                           "pixels_whole": int(item.whole.sum())} for item in frame.instances]})

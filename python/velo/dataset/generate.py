@@ -1,0 +1,45 @@
+"""Makes the frames of a recipe and writes them."""
+from __future__ import annotations
+
+import os
+from typing import Any, Callable, Iterable, Optional, Sequence, Union
+
+from velo._errors import UsageError
+from velo.dataset.bop import BopWriter
+from velo.dataset.coco import CocoWriter
+from velo.dataset.exr import ExrWriter
+from velo.dataset.nerfstudio import NerfstudioWriter
+from velo.dataset.recipe import Recipe
+from velo.dataset.stage import Stage
+from velo.dataset.writer import Writer
+
+WRITERS: dict[str, Any] = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter}
+
+
+def make_writers(stage: Stage, folder: str, names: Iterable[str]) -> list[Writer]:
+    """The writers of these names: bop, coco, nerfstudio, exr."""
+    writers = []
+    for name in names:
+        if name not in WRITERS:
+            raise UsageError(f"unknown writer '{name}' (known: {', '.join(sorted(WRITERS))})")
+        writers.append(WRITERS[name](stage, folder))
+    return writers
+
+
+def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers: Sequence[str] = ("bop",),
+             frames: Optional[Iterable[int]] = None, progress: Optional[Callable[[int], None]] = None,
+             context: Any = None) -> None:
+    """Renders frames and writes them to a folder.
+
+    frames: numbers from 0; default all of the recipe. Shards on several machines make different frames of one folder; the
+    tables over all frames are written anew by each, from what is there. progress: called with each finished frame."""
+    stage = Stage(recipe, context=context)
+    made = make_writers(stage, os.fspath(folder), writers)
+    for number in range(recipe.frames) if frames is None else frames:
+        for scene, frame in enumerate(stage.render(number)):
+            for writer in made:
+                writer.write(frame, scene)
+        if progress:
+            progress(number)
+    for writer in made:
+        writer.finish()

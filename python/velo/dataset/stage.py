@@ -1,0 +1,301 @@
+"""Plans a frame (numbers only) and renders it."""
+from __future__ import annotations
+
+import logging
+import math
+import os
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple, Optional
+
+import numpy
+
+import velo
+from velo._errors import UsageError
+from velo.dataset.cameras import Cameras, View
+from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse
+from velo.dataset.placing import Thing, place_things
+from velo.dataset.random import Random
+from velo.dataset.recipe import Materials, Model, Poses, Recipe
+
+_log = logging.getLogger("velo.dataset")
+
+
+class Placed(NamedTuple):
+    """An object of a plan."""
+    model: int  #: number of the model in the recipe, from 0
+    pose: Matrix  #: world from the model's file, with the model's scale
+
+
+@dataclass
+class Plan:
+    """What a frame shows. It depends on the recipe and the frame's number only."""
+    frame: int
+    seed: int  #: of the render
+    objects: list[Placed]
+    views: list[View]
+    distractors: list[dict[str, Any]] = field(default_factory=list)
+    lights: list[dict[str, Any]] = field(default_factory=list)
+    environment: Optional[dict[str, Any]] = None
+    ground: Optional[dict[str, Any]] = None
+
+
+@dataclass
+class Instance:
+    """An object in an image."""
+    model: int  #: number of the model in the recipe, from 0
+    name: str  #: its class
+    world_from_model: Matrix  #: rigid: of the scaled model
+    scale: float  #: from the file's unit to metres
+    mask: Any  #: height x width, bool: the pixels whose centres show it
+    whole: Any  #: the same with everything else taken away
+
+
+@dataclass
+class Frame:
+    """An image of a frame with its annotations."""
+    frame: int
+    view: str
+    camera: Any  #: velo.Camera
+    image: Any  #: velo.Image: R G B A, Z, N, id.instance, ...
+    instances: list[Instance]
+
+
+class _Loaded(NamedTuple):
+    """A model in a scene of its own."""
+    scene: Any
+    name: str
+    low: Any
+    high: Any
+    world: Any
+
+
+def _load_model(scene: Any, model: Model, folder: str) -> tuple[Any, str, Any, Any]:
+    """Adds a model to a scene: group, name, bounding box."""
+    if model.path:
+        loaded = scene.load_group(os.path.join(folder, model.path), model.name or None)
+        return loaded.group, loaded.name, loaded.low, loaded.high
+    if model.positions is None or model.indices is None or not model.name:
+        raise UsageError("a model needs a path, or a name, positions and indices")
+    group = scene.add_group(model.name)
+    keywords: dict[str, Any] = {}
+    if model.material:
+        settings = dict(model.material)
+        keywords["material"] = scene.add_material(settings.pop("kind", "principled"), **settings)
+    positions = numpy.ascontiguousarray(model.positions, dtype="float32")
+    scene.add_mesh(positions, numpy.ascontiguousarray(model.indices, dtype="uint32"), group=group, name=model.name,
+                   **keywords)
+    return group, model.name, positions.min(0).tolist(), positions.max(0).tolist()
+
+
+def _random_material(bounds: Materials, random: Random) -> dict[str, Any]:
+    low, high = bounds.color
+    material: dict[str, Any] = {"reflectance": random.point(low, high), "roughness": random.within(bounds.roughness),
+                                "metallic": random.within(bounds.metallic)}
+    if bounds.textures:
+        material["texture"] = random.choice(list(bounds.textures))
+    return material
+
+
+class Stage:
+    """Renders the frames of a recipe."""
+
+    def __init__(self, recipe: Recipe, *, context: Any = None) -> None:
+        if not recipe.models:
+            raise UsageError("the recipe has no models")
+        self.recipe = recipe
+        self._context = context
+        self._cameras = Cameras(recipe)
+        self._solo = [self._load(model) for model in recipe.models]
+        names = [solo.name for solo in self._solo]
+        if len(set(names)) < len(names):
+            raise UsageError("two models have the same name: give them names")
+        self.names = names  #: the classes, in the recipe's order
+        #: bounding boxes in metres, in the models' own spaces
+        self.boxes = [([value * model.scale for value in solo.low], [value * model.scale for value in solo.high])
+                      for model, solo in zip(recipe.models, self._solo)]
+
+    def _load(self, model: Model) -> _Loaded:
+        scene = velo.Scene(context=self._context)
+        group, name, low, high = _load_model(scene, model, self.recipe.folder)
+        scene.add_instance(group, place(((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)))
+        return _Loaded(scene, name, low, high, scene.world())
+
+    # ---- plans
+
+    def plan(self, frame: int) -> Plan:
+        """What a frame shows."""
+        recipe = self.recipe
+
+        def random(purpose: str) -> Random:
+            return Random(recipe.seed, frame, purpose)
+
+        things, sizes = self._things(random)
+        if isinstance(recipe.placing, Poses):
+            objects = self._given(frame)
+            distractors: list[dict[str, Any]] = []
+        else:
+            objects, distractors = [], []
+            for thing, pose in place_things(recipe.placing, things, frame, random("placing")):
+                if pose is None:
+                    _log.warning("frame %d: no room for %s", frame, thing.name)
+                elif thing.index >= 0:
+                    objects.append(Placed(thing.index, pose))
+                else:
+                    distractors.append({**sizes[-1 - thing.index], "pose": pose})
+        plan = Plan(frame, random("render").seed32(), objects, self._cameras.views(frame), distractors)
+        plan.lights = self._plan_lights(random("lights"))
+        plan.environment = self._plan_environment(random("environment"))
+        if recipe.ground:
+            plan.ground = _random_material(recipe.ground.materials, random("ground"))
+        return plan
+
+    def _things(self, random: Any) -> tuple[list[Thing], list[dict[str, Any]]]:
+        things = []
+        counts = random("counts")
+        for number, (model, solo) in enumerate(zip(self.recipe.models, self._solo)):
+            for _ in range(counts.count(model.count)):
+                things.append(Thing(number, solo.name, solo.low, solo.high, model.scale))
+        sizes: list[dict[str, Any]] = []
+        rule = self.recipe.distractors
+        if rule:
+            draw = random("distractors")
+            for number in range(draw.count(rule.count)):
+                half = [draw.within(rule.size) / 2 for _ in range(3)]
+                ball = draw.number(0, 1) < 0.5
+                half = [half[0]] * 3 if ball else half
+                sizes.append({"half": half, "ball": ball, "material": _random_material(rule.materials, draw)})
+                things.append(Thing(-1 - number, "distractor", [-h for h in half], half, 1.0))
+        return things, sizes
+
+    def _given(self, frame: int) -> list[Placed]:
+        frames = self.recipe.placing.frames
+        if not frames:
+            raise UsageError("poses: no frames are given")
+        objects = []
+        for name, pose in frames[frame % len(frames)]:
+            if name not in self.names:
+                raise UsageError(f"poses: there is no model '{name}'")
+            model = self.names.index(name)
+            matrix = [[float(value) for value in row] for row in pose]
+            scale = self.recipe.models[model].scale
+            objects.append(Placed(model, [[value * scale if j < 3 else value for j, value in enumerate(row)]
+                                          for row in matrix[:3]] + [[0.0, 0.0, 0.0, 1.0]]))
+        return objects
+
+    def _plan_lights(self, random: Random) -> list[dict[str, Any]]:
+        rule = self.recipe.lights
+        if not rule:
+            return []
+        return [{"from_": random.point(rule.low, rule.high), "power": random.within(rule.power),
+                 "kelvin": random.within(rule.kelvin)} for _ in range(random.count(rule.count))]
+
+    def _plan_environment(self, random: Random) -> Optional[dict[str, Any]]:
+        rule, recipe = self.recipe.environment, self.recipe
+        if not rule:
+            return {"environment": "studio"} if not recipe.lights and not recipe.scene else None
+        kind = os.path.join(recipe.folder, random.choice(list(rule.files))) if rule.files else rule.kind
+        degrees = random.number(0, 360) if rule.rotation is None else rule.rotation
+        return {"environment": kind, "strength": random.within(rule.strength), "rotation": math.radians(degrees)}
+
+    # ---- rendering
+
+    def _material(self, scene: Any, settings: dict[str, Any]) -> Any:
+        keywords = dict(settings)
+        texture = keywords.pop("texture", None)
+        if texture:
+            keywords["reflectance"] = scene.add_texture("image", path=os.path.join(self.recipe.folder, texture))
+        return scene.add_material("principled", **keywords)
+
+    def scene(self, plan: Plan) -> Any:
+        """The scene of a plan. Its last instances are the plan's objects, in order."""
+        recipe = self.recipe
+        scene = velo.Scene(context=self._context)
+        if recipe.scene:
+            scene.load(os.path.join(recipe.folder, recipe.scene))
+        scene.camera = plan.views[0].camera
+        groups: dict[int, Any] = {}
+        for item in plan.objects:
+            if item.model not in groups:
+                groups[item.model] = _load_model(scene, recipe.models[item.model], recipe.folder)[0]
+        if plan.ground is not None and recipe.ground:
+            self._add_ground(scene, plan.ground)
+        for item in plan.distractors:
+            self._add_distractor(scene, item)
+        for light in plan.lights:
+            scene.add_light("point", from_=light["from_"], power=light["power"], color=velo.blackbody(light["kelvin"]))
+        if plan.environment:
+            up = recipe.ground.up if recipe.ground else getattr(recipe.placing, "up", (0, 1, 0))
+            scene.complete(up=up, **plan.environment)
+        for item in plan.objects:
+            scene.add_instance(groups[item.model], item.pose)
+        return scene
+
+    def _add_ground(self, scene: Any, material: dict[str, Any]) -> None:
+        from velo.dataset.geometry import basis
+        rule = self.recipe.ground
+        assert rule is not None
+        x, y, z = basis(rule.up)
+        h = rule.size / 2
+        corners = [[a * h * x[i] + b * h * y[i] + rule.height * z[i] for i in range(3)]
+                   for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+        scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]], name="ground",
+                       material=self._material(scene, material))
+
+    def _add_distractor(self, scene: Any, item: dict[str, Any]) -> None:
+        material = self._material(scene, item["material"])
+        if item["ball"]:
+            radius = item["half"][0]
+            scene.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, transform=item["pose"],
+                            material=material, name="distractor")
+            return
+        a, b, c = item["half"]
+        corners = [(sx * a, sy * b, sz * c) for sx in (-1, 1) for sy in (-1, 1) for sz in (-1, 1)]
+        faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
+                 (0, 6, 4), (1, 5, 7), (1, 7, 3)]
+        scene.add_mesh(corners, faces, transform=item["pose"], material=material, name="distractor")
+
+    def render(self, frame: int) -> list[Frame]:
+        """The images of a frame, one for each camera."""
+        plan = self.plan(frame)
+        with self.scene(plan) as scene:
+            return [self._render_view(scene, plan, view) for view in plan.views]
+
+    def _render_view(self, scene: Any, plan: Plan, view: View) -> Frame:
+        recipe = self.recipe
+        channels = ["Z", "N", "id.instance"]
+        channels += [name for name in recipe.channels if name not in channels]
+        image = scene.render(camera=view.camera, spp=recipe.spp, seed=plan.seed, channels=channels, **recipe.render)
+        total = len(scene.world(**{name: recipe.render[name] for name in ("color", "light_sampler", "regularize", "bits")
+                                   if name in recipe.render}).ids("instance"))
+        ids, first = image["id.instance"], total - len(plan.objects) + 1
+        instances = []
+        for k, item in enumerate(plan.objects):
+            mask = ids == first + k
+            scale = recipe.models[item.model].scale
+            rigid = [[value / scale if j < 3 else value for j, value in enumerate(row)] for row in item.pose[:3]]
+            instances.append(Instance(item.model, self.names[item.model], rigid + [[0.0, 0.0, 0.0, 1.0]], scale, mask,
+                                      mask | self._silhouette(item, view) if recipe.occluded else mask))
+        return Frame(plan.frame, view.name, view.camera, image, instances)
+
+    def _silhouette(self, item: Placed, view: View) -> Any:
+        """The pixels whose centres would show the object if it were alone: its own scene, seen from where the camera is
+        relative to it."""
+        solo = self._solo[item.model]
+        width, height = view.camera.resolution
+        mask = numpy.zeros((height, width), dtype=bool)
+        pose = [[float(value) for value in row] for row in view.camera.world_from_camera]
+        camera = view.camera.move(multiply(rigid_inverse(item.pose), pose))
+        corners = [[x, y, z] for x in (solo.low[0], solo.high[0]) for y in (solo.low[1], solo.high[1])
+                   for z in (solo.low[2], solo.high[2])]
+        seen = camera.project(corners)
+        crop = [0, 0, width, height]
+        # The image of a box is inside that of its corners for perspective cameras without distortion only.
+        if seen.valid.all() and camera.projection == "perspective" and not len(camera.distortion_coefficients):
+            low, high = numpy.floor(seen.pixels.min(0)) - 1, numpy.ceil(seen.pixels.max(0)) + 1
+            crop = [int(min(max(low[0], 0), width)), int(min(max(low[1], 0), height)),
+                    int(max(min(high[0], width), 0)), int(max(min(high[1], height), 0))]
+        if crop[0] >= crop[2] or crop[1] >= crop[3]:
+            return mask
+        truth = solo.scene.ground_truth(["id.instance"], camera=camera, crop=crop)
+        mask[crop[1]:crop[3], crop[0]:crop[2]] = truth["id.instance"] == 1
+        return mask

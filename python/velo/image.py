@@ -1,0 +1,143 @@
+"""Images: pixels with named channels; image files, views, comparison."""
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any, Optional, Sequence, Union
+
+from velo import _arrays, _velo
+from velo._context import default_context
+from velo._errors import UsageError
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+class Image(_velo.Image):
+    """Pixels of height x width x channels, rows from the top.
+
+    `numpy.asarray(image)` is an array of this shape without a copy: float32, linear R G B A for rendered images. Further
+    channels of a render (depth, normals, ids) are in parts with types of their own: `image["Z"]` is an array of height x
+    width, `image["N"]` of height x width x 3, `image["id.object"]` of uint32. Arrays share the image's memory and keep it
+    alive. Where numpy is not installed, they are memoryviews."""
+
+    _parts: tuple["Image", ...]
+
+    def __new__(cls, array: Any, names: Optional[Sequence[str]] = None, *, encoding: Optional[str] = None,
+                context: Any = None) -> "Image":
+        """An image with a copy of an array of height x width or height x width x channels.
+
+        names: a name for each channel ("R", "Z", "N.X"); default Y, Y A, R G B or R G B A.
+        encoding: of integers, "linear" or "srgb"; default: srgb for 8-bit integers, else linear."""
+        if encoding is None:
+            encoding = "srgb" if memoryview(array).itemsize == 1 else "linear"
+        return _velo.image_new(context or default_context(), array, names, encoding)
+
+    @property
+    def parts(self) -> tuple["Image", ...]:
+        """This image and the images that hold its further channels."""
+        return (self,) + getattr(self, "_more", ())
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The names of all channels: "R", "G", "B", "A", "Z", "N.X", ..."""
+        return tuple(name for part in self.parts for name in part._names)
+
+    @property
+    def resolution(self) -> tuple[int, int]:
+        """Width and height, pixels."""
+        return self.width, self.height
+
+    def plane(self, name: str) -> Any:
+        """The channel of this name, or the channels of this layer ("N": "N.X", "N.Y", "N.Z"), as a buffer."""
+        for part in self.parts:
+            names = part._names
+            if name in names:
+                return part._plane(names.index(name), 1, True)
+            layer = [i for i, full in enumerate(names) if full.startswith(name + ".")]
+            if layer and layer == list(range(layer[0], layer[0] + len(layer))):
+                return part._plane(layer[0], len(layer), len(layer) == 1)
+        known = ", ".join(self.channels)
+        raise UsageError(f"the image has no channel '{name}' (it has {known})")
+
+    def __getitem__(self, name: str) -> Any:
+        return _arrays.from_buffer(self.plane(name))
+
+    def __contains__(self, name: object) -> bool:
+        return any(full == name or full.startswith(f"{name}.") for full in self.channels)
+
+    def __iter__(self) -> Any:
+        raise TypeError("an Image is not iterable; its channels are image.channels")
+
+    def write(self, path: Path, **options: Any) -> None:
+        """Writes a file; the suffix selects the format: .exr (all channels), .png .jpg .hdr .pfm .tga (the colours).
+
+        half: EXR, 16-bit floats for colours. compression: EXR, 0 none, 1 ZIP. quality: JPEG, 1 to 100."""
+        whole = os.fspath(path).endswith(".exr")
+        _velo.image_write(list(self.parts) if whole else [self], path, options)
+
+    def view(self, view: str = "standard", *, exposure: float = 0.0) -> "Image":
+        """An 8-bit sRGB image for displays. view: standard, khronos_neutral, agx or raw. exposure: in stops."""
+        return self._view(view, exposure)
+
+    def compare(self, reference: "Image") -> dict[str, float]:
+        """Differences from a reference of the same size: mse, rel_mse, psnr (dB), flip, mean_ratio, max_abs, differing and
+        not_finite (pixels)."""
+        return self._compare(reference, False)[0]
+
+    def difference(self, reference: "Image") -> "Image":
+        """FLIP's differences from a reference, in false colours, as an 8-bit image."""
+        return self._compare(reference, True)[1]
+
+    def denoise(self, denoiser: str = "velo") -> "Image":
+        """A denoised copy. The image must have the channels "error" and should have "features" (scene.render(channels=...)).
+        denoiser: velo, or oidn (the user's Open Image Denoise)."""
+        if len(self.parts) == 1:
+            return self._denoise(denoiser)
+        numpy = _arrays.numpy_or_none()
+        if numpy is None:
+            raise UsageError("numpy is needed to join the image's channels")
+        floats = [part for part in self.parts if numpy.asarray(part).dtype == numpy.float32]
+        joined = numpy.concatenate([numpy.asarray(part) for part in floats], axis=2)
+        return Image(joined, [name for part in floats for name in part._names])._denoise(denoiser)
+
+    def _repr_png_(self) -> bytes:
+        """The image as a PNG, for notebooks."""
+        shown = self if memoryview(self).itemsize == 1 else self._view("standard", 0.0)
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "image.png")
+            _velo.image_write([shown], path, {})
+            with open(path, "rb") as file:
+                return file.read()
+
+    def close(self) -> None:
+        """Frees the pixels. BufferError while arrays share them."""
+        for part in self.parts:
+            part._close()
+
+    def __enter__(self) -> "Image":
+        return self
+
+    def __exit__(self, *unused: Any) -> None:
+        try:
+            self.close()
+        except BufferError:
+            pass  # arrays keep the memory
+
+    def __repr__(self) -> str:
+        return f"<velo.Image {self.width} x {self.height}: {' '.join(self.channels)}>"
+
+
+_velo.set_type("Image", Image)
+
+
+def join(first: Image, parts: Sequence[Optional[Image]]) -> Image:
+    """Adds further parts to an image."""
+    first._more = getattr(first, "_more", ()) + tuple(part for part in parts if part is not None)
+    return first
+
+
+def read_image(path: Path, channels: Optional[Sequence[str]] = None, *, context: Any = None) -> Image:
+    """Reads an image file: EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP.
+
+    channels: of an EXR file, only these; if they have one type, so has the image (ids stay uint32)."""
+    return _velo.image_read(context or default_context(), path, channels)

@@ -1,0 +1,341 @@
+"""Scenes: load them from files or build them from arrays, and render them."""
+from __future__ import annotations
+
+import os
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
+
+from velo import _velo
+from velo._context import default_context
+from velo._errors import Progress, UsageError
+from velo.camera import Camera
+from velo.film import Film
+from velo.image import Image, Path, join
+
+Handle = _velo.Handle
+Callback = Callable[[Progress], Optional[bool]]
+
+# Keywords of vlLoadDef; the other keywords of load() are those of vlCompleteDef.
+_LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
+_ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file")
+# Settings that the world depends on; the others belong to the film and the render.
+_BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
+
+
+class World(_velo.World):
+    """A compiled scene. It never changes; several renders may share it."""
+
+    def ids(self, kind: str = "object") -> list[dict[str, Any]]:
+        """What the ids of a kind (object, material, instance) stand for: dicts with id, name, path, type, file, line and
+        material; id 1 first."""
+        return self._ids(kind)
+
+    def close(self) -> None:
+        """Frees the world."""
+        self._close()
+
+    def __enter__(self) -> "World":
+        return self
+
+    def __exit__(self, *unused: Any) -> None:
+        self.close()
+
+
+_velo.set_type("World", World)
+
+
+class Model(NamedTuple):
+    """A file that was loaded as a group."""
+    group: Handle  #: for add_instance
+    name: str  #: of the group and its instances
+    low: tuple[float, float, float]  #: the bounding box, in the file's own space
+    high: tuple[float, float, float]
+    shapes: int  #: number of shapes
+    first_object: int  #: id.object of the first shape; the others follow
+
+
+def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
+    return value if isinstance(value, Image) else Image(value, encoding=encoding)
+
+
+class Scene(_velo.Scene):
+    """The description of a world and of how its image is taken. A new scene is empty; `velo.load` reads a file.
+
+    After an error of an add_ method the scene keeps this error and cannot be used further."""
+
+    def __new__(cls, *, context: Any = None) -> "Scene":
+        self = super().__new__(cls, context or default_context())
+        self._world: Optional[tuple[Any, World]] = None
+        self._film: Optional[Film] = None
+        return self
+
+    # ---- files and camera
+
+    def load(self, path: Path, **keywords: Any) -> None:
+        """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's."""
+        self._world = None
+        self._load(path, keywords)
+
+    def complete(self, **keywords: Any) -> None:
+        """Adds a camera and lights if there are none, and what is asked for. Keywords: vlCompleteDef's; environment may also
+        be the path of an image."""
+        self._world = None
+        environment = keywords.get("environment")
+        if environment is not None and environment not in _ENVIRONMENTS:
+            keywords.update(environment="file", path=environment)
+        self._complete(keywords)
+
+    def save(self, path: Path, *, strict: bool = False) -> dict[str, int]:
+        """Writes the scene as .gltf, .glb or .pbrt. Returns what the format cannot hold and how often the scene has it;
+        strict: such a loss is an UnsupportedError."""
+        return self._save(path, strict)
+
+    @property
+    def camera(self) -> Camera:
+        """The scene's camera. Setting it also sets the image size."""
+        return self._camera()
+
+    @camera.setter
+    def camera(self, camera: Camera) -> None:
+        self._set_camera(camera)
+
+    # ---- contents
+
+    def _new(self, family: str, kind: Optional[str], keywords: dict[str, Any]) -> Handle:
+        self._world = None
+        return self._add(family, kind, keywords)
+
+    def add_texture(self, kind: str, **keywords: Any) -> Handle:
+        """Adds a texture: constant, image, checkerboard, fbm, ... Keywords: members of vlTextureDef (velo.kinds("textures")).
+        spectrum: True (default) for a colour texture, False for a float texture. image: a velo.Image or an array of
+        height x width x channels (uint8: sRGB; floats: linear)."""
+        if "image" in keywords:
+            keywords["image"] = _as_image(keywords["image"])
+        return self._new("textures", kind, keywords)
+
+    def add_material(self, kind: str, **keywords: Any) -> Handle:
+        """Adds a material: diffuse, conductor, dielectric, principled, ... Keywords: members of vlMaterialDef
+        (velo.kinds("materials")); numbers and spectra may be textures. name: its name."""
+        return self._new("materials", kind, keywords)
+
+    def add_medium(self, kind: str, **keywords: Any) -> Handle:
+        """Adds a participating medium: homogeneous, grid, rgb_grid, cloud, nanovdb. Keywords: members of vlMediumDef.
+        density and other grids: arrays of nz x ny x nx (rgb: x 3). transform: 4 x 4, world from medium."""
+        return self._new("media", kind, keywords)
+
+    def add_emission(self, **keywords: Any) -> Handle:
+        """Adds an emission of surfaces (keyword emission of add_shape). Keywords: radiance, scale, power, two_sided, image."""
+        return self._new("emission", "diffuse", keywords)
+
+    def add_light(self, kind: str, **keywords: Any) -> Handle:
+        """Adds a light: point, spot, distant, infinite, goniometric, projection. Keywords: members of vlLightDef: color,
+        scale, power (W), illuminance (lx), from, to, image; transform: 4 x 4, world from light. A Python keyword cannot be
+        "from": write from_."""
+        if "from_" in keywords:
+            keywords["from"] = keywords.pop("from_")
+        if "image" in keywords:
+            keywords["image"] = _as_image(keywords["image"], "linear")
+        return self._new("lights", kind, keywords)
+
+    def add_shape(self, kind: str, **keywords: Any) -> Handle:
+        """Adds a shape: triangles, bilinear, sphere, disk, cylinder, curves. Keywords: members of vlShapeDef: positions
+        (n x 3), normals (n x 3), uvs (n x 2), indices (m x 3), radius, ...; material, emission, group, inside, outside:
+        handles; transform: 4 x 4, group from shape; name: its name."""
+        return self._new("shapes", kind, keywords)
+
+    def add_mesh(self, positions: Any, indices: Any, **keywords: Any) -> Handle:
+        """Adds triangles: positions n x 3, scene units; indices m x 3, from 0. Keywords: as add_shape."""
+        return self.add_shape("triangles", positions=positions, indices=indices, **keywords)
+
+    def add_sphere(self, center: Sequence[float], radius: float, **keywords: Any) -> Handle:
+        """Adds a whole sphere."""
+        x, y, z = center
+        place = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
+        return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, transform=place, **keywords)
+
+    def add_group(self, name: Optional[str] = None) -> Handle:
+        """Adds an empty group. Shapes join it (keyword group); add_instance places it."""
+        return self._new("groups", name, {})
+
+    def load_group(self, path: Path, name: Optional[str] = None, **keywords: Any) -> "Model":
+        """Loads a model's file as one group, which add_instance places; the file's camera, lights and emission are ignored.
+        name: the name of its instances; default the file's name without suffix. Keywords: vlLoadDef's."""
+        self._world = None
+        name = name if name is not None else os.path.basename(os.fspath(path)).split(".")[0]
+        group, info = self._load_group(path, name, keywords)
+        return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
+
+    def add_instance(self, group: Handle, transform: Any, times: Optional[Sequence[float]] = None) -> None:
+        """Places a group: transform is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for each
+        time."""
+        self._world = None
+        self._add_instance(group, transform, times)
+
+    # ---- rendering
+
+    def settings(self, *, resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
+                 **keywords: Any) -> Any:
+        """The settings of the scene's file, changed by keywords (render lists them)."""
+        settings = _velo.scene_settings(self)
+        if resolution is not None:
+            settings.set_size(*resolution)
+        if crop is not None:
+            settings.set_crop(*crop)
+        for name, value in keywords.items():
+            settings.set(name, value)
+        return settings
+
+    def world(self, **keywords: Any) -> World:
+        """The compiled scene. It is kept until the scene changes. Keywords: color, light_sampler, regularize, bits."""
+        return self._build(self.settings(**keywords))
+
+    def _build(self, settings: Any) -> World:
+        key = tuple(settings.get(name) for name in _BUILD)
+        if self._world is None or self._world[0] != key:
+            self._world = (key, _velo.world_build(self, settings))
+        return self._world[1]
+
+    def _camera_for(self, camera: Optional[Camera], settings: Any) -> Camera:
+        return (camera if camera is not None else self.camera).resize(*settings.size)
+
+    @property
+    def film(self) -> Optional[Film]:
+        """The film of the last render. After a KeyboardInterrupt it has the finished passes."""
+        return self._film
+
+    def render(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+               crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), progress: Optional[Callback] = None,
+               film: Optional[Film] = None, denoise: bool = False, **keywords: Any) -> Image:
+        """Renders an image: linear R G B A, float32.
+
+        camera: default the scene's. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
+        channels: ground truth of the pixels' centres as further channels: "Z", "P", "N", "uv", "albedo", "id.object",
+        "id.instance", ... (velo.channel_names(), docs/ground-truth.md).
+        progress: called about ten times a second with a velo.Progress; False ends the render after its finished passes.
+        film: adds samples to this film, until it has spp per pixel.
+        denoise: denoises the colours.
+        Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,
+        max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()).
+
+        KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
+        settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, keywords)
+        target = film if film is not None else _velo.film_new(self._context_of(), settings)
+        self._film = target
+        world = self._build(settings)
+        _velo.render(world, view, target, settings, progress)
+        return self._develop(world, view, target, settings, channels, denoise)
+
+    def passes(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+               crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), film: Optional[Film] = None,
+               **keywords: Any) -> Iterator[Image]:
+        """Renders and yields the images so far: at 1, 2, 4, ... and finally spp samples per pixel. The last one has the bits
+        of render's image. Keywords: as render."""
+        settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
+        target = film if film is not None else _velo.film_new(self._context_of(), settings)
+        self._film = target
+        world = self._build(settings)
+        total = settings.get("spp")
+        spp = max(1, target.spp)
+        if settings.get("sequence") == 0:
+            settings.set("sequence", self._sequence(settings, total))
+        while True:
+            spp = min(spp, total)
+            settings.set("spp", spp)
+            _velo.render(world, view, target, settings, None)
+            yield self._develop(world, view, target, settings, channels, False)
+            if spp >= total:
+                return
+            spp *= 2
+
+    @staticmethod
+    def _sequence(settings: Any, total: int) -> int:
+        # As vlRenderDef.sequence has it: samplers that divide the sequence into cells are laid out for the final number.
+        open_ended = settings.get("sampler") in ("independent", "halton", "sobol", "zsobol")
+        return 65536 if open_ended else total
+
+    def _context_of(self) -> Any:
+        return self.context
+
+    def _prepare(self, camera: Optional[Camera], resolution: Optional[tuple[int, int]], crop: Optional[Sequence[int]],
+                 channels: Sequence[str], film: Optional[Film], denoise: bool,
+                 keywords: dict[str, Any]) -> tuple[Any, Camera]:
+        if isinstance(channels, str):
+            raise UsageError("channels must be a list of names")
+        if film is not None:
+            resolution, crop = film.resolution, film.crop
+        elif camera is not None and resolution is None:
+            resolution = camera.resolution
+        if ("error" in channels or denoise) and film is None:
+            keywords.setdefault("errors", True)
+        settings = self.settings(resolution=resolution, crop=crop, **keywords)
+        return settings, self._camera_for(camera, settings)
+
+    def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
+                 denoise: bool) -> Image:
+        image = film.image(exposure=settings.get("exposure"))
+        wanted = list(channels) + [name for name in ("error", "features") if denoise and name not in channels]
+        if wanted and film.spp:
+            join(image, _velo.channels(world, view, film, settings, wanted, {}, None, None))
+        if not denoise:
+            return image
+        more = _velo.channels(world, view, film, settings, list(channels), {}, None, None) if channels else ()
+        return join(image.denoise(), more)
+
+    def ground_truth(self, channels: Sequence[str], *, camera: Optional[Camera] = None,
+                     resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
+                     film: Optional[Film] = None, forward: Optional[Camera] = None, backward: Optional[Camera] = None,
+                     mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Any) -> Image:
+        """Ground truth without rendering colours (docs/ground-truth.md). forward, backward: the other cameras of the flow
+        channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds."""
+        settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
+        options: dict[str, Any] = {"mode": mode, "ranks": ranks}
+        if time is not None:
+            options["time"] = time
+        parts = [part for part in _velo.channels(self._build(settings), view, film, settings, list(channels), options,
+                                                 forward, backward) if part is not None]
+        return join(parts[0], parts[1:])
+
+    def boxes(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+              crop: Optional[Sequence[int]] = None, **keywords: Any) -> dict[str, list[dict[str, Any]]]:
+        """Bounding boxes of "object" and "instance" ids, that of id 1 first: seen and all (pixels: visible, and with what
+        occludes it away), seen_box and all_box (x0, y0, x1, y1; exclusive), outline, space (velo/boxes.h)."""
+        settings, view = self._prepare(camera, resolution, crop, (), None, False, keywords)
+        objects, instances = _velo.boxes(self._build(settings), view, settings)
+        return {"object": objects, "instance": instances}
+
+    def focus(self, x: float, y: float, **keywords: Any) -> float:
+        """The focus distance, scene units, for the surface that film point (x, y) sees."""
+        return _velo.autofocus(self.world(**keywords), self.camera, x, y)
+
+    def close(self) -> None:
+        """Frees the scene and its world."""
+        self._world = None
+        self._film = None
+        self._close()
+
+    def __enter__(self) -> "Scene":
+        return self
+
+    def __exit__(self, *unused: Any) -> None:
+        self.close()
+
+
+_velo.set_type("Scene", Scene)
+
+
+def load(path: Path, *, context: Any = None, **keywords: Any) -> Scene:
+    """Reads a scene file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. A file without a camera or lights gets a camera that
+    frames it and a studio.
+
+    Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera) and of
+    vlCompleteDef (environment: auto, none, studio, sky, white or the path of an image; rotation in radians, strength, up,
+    front, ground, reframe, framing, backdrop)."""
+    scene = Scene(context=context)
+    loading = {name: keywords.pop(name) for name in _LOAD if name in keywords}
+    scene.load(path, **loading)
+    scene.complete(**keywords)
+    return scene
+
+
+def settings_names() -> list[str]:
+    """The keywords of Scene.render that are settings."""
+    return _velo.scene_settings(Scene()).names()

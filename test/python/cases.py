@@ -1,0 +1,88 @@
+"""What the tests of the Python module share: the module itself, and lines `ok NAME`, `not ok NAME`, `skip NAME: why` that
+tools/run_tests counts."""
+import contextlib
+import os
+import sys
+import tempfile
+import traceback
+
+SOURCE = os.environ.get("VELO_SOURCE_DIR") or os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+BINARY = os.environ.get("VELO_BINARY_DIR") or os.path.join(SOURCE, "build/release")
+VELO = os.environ.get("VELO") or os.path.join(BINARY, "bin/velo")
+MODULES = os.path.join(BINARY, "python")
+SCENES = os.path.join(SOURCE, "scenes")
+PINHOLE = os.path.join(SCENES, "lecture/pinhole.pbrt")
+WORK = tempfile.mkdtemp(prefix="velo-python-")
+
+failures = 0
+cases = []
+
+
+def skip_all(why):
+    print("skip %s: %s" % (os.path.basename(sys.argv[0]), why))
+    sys.exit(0)
+
+
+if not any(name.startswith("_velo.") for name in
+           (os.listdir(os.path.join(MODULES, "velo")) if os.path.isdir(os.path.join(MODULES, "velo")) else [])):
+    skip_all("the Python module is not built")
+sys.path.insert(0, MODULES)
+os.environ["PYTHONPATH"] = MODULES
+
+
+class Skip(Exception):
+    """Raised by a case that cannot run here."""
+
+
+def need(*names):
+    """The modules of these names; skips the whole script where one is missing."""
+    modules = []
+    for name in names:
+        try:
+            modules.append(__import__(name))
+        except ImportError:
+            skip_all("needs Python's module %s" % name)
+    return modules[0] if len(modules) == 1 else modules
+
+
+def case(function):
+    """A function that is a case: it fails by an exception."""
+    cases.append(function)
+    return function
+
+
+@contextlib.contextmanager
+def raises(kind, *texts):
+    """The block must raise this exception, and its text must have these parts."""
+    try:
+        yield
+    except kind as error:
+        for text in texts:
+            assert text in str(error), "%r is not in %r" % (text, str(error))
+        return
+    raise AssertionError("nothing was raised, %s was expected" % kind.__name__)
+
+
+def work(name):
+    return os.path.join(WORK, name)
+
+
+def main():
+    global failures
+    only = sys.argv[1:]
+    for function in cases:
+        if only and function.__name__ not in only:
+            continue
+        name = function.__name__.replace("_", " ")
+        try:
+            function()
+            print("ok %s" % name, flush=True)
+        except Skip as why:
+            print("skip %s: %s" % (name, why), flush=True)
+        except BaseException:
+            failures += 1
+            print("not ok %s" % name, flush=True)
+            traceback.print_exc(file=sys.stdout)
+    import shutil
+    shutil.rmtree(WORK, ignore_errors=True)
+    sys.exit(1 if failures else 0)

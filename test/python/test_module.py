@@ -1,0 +1,294 @@
+#!/usr/bin/python3
+"""The Python module: renders, errors, progress, interruption, fork, threads."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import cases
+from cases import case, raises, work
+
+numpy = cases.need("numpy")
+import velo
+
+scene = velo.load(cases.PINHOLE)
+
+
+@case
+def a_render_is_a_numpy_array():
+    image = scene.render(spp=2, resolution=(64, 48), channels=["Z", "N", "id.object"])
+    pixels = numpy.asarray(image)
+    assert pixels.shape == (48, 64, 4) and pixels.dtype == numpy.float32
+    assert 0.05 < pixels[..., :3].mean() < 1
+    assert image["Z"].shape == (48, 64) and image["N"].shape == (48, 64, 3)
+    assert image["id.object"].dtype == numpy.uint32 and image["id.object"].max() > 1
+    hit = numpy.isfinite(image["Z"])
+    assert numpy.allclose(numpy.linalg.norm(image["N"][hit], axis=1), 1, atol=1e-5)
+
+
+@case
+def an_array_shares_the_image_and_keeps_it_alive():
+    image = scene.render(spp=1, resolution=(32, 24))
+    pixels = numpy.asarray(image)
+    pixels[3, 5] = (1, 2, 3, 1)
+    assert tuple(image["G"][3, 5:6]) == (2,)
+    with raises(BufferError):
+        image.close()
+    del image
+    assert tuple(pixels[3, 5]) == (1, 2, 3, 1)
+
+
+@case
+def the_pixels_are_those_of_the_program():
+    path = work("program.exr")
+    subprocess.run([cases.VELO, "render", cases.PINHOLE, "--spp", "3", "--resolution", "80x60", "-o", path], check=True,
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    read = velo.read_image(path, ["R", "G", "B"])
+    mine = scene.render(spp=3, resolution=(80, 60))
+    assert numpy.array_equal(numpy.asarray(read), numpy.asarray(mine)[..., :3])
+
+
+@case
+def errors_have_place_and_code():
+    path = work("wrong.pbrt")
+    with open(path, "w") as file:
+        file.write('Film "rgb"\n  "integer xresolution" [ 64 ]\nWorldBegin\n  Shape "spere"\n')
+    try:
+        velo.load(path)
+        assert False
+    except velo.SceneError as error:
+        assert error.file == path and error.line == 4 and error.column and error.code == 3, vars(error)
+        assert "sphere" in error.message and str(error).startswith("%s:4:" % path)
+    with raises(velo.MissingFileError, "nowhere.pbrt") as _:
+        velo.load(work("nowhere.pbrt"))
+    with raises(FileNotFoundError):
+        velo.load(work("nowhere.pbrt"))
+    with raises(velo.OutputError, "nofolder"):
+        scene.render(spp=1, resolution=(8, 8)).write(work("nofolder/a.png"))
+    assert velo.OutputError.code == 5 and velo.MissingFileError.code == 4 and velo.UsageError.code == 2
+
+
+@case
+def unknown_keywords_have_the_nearest_names():
+    with raises(velo.UsageError, "'ssp'", "spp"):
+        scene.render(ssp=3)
+    with raises(velo.UsageError, "max_depth"):
+        scene.render(maxx_depth=3)
+    with raises(velo.UsageError, "did you mean path or volpath?"):
+        scene.render(tracer="pth")
+    with raises(velo.UsageError, "unknown channel 'depht'"):
+        scene.render(spp=1, resolution=(8, 8), channels=["depht"])
+    with raises(velo.UsageError, "spp must be a whole number"):
+        scene.render(spp=1.5)
+
+
+@case
+def progress_is_reported_and_can_end_a_render():
+    seen = []
+
+    def callback(progress):
+        seen.append(progress)
+        return not (progress.pass_done and progress.spp >= 2)
+
+    image = scene.render(spp=64, resolution=(64, 48), progress=callback)
+    assert scene.film.spp == seen[-1].spp == 2 and seen[-1].spp_total == 64
+    assert numpy.array_equal(numpy.asarray(image), numpy.asarray(scene.render(spp=2, resolution=(64, 48))))
+
+
+@case
+def an_exception_in_a_callback_ends_the_render():
+    class Mine(Exception):
+        pass
+
+    def callback(progress):
+        raise Mine("here")
+
+    with raises(Mine, "here"):
+        scene.render(spp=64, resolution=(64, 48), progress=callback)
+    scene.render(spp=1, resolution=(64, 48))
+
+
+@case
+def a_callback_after_a_pass_may_read_the_film():
+    images = []
+
+    def callback(progress):
+        if progress.pass_done:
+            images.append(numpy.array(scene.film.image()))
+            with raises(velo.UsageError):
+                scene.render(spp=1, film=scene.film)
+
+    scene.render(spp=4, resolution=(64, 48), progress=callback)
+    assert len(images) == 3 and numpy.array_equal(images[1], numpy.asarray(scene.render(spp=2, resolution=(64, 48))))
+
+
+@case
+def a_callback_inside_a_pass_may_not_use_velo():
+    errors = []
+
+    def callback(progress):
+        if not progress.pass_done:
+            try:
+                velo.load(cases.PINHOLE)
+            except velo.UsageError as error:
+                errors.append(str(error))
+                return False
+
+    scene.render(spp=4096, resolution=(640, 480), progress=callback)
+    assert "pass_done" in errors[0]
+
+
+@case
+def passes_yield_images_so_far():
+    for sampler in ("sobol", "stratified"):
+        images = list(scene.passes(spp=5, resolution=(48, 36), sampler=sampler))
+        assert len(images) == 4
+        last = numpy.asarray(scene.render(spp=5, resolution=(48, 36), sampler=sampler))
+        assert numpy.array_equal(numpy.asarray(images[-1]), last), sampler
+
+
+@case
+def interruption_ends_a_render_and_keeps_the_film():
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    delays = []
+    try:
+        for wait in (0.7, 0.95, 1.2):
+            times = []
+
+            def kill():
+                time.sleep(wait)
+                times.append(time.monotonic())
+                os.kill(os.getpid(), signal.SIGINT)
+
+            thread = threading.Thread(target=kill)
+            thread.start()
+            try:
+                scene.render(spp=100000, resolution=(320, 240))
+                assert False, "not interrupted"
+            except KeyboardInterrupt:
+                delays.append(time.monotonic() - times[0])
+            thread.join()
+            assert scene.film.spp >= 1
+    finally:
+        signal.signal(signal.SIGINT, previous)
+    print("  delays: %s s" % " ".join("%.3f" % delay for delay in delays))
+    assert numpy.isfinite(numpy.asarray(scene.film.image())).all()
+    # Other processes may delay any one of them.
+    assert min(delays) < 0.15, delays
+
+
+@case
+def fork_raises_a_clear_error_and_new_objects_work():
+    """In a process of its own, whose time is limited: a lock that nobody holds after fork() would wait for ever."""
+    script = work("fork.py")
+    with open(script, "w") as file:
+        file.write("import os, sys, numpy, velo\n"
+                   "scene = velo.load(%r)\n"
+                   "before = numpy.array(scene.render(spp=2, resolution=(48, 36)))\n"
+                   "child = os.fork()\n"
+                   "if child == 0:\n"
+                   "    try:\n"
+                   "        scene.render(spp=1)\n"
+                   "    except velo.ForkError as error:\n"
+                   "        assert 'fork' in str(error)\n"
+                   "    else:\n"
+                   "        os._exit(3)\n"
+                   "    again = velo.load(%r)\n"
+                   "    after = numpy.array(again.render(spp=2, resolution=(48, 36)))\n"
+                   "    os._exit(0 if numpy.array_equal(before, after) else 4)\n"
+                   "assert os.waitpid(child, 0)[1] == 0\n"
+                   "import multiprocessing\n"
+                   "def one(seed):\n"
+                   "    return float(numpy.asarray(velo.load(%r).render(spp=1, seed=seed, resolution=(32, 24))).mean())\n"
+                   "with multiprocessing.get_context('fork').Pool(2) as pool:\n"
+                   "    means = pool.map(one, range(4))\n"
+                   "assert len(set(means)) == 4, means\n" % (cases.PINHOLE, cases.PINHOLE, cases.PINHOLE))
+    run = subprocess.run([sys.executable, script], timeout=60, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert run.returncode == 0, run.stdout.decode()
+
+
+@case
+def threads_may_render_at_once():
+    images = {}
+
+    def work_in_thread(number):
+        own = velo.load(cases.PINHOLE)
+        images[number] = numpy.array(own.render(spp=3, resolution=(48, 36)))
+
+    threads = [threading.Thread(target=work_in_thread, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(images) == 4 and all(numpy.array_equal(images[0], image) for image in images.values())
+
+
+@case
+def the_interpreter_runs_during_a_render():
+    count = [0]
+    done = threading.Event()
+
+    def counting():
+        while not done.is_set():
+            count[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=counting)
+    thread.start()
+    scene.render(spp=32, resolution=(160, 120))
+    done.set()
+    thread.join()
+    assert count[0] > 20, count
+
+
+@case
+def objects_are_context_managers():
+    with velo.load(cases.PINHOLE) as own:
+        with own.render(spp=1, resolution=(16, 12)) as image:
+            assert image.width == 16
+        with raises(velo.UsageError, "closed"):
+            image.write(work("closed.png"))
+    with raises(velo.UsageError, "closed"):
+        own.render(spp=1)
+
+
+@case
+def a_notebook_shows_a_png():
+    data = scene.render(spp=1, resolution=(32, 24))._repr_png_()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+@case
+def memory_does_not_grow():
+    def resident():
+        with open("/proc/self/status") as file:
+            return int(next(line for line in file if line.startswith("VmRSS")).split()[1]) / 1024
+
+    count = int(os.environ.get("VELO_PYTHON_RENDERS", "60"))
+    context = velo.default_context()
+
+    def one(seed):
+        own = velo.load(cases.PINHOLE)
+        image = own.render(spp=1, seed=seed, resolution=(32, 24), channels=["Z", "id.object"],
+                           progress=lambda progress: None)
+        image["Z"].sum(), image._repr_png_() if seed % 10 == 0 else None
+        try:
+            own.render(sppp=1)
+        except velo.UsageError:
+            pass
+
+    for seed in range(20):
+        one(seed)
+    held, size, handles = context.memory, resident(), len(os.listdir("/proc/self/fd"))
+    for seed in range(count):
+        one(seed)
+    print("  %d renders: %+d bytes held, %+.1f MB resident" % (count, context.memory - held, resident() - size))
+    assert context.memory == held
+    assert resident() - size < 6, (size, resident())
+    assert len(os.listdir("/proc/self/fd")) == handles
+
+
+if __name__ == "__main__":
+    cases.main()

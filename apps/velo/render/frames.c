@@ -24,8 +24,7 @@ bool frames_wanted(const Arguments *arguments, const Job *job) {
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
-/* Parses "3", "0-99", "10-" or "0-100:10". */
-static bool read_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
+bool frames_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
   char *end;
   const char *at = text;
   unsigned long long numbers[3] = {0, UINT32_MAX, 1};
@@ -49,12 +48,13 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
   uint32_t unused;
   outputs->patterns = trajectory || v[RENDER_STEREO].given;
   if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
-  if (v[RENDER_FRAMES].given && !trajectory) return report_usage("--frames goes with --trajectory");
+  if (v[RENDER_FRAMES].given && !trajectory)
+    return report_usage("--frames goes with --trajectory, --animate or --turntable");
   if (v[RENDER_SKIP_EXISTING].given && !trajectory) return report_usage("--skip-existing goes with --trajectory");
   if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))
     return report_usage(trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
                                    : "--frame NAME says which camera of --camera FILE");
-  if (v[RENDER_FRAMES].given && !read_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
+  if (v[RENDER_FRAMES].given && !frames_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
     return report_usage("--flow-camera is of one image: it does not go with --trajectory");
@@ -165,7 +165,7 @@ static int choose_frames(Frames *frames, const Arguments *arguments) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
   uint32_t count = vl_trajectory_frames(frames->trajectory);
   frames->first = 0, frames->last = count - 1, frames->step = 1;
-  if (range->given) read_range(range->text, &frames->first, &frames->last, &frames->step);
+  if (range->given) frames_range(range->text, &frames->first, &frames->last, &frames->step);
   if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
     return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);
   if (frames->last >= count) frames->last = count - 1;

@@ -54,7 +54,7 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
   }
   if (chosen < 0)
     return vl_camera_wrong_at(file, 1, 1, "middlebury: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+                              file->def->frame ? file->def->frame : "0", record->frames);
   const char *at = find(text, size, names[chosen], &line);
   double k[9];
   for (int i = 0; i < 9; i++) {

@@ -9,7 +9,6 @@
 
 #include "cli/report.h"
 #include "cli/signals.h"
-#include "render/frames.h"
 #include "render/job.h"
 #include "render/pattern.h"
 
@@ -47,7 +46,7 @@ static int choose_frames(const Arguments *arguments, Animation *a) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
   a->first = 0, a->last = a->count - 1, a->step = 1;
   if (!range->given) return -1;
-  if (!frames_range(range->text, &a->first, &a->last, &a->step))
+  if (!pattern_range(range->text, &a->first, &a->last, &a->step))
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", range->text);
   if (a->first >= a->count || (a->last != UINT32_MAX && a->last >= a->count))
     return report_usage("--frames \"%s\": the animation has %u frames, numbered from 0", range->text, a->count);

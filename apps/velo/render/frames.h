@@ -41,8 +41,6 @@ typedef struct Frame {
 /* Returns whether several images are rendered, because of --trajectory or stereo. job is null before the scene is
  * loaded; then stereo is unknown. */
 bool frames_wanted(const Arguments *arguments, const Job *job);
-/* Parses the value of --frames: "3", "0-99", "10-" (last: UINT32_MAX) or "0-100:10". */
-bool frames_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step);
 /* Checks that the options are compatible, and the name patterns. Returns -1 or the exit code. */
 int frames_check(const Arguments *arguments, Outputs *outputs);
 /* Reads trajectory and rig and makes all cameras. Returns -1, or the exit code after reporting the error. */

@@ -13,37 +13,41 @@ extern "C" {
 
 /** File formats for cameras. */
 typedef enum vlCameraDialect {
-  VL_CAMERA_DIALECT_AUTO,      /**< reading: by content and name; writing: by the suffix, where that is unambiguous */
-  VL_CAMERA_DIALECT_VELO,      /**< JSON; holds everything, exactly */
-  VL_CAMERA_DIALECT_OPENCV,    /**< YAML, JSON or XML, also FileStorage's */
-  VL_CAMERA_DIALECT_ROS,       /**< camera_info YAML, or .ini */
-  VL_CAMERA_DIALECT_COLMAP,    /**< a folder with the files cameras and images (.txt or .bin), or one of these files */
-  VL_CAMERA_DIALECT_NERF,      /**< transforms.json */
-  VL_CAMERA_DIALECT_KALIBR,    /**< camchain YAML */
-  VL_CAMERA_DIALECT_BLENDER,   /**< JSON of Blender's own property names */
-  VL_CAMERA_DIALECT_PBRT,      /**< write only: Transform and Camera statements; scenes are read by vl_scene_load */
-  VL_CAMERA_DIALECT_GLTF,      /**< a node with a camera; .glb is read too */
-  VL_CAMERA_DIALECT_OPENGL,    /**< projection and view matrix and their conventions, as JSON or YAML */
-  VL_CAMERA_DIALECT_VULKAN,    /**< as OPENGL, with Vulkan's conventions */
-  VL_CAMERA_DIALECT_D3D,       /**< as OPENGL, with Direct3D's conventions */
-  VL_CAMERA_DIALECT_MITSUBA,   /**< a sensor in Mitsuba 3's XML */
-  VL_CAMERA_DIALECT_USD,       /**< a Camera in USD's text form, .usda */
-  VL_CAMERA_DIALECT_EXR,       /**< the header of an image rendered by the program velo; only that program reads it */
-  VL_CAMERA_DIALECT_EUROC,     /**< sensor.yaml of the EuRoC datasets */
-  VL_CAMERA_DIALECT_CAMODOCAL, /**< camodocal's and VINS's YAML */
-  VL_CAMERA_DIALECT_BASALT,    /**< Basalt's calibration JSON */
-  VL_CAMERA_DIALECT_ORBSLAM,   /**< ORB-SLAM's settings, YAML */
-  VL_CAMERA_DIALECT_OKVIS,     /**< OKVIS's configuration, YAML */
-  VL_CAMERA_DIALECT_SVO,       /**< SVO's YAML, of one camera or of a rig */
-  VL_CAMERA_DIALECT_KITTI,     /**< KITTI's calib.txt and calib_cam_to_cam.txt */
-  VL_CAMERA_DIALECT_BOP,       /**< scene_camera.json and camera.json of the BOP challenge */
-  VL_CAMERA_DIALECT_GAUSSIANS, /**< cameras.json of 3D Gaussian splatting */
-  VL_CAMERA_DIALECT_METASHAPE, /**< Metashape's XML, of cameras or of a calibration */
-  VL_CAMERA_DIALECT_MESHROOM,  /**< AliceVision's .sfm, JSON */
-  VL_CAMERA_DIALECT_OPENSFM,   /**< reconstruction.json, camera_models.json */
-  VL_CAMERA_DIALECT_OPEN3D,    /**< Open3D's pinhole camera and trajectory JSON */
-  VL_CAMERA_DIALECT_VISP,      /**< ViSP's XML */
-  VL_CAMERA_DIALECT_COUNT      /**< number of dialects */
+  VL_CAMERA_DIALECT_AUTO,       /**< reading: by content and name; writing: by the suffix, where that is unambiguous */
+  VL_CAMERA_DIALECT_VELO,       /**< JSON; holds everything, exactly */
+  VL_CAMERA_DIALECT_OPENCV,     /**< YAML, JSON or XML, also FileStorage's */
+  VL_CAMERA_DIALECT_ROS,        /**< camera_info YAML, or .ini */
+  VL_CAMERA_DIALECT_COLMAP,     /**< a folder with the files cameras and images (.txt or .bin), or one of these files */
+  VL_CAMERA_DIALECT_NERF,       /**< transforms.json */
+  VL_CAMERA_DIALECT_KALIBR,     /**< camchain YAML */
+  VL_CAMERA_DIALECT_BLENDER,    /**< JSON of Blender's own property names */
+  VL_CAMERA_DIALECT_PBRT,       /**< write only: Transform and Camera statements; scenes are read by vl_scene_load */
+  VL_CAMERA_DIALECT_GLTF,       /**< a node with a camera; .glb is read too */
+  VL_CAMERA_DIALECT_OPENGL,     /**< projection and view matrix and their conventions, as JSON or YAML */
+  VL_CAMERA_DIALECT_VULKAN,     /**< as OPENGL, with Vulkan's conventions */
+  VL_CAMERA_DIALECT_D3D,        /**< as OPENGL, with Direct3D's conventions */
+  VL_CAMERA_DIALECT_MITSUBA,    /**< a sensor in Mitsuba 3's XML */
+  VL_CAMERA_DIALECT_USD,        /**< a Camera in USD's text form, .usda */
+  VL_CAMERA_DIALECT_EXR,        /**< the header of an image rendered by the program velo; only that program reads it */
+  VL_CAMERA_DIALECT_EUROC,      /**< sensor.yaml of the EuRoC datasets */
+  VL_CAMERA_DIALECT_CAMODOCAL,  /**< camodocal's and VINS's YAML */
+  VL_CAMERA_DIALECT_BASALT,     /**< Basalt's calibration JSON */
+  VL_CAMERA_DIALECT_ORBSLAM,    /**< ORB-SLAM's settings, YAML */
+  VL_CAMERA_DIALECT_OKVIS,      /**< OKVIS's configuration, YAML */
+  VL_CAMERA_DIALECT_SVO,        /**< SVO's YAML, of one camera or of a rig */
+  VL_CAMERA_DIALECT_KITTI,      /**< KITTI's calib.txt and calib_cam_to_cam.txt */
+  VL_CAMERA_DIALECT_BOP,        /**< scene_camera.json and camera.json of the BOP challenge */
+  VL_CAMERA_DIALECT_GAUSSIANS,  /**< cameras.json of 3D Gaussian splatting */
+  VL_CAMERA_DIALECT_METASHAPE,  /**< Metashape's XML, of cameras or of a calibration */
+  VL_CAMERA_DIALECT_MESHROOM,   /**< AliceVision's .sfm, JSON */
+  VL_CAMERA_DIALECT_OPENSFM,    /**< reconstruction.json, camera_models.json */
+  VL_CAMERA_DIALECT_OPEN3D,     /**< Open3D's pinhole camera and trajectory JSON */
+  VL_CAMERA_DIALECT_VISP,       /**< ViSP's XML */
+  VL_CAMERA_DIALECT_MIDDLEBURY, /**< calib.txt of the Middlebury stereo datasets */
+  VL_CAMERA_DIALECT_MVSNET,     /**< MVSNet's cam.txt */
+  VL_CAMERA_DIALECT_BUNDLER,    /**< Bundler's bundle.out */
+  VL_CAMERA_DIALECT_OPENMVG,    /**< OpenMVG's sfm_data.json */
+  VL_CAMERA_DIALECT_COUNT       /**< number of dialects */
 } vlCameraDialect;
 
 /** "velo", "opencv", ...; a constant string; null outside the range. */

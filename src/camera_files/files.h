@@ -207,7 +207,8 @@ extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_
     vl_format_kalibr, vl_format_blender, vl_format_pbrt, vl_format_gltf, vl_format_opengl, vl_format_vulkan,
     vl_format_d3d, vl_format_mitsuba, vl_format_exr, vl_format_usd, vl_format_euroc, vl_format_camodocal,
     vl_format_basalt, vl_format_orbslam, vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop,
-    vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp;
+    vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp,
+    vl_format_middlebury, vl_format_mvsnet, vl_format_bundler, vl_format_openmvg;
 
 /* The first returns whether an object has the key. The second returns whether the value at the key has the second key;
  * if that value is a list, its first item is tested. */

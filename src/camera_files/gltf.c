@@ -88,7 +88,8 @@ static vlResult read_perspective(const vlCameraFile *file, const json_t *lens, v
   if (result == VL_OK) result = vl_camera_optional(file, lens, "zfar", &d->far_plane);
   if (result == VL_OK && !(yfov > 0.0 && yfov < 3.14159265358979))
     return vl_camera_wrong(file, "gltf: \"yfov\" is %g radians; it must lie between 0 and pi", yfov);
-  if (result == VL_OK && aspect <= 0.0)
+  if (aspect == 0.0) aspect = VL_UNSET; /* not valid, but Assimp writes it where it knows none */
+  if (result == VL_OK && aspect < 0.0)
     return vl_camera_wrong(file, "gltf: \"aspectRatio\" is %g; it must be above zero", aspect);
   if (result == VL_OK) result = vl_camera_size(file, vl_is_unset(aspect) ? 16.0 / 9.0 : aspect, record);
   if (result != VL_OK) return result;

@@ -398,6 +398,31 @@ RAD5 = dict(plane=opencv(FIVE), judge=("opencv", FIVE))
 FISH = dict(plane=fisheye(FISHEYE), judge=("fisheye", FISHEYE))
 PLAIN = dict(plane=PINHOLE, judge=("opencv", [0.0] * 4))
 
+MIDDLEBURY = ("cam0=[%r 0 %r; 0 %r %r; 0 0 1]\ncam1=[%r 0 %r; 0 %r %r; 0 0 1]\ndoffs=3\nbaseline=536.62\nwidth=640\nheight=480\n"
+              "ndisp=170\nisint=0\nvmin=55\nvmax=142\ndyavg=0\ndymax=0\n" % (FX, CX, FY, CY, FX, CX + 3, FX, CY))
+MVSNET = "extrinsic\n%s\n0.0 0.0 0.0 1.0\n\nintrinsic\n%r 0 %r\n0 %r %r\n0 0 1\n\n425.0 2.5 192 933.8\n" % (
+    "\n".join(join(R[i] + [T[i]], " ") for i in range(3)), FX, CX, FY, CY)
+BUNDLER = "# Bundle file v0.3\n3 1\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n%r -0.2 0.05\n%s\n%s\n400 0 0\n1 0 0\n0 -1 0\n0 0 -1\n0 0 0\n" \
+          "1 2 3\n255 0 0\n1 0 5 1.5 2.5\n" % (FX, "\n".join(join([s * v for v in R[i]], " ") for i, s in enumerate((1, -1, -1))),
+                                             join([T[0], -T[1], -T[2]], " "))
+
+
+def openmvg(kind, distortion, nested=False):
+    def lens(extra):
+        size, rest = {"width": 640, "height": 480}, dict(focal_length=FX, principal_point=[CX + 0.5, CY + 0.5])
+        return dict({"value0": dict({"value0": size}, **rest)}, **extra) if nested else dict(size, **rest, **extra)
+
+    def view(key, pose, name):
+        return {"key": key, "value": {"polymorphic_id": 1073741824, "ptr_wrapper": {"id": 2147483649 + key, "data": dict(
+            local_path="/", filename=name, width=640, height=480, id_view=key, id_intrinsic=1, id_pose=pose)}}}
+    return json.dumps({
+        "sfm_data_version": "0.3", "root_path": "/x", "views": [view(0, 4294967295, "a.jpg"), view(1, 5, "b.jpg")],
+        "intrinsics": [{"key": 0, "value": {"polymorphic_id": 2147483649, "polymorphic_name": kind,
+                                            "ptr_wrapper": {"id": 2147483660, "data": lens(distortion)}}},
+                       {"key": 1, "value": {"polymorphic_id": 1, "ptr_wrapper": {"id": 2147483661, "data": lens(distortion)}}}],
+        "extrinsics": [{"key": 5, "value": {"rotation": R, "center": C}}], "structure": [], "control_points": []}, indent=1)
+
+
 CASES = [
     # COLMAP's binary model
     Case("colmap_bin", colmap_bin(), "colmap", frame="b c.jpg", path=".", damage=False, **RAD),
@@ -556,6 +581,25 @@ CASES = [
     Case("visp.xml", VISP, "visp", pose=AT_ORIGIN, **PLAIN),
     Case("visp_bent.xml", VISP, "visp", frame="1", pose=AT_ORIGIN, plane=opencv([-0.1]), judge=("opencv", [-0.1, 0, 0, 0])),
     Case("visp_fisheye.xml", VISP, "visp", frame="2", pose=AT_ORIGIN, **FISH),
+    # Middlebury's stereo: camera 1 stands at x = baseline
+    Case("calib.txt", MIDDLEBURY, "middlebury", pose=AT_ORIGIN, **PLAIN),
+    Case("calib_right.txt", MIDDLEBURY, "middlebury", frame="cam1", pose=(IDENTITY, [-536.62, 0, 0]), k=(FX, FX, CX + 3, CY),
+         plane=PINHOLE),
+    Case("old/calib.txt", {"old/calib.txt": MIDDLEBURY.split("width")[0], "old/im0.png": png(640, 480)}, "middlebury",
+         pose=AT_ORIGIN, **PLAIN),
+    # MVSNet: with --size, and with the image
+    Case("00000007_cam.txt", MVSNET, "mvsnet", options=SIZE, **PLAIN),
+    Case("cams/00000007_cam.txt", {"cams/00000007_cam.txt": MVSNET, "images/00000007.jpg": jpeg(640, 480)}, "mvsnet", **PLAIN),
+    # Bundler: the first camera was not reconstructed
+    Case("bundle.out", BUNDLER, "bundler", options=SIZE, k=(FX, FX, 320 - 0.5, 240 - 0.5), plane=opencv([-0.2, 0.05])),
+    Case("bundle_named.out", BUNDLER, "bundler", options=SIZE, frame="2", pose=AT_ORIGIN, k=(400, 400, 319.5, 239.5),
+         plane=PINHOLE),
+    # OpenMVG: the first view has no pose; the second intrinsic names its class by number; base classes as older versions do
+    Case("sfm_data.json", openmvg("pinhole_brown_t2", {"disto_t2": [-0.2, 0.05, 0.01, 0.001, -0.002]}), "openmvg",
+         k=(FX, FX, CX, CY), **RAD5),
+    Case("sfm_radial.json", openmvg("pinhole_radial_k3", {"disto_k3": [-0.2, 0.05, 0.01]}, nested=True), "openmvg",
+         k=(FX, FX, CX, CY), plane=opencv([-0.2, 0.05, 0, 0, 0.01])),
+    Case("sfm_fisheye.json", openmvg("fisheye", {"fisheye": FISHEYE}), "openmvg", k=(FX, FX, CX, CY), plane=fisheye(FISHEYE)),
     # USD: a neighbour moves
     Case("stage.usda", "#usda 1.0\n( metersPerUnit = 1 )\ndef Xform \"mover\" {\n  double3 xformOp:translate.timeSamples = { 1: (0, 0, 0),"
          " 2: (1, 0, 0) }\n  uniform token[] xformOpOrder = [\"xformOp:translate\"]\n}\ndef Camera \"main\" {\n"
@@ -692,7 +736,9 @@ def check_damage(case, folder, work):
 SUFFIXES = {"velo": ".json", "opencv": ".yaml", "ros": ".yaml", "nerf": ".json", "kalibr": ".yaml", "euroc": ".yaml",
             "camodocal": ".yaml", "basalt": ".json", "orbslam": ".yaml", "okvis": ".yaml", "svo": ".yaml", "kitti": ".txt",
             "bop": ".json", "gaussians": ".json", "metashape": ".xml", "meshroom": ".sfm", "opensfm": ".json",
-            "open3d": ".json", "visp": ".xml", "colmap": ""}
+            "open3d": ".json", "visp": ".xml", "middlebury": ".txt", "mvsnet": "_cam.txt", "bundler": ".out", "openmvg": ".json",
+            "colmap": ""}
+SIZELESS = ("mvsnet", "bundler")
 
 
 def check_written(case, folder, work, written):
@@ -709,7 +755,7 @@ def check_written(case, folder, work, written):
             continue  # the dialect cannot hold it, and says so
         if code != 0:
             return "%s: %d %s" % (dialect, code, err)
-        back, err = projected(copy, points, work, [])
+        back, err = projected(copy, points, work, SIZE if dialect in SIZELESS else [])
         if back is None:
             return "%s: %s" % (dialect, err)
         if max(abs(a - b) for p, q in zip(want, back) for a, b in zip(p[:2], q[:2])) > 1e-7:

@@ -30,6 +30,11 @@ check again_same cmp again.exr f02.exr
 rm f01.exr
 check skip "$VELO" render walk.gltf --animate 0:2 --fps 2 $options -o f%02d.exr --skip-existing
 check skip_some test "$(printf '%s' "$err" | grep -c 'wrote f01.exr')$(printf '%s' "$err" | grep -c 'wrote')" = 11
+check some "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 1-3:2 $options -o g%02d.exr
+check some_are_those cmp f01.exr g01.exr
+check some_are_those_too cmp f03.exr g03.exr
+check some_number test "$(ls g*.exr | wc -l)" = 2
+expect_code 2 too_many "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 2-4 $options -o g%02d.exr
 check turns "$VELO" render walk.gltf --turntable 4 $options -o t%d.exr
 check turns_all test "$(ls t?.exr | wc -l)" = 4
 check turn "$VELO" render walk.gltf --turn 90 $options -o turn.exr --quiet

@@ -39,6 +39,10 @@ const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
                                   {"opensfm", VL_CAMERA_DIALECT_OPENSFM},
                                   {"open3d", VL_CAMERA_DIALECT_OPEN3D},
                                   {"visp", VL_CAMERA_DIALECT_VISP},
+                                  {"middlebury", VL_CAMERA_DIALECT_MIDDLEBURY},
+                                  {"mvsnet", VL_CAMERA_DIALECT_MVSNET},
+                                  {"bundler", VL_CAMERA_DIALECT_BUNDLER},
+                                  {"openmvg", VL_CAMERA_DIALECT_OPENMVG},
                                   {NULL, 0}};
 
 static bool ends_with(const char *text, const char *suffix) {

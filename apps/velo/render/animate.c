@@ -15,8 +15,8 @@
 enum { PATH_SIZE = 4096, MOST_FRAMES = 1000000 };
 
 typedef struct Animation {
-  double from, fps; /* seconds, frames per second */
-  uint32_t count;
+  double from, fps;                  /* seconds, frames per second */
+  uint32_t count, first, last, step; /* frames of the animation; those that are rendered */
   bool turns;
 } Animation;
 
@@ -39,6 +39,18 @@ static int read_animation(const Arguments *arguments, Animation *a) {
   const double count = ceil((to - a->from) * a->fps - 1e-6);
   if (count > MOST_FRAMES) return report_usage("--animate \"%s\": %.0f frames are too many", span->text, count);
   a->count = count >= 1 ? (uint32_t)count : 1;
+  return -1;
+}
+
+static int choose_frames(const Arguments *arguments, Animation *a) {
+  const OptionValue *range = &arguments->values[RENDER_FRAMES];
+  a->first = 0, a->last = a->count - 1, a->step = 1;
+  if (!range->given) return -1;
+  if (!pattern_range(range->text, &a->first, &a->last, &a->step))
+    return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", range->text);
+  if (a->first >= a->count || (a->last != UINT32_MAX && a->last >= a->count))
+    return report_usage("--frames \"%s\": the animation has %u frames, numbered from 0", range->text, a->count);
+  if (a->last >= a->count) a->last = a->count - 1;
   return -1;
 }
 
@@ -91,6 +103,7 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   snprintf(moment, sizeof moment, "%.10g", a->turns ? angle : at);
   *set = (OptionValue){.given = true, .text = moment, .number = a->turns ? angle : at};
   one.values[RENDER_ANIMATE].given = one.values[RENDER_TURNTABLE].given = one.values[RENDER_FPS].given = false;
+  one.values[RENDER_FRAMES].given = false;
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
   if (status < 0 && skip && all_exist(&one)) status = STATUS_OK;
@@ -104,12 +117,14 @@ int animate_run(const Command *command, const Arguments *arguments, AnimateRende
   float exposure = NAN;
   int status = check(arguments);
   if (status < 0) status = read_animation(arguments, &a);
+  if (status < 0) status = choose_frames(arguments, &a);
   if (status >= 0) return status;
-  for (uint32_t i = 0; i < a.count; i++) {
-    status = render_frame(command, arguments, &a, i, render, &exposure);
+  for (uint64_t i = a.first; i <= a.last; i += a.step) {
+    status = render_frame(command, arguments, &a, (uint32_t)i, render, &exposure);
     if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given) break;
   }
-  if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given) report_note("%u frames", a.count);
+  if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
+    report_note("%u frames", (a.last - a.first) / a.step + 1);
   return status;
 }
 

@@ -24,37 +24,19 @@ bool frames_wanted(const Arguments *arguments, const Job *job) {
 
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
-/* Parses "3", "0-99", "10-" or "0-100:10". */
-static bool read_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
-  char *end;
-  const char *at = text;
-  unsigned long long numbers[3] = {0, UINT32_MAX, 1};
-  if (!(*at >= '0' && *at <= '9')) return false;
-  numbers[0] = strtoull(at, &end, 10);
-  if (*end != '-') numbers[1] = numbers[0];
-  if (*end == '-') {
-    at = end + 1;
-    end = (char *)at;
-    if (*at >= '0' && *at <= '9') numbers[1] = strtoull(at, &end, 10);
-  }
-  if (*end == ':' && end[1] >= '0' && end[1] <= '9') numbers[2] = strtoull(end + 1, &end, 10);
-  if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX) return false;
-  *first = (uint32_t)numbers[0], *last = (uint32_t)numbers[1], *step = (uint32_t)numbers[2];
-  return *first <= *last && *step > 0;
-}
-
 int frames_check(const Arguments *arguments, Outputs *outputs) {
   const OptionValue *v = arguments->values;
   bool trajectory = v[RENDER_TRAJECTORY].given;
   uint32_t unused;
   outputs->patterns = trajectory || v[RENDER_STEREO].given;
   if (v[RENDER_RIG].given && !trajectory) return report_usage("--rig FILE: the poses are missing; give --trajectory");
-  if (v[RENDER_FRAMES].given && !trajectory) return report_usage("--frames goes with --trajectory");
+  if (v[RENDER_FRAMES].given && !trajectory)
+    return report_usage("--frames goes with --trajectory, --animate or --turntable");
   if (v[RENDER_SKIP_EXISTING].given && !trajectory) return report_usage("--skip-existing goes with --trajectory");
   if (v[RENDER_FRAME].given && (trajectory || !v[RENDER_CAMERA].given))
     return report_usage(trajectory ? "--frame goes with --camera; a trajectory's are chosen by --frames"
                                    : "--frame NAME says which camera of --camera FILE");
-  if (v[RENDER_FRAMES].given && !read_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
+  if (v[RENDER_FRAMES].given && !pattern_range(v[RENDER_FRAMES].text, &unused, &unused, &unused))
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", v[RENDER_FRAMES].text);
   if (trajectory && (v[RENDER_FLOW_CAMERA].given || v[RENDER_FLOW_CAMERA_BEFORE].given))
     return report_usage("--flow-camera is of one image: it does not go with --trajectory");
@@ -165,7 +147,7 @@ static int choose_frames(Frames *frames, const Arguments *arguments) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
   uint32_t count = vl_trajectory_frames(frames->trajectory);
   frames->first = 0, frames->last = count - 1, frames->step = 1;
-  if (range->given) read_range(range->text, &frames->first, &frames->last, &frames->step);
+  if (range->given) pattern_range(range->text, &frames->first, &frames->last, &frames->step);
   if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
     return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);
   if (frames->last >= count) frames->last = count - 1;

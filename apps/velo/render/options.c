@@ -111,9 +111,10 @@ const Option render_options[] = {
      "its name, %c the camera's name, %v the eye (left, right)",
      0, 0, NULL},
     {RENDER_FRAMES, 0, "frames", OPTION_TEXT, "A-B[:STEP]",
-     "render only frames A to B of the trajectory, with STEP every STEP-th; the first frame is 0", 0, 0, NULL},
+     "render only frames A to B of the trajectory or animation, with STEP every STEP-th; the first frame is 0", 0, 0,
+     NULL},
     {RENDER_SKIP_EXISTING, 0, "skip-existing", OPTION_FLAG, NULL,
-     "leave out frames of the trajectory whose image files all exist", 0, 0, NULL},
+     "leave out frames of the trajectory or animation whose image files all exist", 0, 0, NULL},
     {RENDER_RIG, 0, "rig", OPTION_TEXT, "FILE",
      "render every camera of this file at each pose of the trajectory; a pose is that of the rig's origin, which in a "
      "camchain is cam0",

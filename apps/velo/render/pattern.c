@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/report.h"
@@ -87,4 +88,22 @@ bool pattern_expand(const char *pattern, const PatternValues *v, char *path, siz
   if (size == 0) return false;
   path[used] = 0;
   return true;
+}
+
+bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step) {
+  char *end;
+  const char *at = text;
+  unsigned long long numbers[3] = {0, UINT32_MAX, 1};
+  if (!(*at >= '0' && *at <= '9')) return false;
+  numbers[0] = strtoull(at, &end, 10);
+  if (*end != '-') numbers[1] = numbers[0];
+  if (*end == '-') {
+    at = end + 1;
+    end = (char *)at;
+    if (*at >= '0' && *at <= '9') numbers[1] = strtoull(at, &end, 10);
+  }
+  if (*end == ':' && end[1] >= '0' && end[1] <= '9') numbers[2] = strtoull(end + 1, &end, 10);
+  if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX) return false;
+  *first = (uint32_t)numbers[0], *last = (uint32_t)numbers[1], *step = (uint32_t)numbers[2];
+  return *first <= *last && *step > 0;
 }

@@ -24,4 +24,7 @@ bool pattern_has(const char *pattern, char kind);
 /* False: too long. */
 bool pattern_expand(const char *pattern, const PatternValues *values, char *path, size_t size);
 
+/* Parses the value of --frames: "3", "0-99", "10-" (last: UINT32_MAX) or "0-100:10". */
+bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *step);
+
 #endif

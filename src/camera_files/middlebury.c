@@ -1,0 +1,104 @@
+/* camera_files/middlebury.c: calib.txt of the Middlebury stereo datasets (2014, 2021): cam0 and cam1 as [f 0 cx; 0 f
+ * cy; 0 0 1], baseline, width, height. x right, y down, z forward; the world's space is camera 0's, in the baseline's
+ * unit; the first pixel's centre is (0, 0). */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "camera_files/lines.h"
+
+/* Finds the line "key=" and returns what follows, or null. */
+static const char *find(const char *text, size_t size, const char *key, vlCameraLines *line) {
+  const size_t length = strlen(key);
+  *line = (vlCameraLines){.at = text, .end = text + size};
+  while (vl_camera_next_line(line))
+    if (strncmp(line->text, key, length) == 0 && line->text[length] == '=') return line->text + length + 1;
+  return NULL;
+}
+
+static vlResult read_number(const vlCameraFile *file, const char *text, size_t size, const char *key, double *value,
+                            bool *found) {
+  vlCameraLines line;
+  uint32_t count;
+  const char *at = find(text, size, key, &line);
+  if (found) *found = at != NULL;
+  if (at) return vl_camera_line_numbers(file, &line, at, value, 1, 1, &count);
+  return found ? VL_OK : vl_camera_wrong_at(file, 1, 1, "middlebury: the line \"%s=\" is missing", key);
+}
+
+static vlResult read_size(const vlCameraFile *file, const char *text, size_t size, int number, vlCameraRecord *record) {
+  double sides[2];
+  bool found[2];
+  vlResult result = read_number(file, text, size, "width", &sides[0], &found[0]);
+  if (result == VL_OK) result = read_number(file, text, size, "height", &sides[1], &found[1]);
+  if (result != VL_OK) return result;
+  if (!found[0] && !found[1])
+    return vl_camera_size_beside(file, (const char *const[]){number ? "im1.png" : "im0.png", NULL}, record);
+  for (int i = 0; i < 2; i++)
+    if (!found[i] || !(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
+      return vl_camera_wrong_at(file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
+  record->camera.width = (uint32_t)sides[0], record->camera.height = (uint32_t)sides[1];
+  return VL_OK;
+}
+
+static vlResult read_middlebury(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+  static const char *const names[2] = {"cam0", "cam1"};
+  vlCameraLines line;
+  int chosen = -1;
+  record->frames = 0;
+  for (int i = 0; i < 2; i++) {
+    if (!find(text, size, names[i], &line)) continue;
+    if (chosen < 0 && vl_camera_is_frame(file, record->frames, names[i])) chosen = i;
+    record->frames++;
+  }
+  if (chosen < 0)
+    return vl_camera_wrong_at(file, 1, 1, "middlebury: there is no camera \"%.60s\" among the %u",
+                              file->def->frame ? file->def->frame : "0", record->frames);
+  const char *at = find(text, size, names[chosen], &line);
+  double k[9];
+  for (int i = 0; i < 9; i++) {
+    char *end;
+    at += strspn(at, "[; ,\t");
+    k[i] = strtod(at, &end);
+    if (end == at || !isfinite(k[i]))
+      return vl_camera_wrong_line(file, &line, at, "middlebury: %s must have nine numbers", names[chosen]);
+    at = end;
+  }
+  if (at[strspn(at, "] ;")]) return vl_camera_wrong_line(file, &line, at, "middlebury: unexpected text");
+  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+    return vl_camera_wrong_line(file, &line, line.text, "middlebury: %s must be [fx 0 cx; 0 fy cy; 0 0 1]",
+                                names[chosen]);
+  vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
+  const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double t[3] = {0, 0, 0};
+  if (chosen == 1) {
+    vlResult result = read_number(file, text, size, "baseline", &t[0], NULL);
+    if (result != VL_OK) return result;
+    t[0] = -t[0];
+  }
+  vl_camera_set_pose(&record->camera, r, t);
+  vl_camera_name(record, names[chosen]);
+  return read_size(file, text, size, chosen, record);
+}
+
+static bool is_middlebury(const char *text, size_t size) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  return vl_camera_next_line(&lines) && strncmp(lines.text, "cam0=[", 6) == 0;
+}
+
+static vlResult write_middlebury(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_put(text, "cam0=[%.17g 0 %.17g; 0 %.17g %.17g; 0 0 1]\nwidth=%u\nheight=%u\n", c.fx, c.cx - 0.5, c.fy,
+                c.cy - 0.5, c.width, c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_middlebury = {
+    .name = "middlebury", .is_text = is_middlebury, .read_text = read_middlebury, .write = write_middlebury};

@@ -1,0 +1,176 @@
+/* camera_files/openmvg.c: OpenMVG's sfm_data.json. Camera axes: x right, y down, z forward; rotation is camera from
+ * world, center the camera's centre. The principal point counts from the image's corner. */
+#include <stdio.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+/* The item of a list of {key, value} with this key, or null. */
+static const json_t *item_of(const json_t *list, json_int_t key) {
+  size_t i;
+  json_t *item;
+  json_array_foreach((json_t *)list, i, item) if (json_integer_value(json_object_get(item, "key")) == key) return item;
+  return NULL;
+}
+
+/* The object that has the field: that of the pointer or one of the base classes below it ("value0"). */
+static const json_t *data_of(const json_t *item, const char *field) {
+  const json_t *value = json_object_get(item, "value"), *wrapper = json_object_get(value, "ptr_wrapper");
+  const json_t *data = wrapper ? json_object_get(wrapper, "data") : value;
+  for (int depth = 0; depth < 3 && data && !json_object_get(data, field); depth++)
+    data = json_object_get(data, "value0");
+  return data;
+}
+
+/* The class of an intrinsic: only the first object of a class has its name, later ones have its number. */
+static const char *class_of(const json_t *list, const json_t *item) {
+  const json_int_t mask = 0x7fffffff;
+  const json_t *value = json_object_get(item, "value");
+  const json_int_t id = json_integer_value(json_object_get(value, "polymorphic_id")) & mask;
+  size_t i;
+  json_t *other;
+  json_array_foreach((json_t *)list, i, other) {
+    const json_t *v = json_object_get(other, "value");
+    const char *name = vl_camera_text(v, "polymorphic_name");
+    if (name && (json_integer_value(json_object_get(v, "polymorphic_id")) & mask) == id) return name;
+  }
+  return NULL;
+}
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *item, const char *name, vlCameraDef *d) {
+  static const struct {
+    const char *name, *field;
+    uint32_t count;
+  } models[] = {{"pinhole", NULL, 0},
+                {"pinhole_radial_k1", "disto_k1", 1},
+                {"pinhole_radial_k3", "disto_k3", 3},
+                {"pinhole_brown_t2", "disto_t2", 5},
+                {"fisheye", "fisheye", 4}};
+  double k[5] = {0};
+  for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
+    if (strcmp(models[i].name, name) != 0) continue;
+    if (!models[i].field) return VL_OK;
+    vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k, models[i].count,
+                                        models[i].count, NULL);
+    if (result != VL_OK) return result;
+    if (i == 4) return vl_camera_set_fisheye(d, k), VL_OK;
+    vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
+    return VL_OK;
+  }
+  return vl_camera_wrong(file,
+                         "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
+                         "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
+                         vl_short_text(name).text);
+}
+
+static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, const json_t *item,
+                               vlCameraRecord *record) {
+  const char *name = class_of(list, item);
+  vlCameraDef *d = &record->camera;
+  double f, c[2];
+  if (!name) return vl_camera_wrong(file, "openmvg: an intrinsic without \"polymorphic_name\"");
+  vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
+  if (result != VL_OK) return result;
+  if (strcmp(name, "spherical") == 0) return d->projection = VL_PROJECTION_EQUIRECTANGULAR, VL_OK;
+  const json_t *data = data_of(item, "focal_length");
+  result = vl_camera_number(file, data, "focal_length", &f);
+  if (result == VL_OK) result = vl_camera_numbers(file, data, "principal_point", c, 2, 2, NULL);
+  if (result != VL_OK) return result;
+  d->fx = d->fy = f, d->cx = c[0], d->cy = c[1];
+  return read_lens(file, item, name, d);
+}
+
+/* A view with a pose is a camera. */
+static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view, const json_t *pose,
+                          vlCameraRecord *record) {
+  const json_t *intrinsics = json_object_get(tree, "intrinsics");
+  const json_t *item = item_of(intrinsics, json_integer_value(json_object_get(view, "id_intrinsic")));
+  double r[9], center[3], t[3];
+  if (!item) return vl_camera_wrong(file, "openmvg: the view's intrinsic is missing");
+  vlResult result = read_intrinsic(file, intrinsics, item, record);
+  if (result == VL_OK) result = vl_camera_numbers(file, pose, "rotation", r, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, pose, "center", center, 3, 3, NULL);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * center[0] + r[3 * i + 1] * center[1] + r[3 * i + 2] * center[2]);
+  vl_camera_set_pose(&record->camera, r, t);
+  const char *name = vl_camera_text(view, "filename");
+  if (name) vl_camera_name(record, name);
+  return VL_OK;
+}
+
+static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *extrinsics = json_object_get(tree, "extrinsics"), *chosen = NULL, *pose = NULL;
+  size_t i;
+  json_t *item;
+  record->frames = 0;
+  json_array_foreach(json_object_get(tree, "views"), i, item) {
+    const json_t *view = data_of(item, "id_pose");
+    const json_t *own = item_of(extrinsics, json_integer_value(json_object_get(view, "id_pose")));
+    if (!view || !own) continue; /* not reconstructed */
+    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename")))
+      chosen = view, pose = json_object_get(own, "value");
+    record->frames++;
+  }
+  if (chosen) return read_view(file, tree, chosen, pose, record);
+  if (record->frames || !json_array_size(json_object_get(tree, "intrinsics")))
+    return vl_camera_wrong(file, "openmvg: there is no camera \"%.60s\" among the %u",
+                           file->def->frame ? file->def->frame : "0", record->frames);
+  record->frames = 1; /* before the reconstruction: the first intrinsic, at the origin */
+  vl_camera_set_origin(&record->camera);
+  return read_intrinsic(file, json_object_get(tree, "intrinsics"),
+                        json_array_get(json_object_get(tree, "intrinsics"), 0), record);
+}
+
+static bool is_openmvg(const json_t *tree) {
+  return vl_camera_has(tree, "sfm_data_version");
+}
+
+static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  static const char *const names[] = {"pinhole", "pinhole_brown_t2", "fisheye"};
+  vlCamera c;
+  double k[14] = {0}, r[9], t[3], center[3];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  int model = family == VL_LENS_PINHOLE            ? 0
+              : family == VL_LENS_OPENCV && n <= 5 ? 1
+              : family == VL_LENS_FISHEYE          ? 2
+                                                   : 3;
+  if (model == 3) return vl_camera_no_model(file, &record->camera);
+  result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK) return result;
+  vl_camera_get_pose(&c, r, t);
+  for (int i = 0; i < 3; i++) center[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
+  vl_camera_put(text,
+                "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
+                "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
+                "\"\", \"filename\": ");
+  vl_camera_put_string(text, record->name);
+  vl_camera_put(text, ", \"width\": %u, \"height\": %u, \"id_view\": 0, \"id_intrinsic\": 0, \"id_pose\": 0}}}}],\n",
+                c.width, c.height);
+  vl_camera_put(text,
+                "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, \"polymorphic_name\": "
+                "\"%s\", \"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": %u, \"height\": %u, "
+                "\"focal_length\": %.17g, \"principal_point\": [%.17g, %.17g]",
+                names[model], c.width, c.height, c.fx, c.cx, c.cy);
+  if (model) {
+    vl_camera_put(text, model == 1 ? ", \"disto_t2\": [" : ", \"fisheye\": [");
+    if (model == 1) vl_camera_put_numbers(text, (double[]){k[0], k[1], k[4], k[2], k[3]}, 5);
+    if (model == 2) vl_camera_put_numbers(text, k, 4);
+    vl_camera_put(text, "]");
+  }
+  vl_camera_put(text, "}}}}],\n  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [");
+  for (int i = 0; i < 3; i++) {
+    vl_camera_put(text, i ? ", [" : "[");
+    vl_camera_put_numbers(text, r + 3 * i, 3);
+    vl_camera_put(text, "]");
+  }
+  vl_camera_put(text, "], \"center\": [");
+  vl_camera_put_numbers(text, center, 3);
+  vl_camera_put(text, "]}}],\n  \"structure\": [],\n  \"control_points\": []\n}\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_openmvg = {
+    .name = "openmvg", .is_tree = is_openmvg, .read = read_openmvg, .write = write_openmvg};

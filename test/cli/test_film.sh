@@ -120,6 +120,7 @@ $render scene.pbrt $small --spp 9 --samples 4:9 --film late.film
 refused "overlap" 3 "4:6" "$VELO" film merge f.film late.film -o none.film
 refused "a part with -o" 2 "-o" $render scene.pbrt --samples 0:1 --film p.film -o p.exr
 refused "a part without film" 2 "--film" $render scene.pbrt --shard 1/2
+refused "tiles beyond 32 bits" 2 "must lie in the film" $render scene.pbrt $small --film p.film --tiles 0,0,4294967328,32
 refused "no such shard" 2 "3/2" $render scene.pbrt --film p.film --shard 3/2
 refused "no film" 4 "absent.film" $render --continue absent.film
 refused "not a film" 3 "not a film file" "$VELO" film info scene.pbrt

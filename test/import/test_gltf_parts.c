@@ -258,9 +258,61 @@ static void variants(void **state) {
   free(g);
 }
 
+/* ---- anisotropy -------------------------------------------------------------------------------------------------- */
+
+/* Red and green of the texture are the direction, from -1 to 1: it becomes an angle modulo pi, plus the rotation. A
+ * mesh without normals gets flat ones, and tangents along u. */
+static void anisotropy(void **state) {
+  (void)state;
+  static const uint8_t pixels[12] = {255, 128, 255, 128, 255, 255, 0, 128, 255, 128, 0, 255};
+  static const double directions[4][2] = {{1, 1. / 255}, {1. / 255, 1}, {-1, 1. / 255}, {1. / 255, -1}};
+  static const float uvs[8] = {0, 0, 1, 0, 0, 1, 1, 1};
+  vlContext *context;
+  vlImage *image;
+  vlError error;
+  vlContextDef cd = vl_default_context_def();
+  assert_int_equal(vl_context_create(&cd, &context), VL_OK);
+  vlImageDef def = vl_default_image_def(4, 1, 3);
+  def.type = VL_PIXEL_U8;
+  assert_int_equal(vl_image_create(context, &def, &image), VL_OK);
+  memcpy(vl_image_pixels(image), pixels, sizeof pixels);
+  assert_int_equal(vl_image_write(image, in_folder("directions.png"), NULL, &error), VL_OK);
+  vl_image_destroy(image);
+  vl_context_destroy(context);
+  Gltf *g = new_square();
+  gltf_floats(g, uvs, 4, "VEC2", 2);
+  Loaded l;
+  fine(&l, g,
+       SCENE
+       "\"nodes\":[{\"mesh\":0}],\"images\":[{\"uri\":\"directions.png\"}],\"textures\":[{\"source\":0}],"
+       "\"extensionsUsed\":[\"KHR_materials_anisotropy\"],\"materials\":[{\"extensions\":{\"KHR_materials_anisotropy\":"
+       "{\"anisotropyStrength\":0.5,\"anisotropyRotation\":0.25,\"anisotropyTexture\":{\"index\":0}}}}],"
+       "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indices\":1,"
+       "\"material\":0}]}]");
+  const vlPrincipledDef *p = &l.scene->materials.items[l.scene->materials.count - 1].principled;
+  const vlTextureDef *strength = &l.scene->textures.items[p->anisotropy.texture.index - 1];
+  const vlTextureDef *turn = &l.scene->textures.items[p->anisotropy_rotation.texture.index - 1];
+  assert_int_equal(strength->channel, 2);
+  is_near((double)strength->tint[2], 0.5, 0);
+  assert_int_equal(turn->filter, VL_FILTER_POINT);
+  for (int i = 0; i < 4; i++) {
+    double wanted = atan2(directions[i][1], directions[i][0]) + 0.25, apart;
+    apart = fabs(remainder((double)((const float *)vl_image_pixels((vlImage *)turn->image))[i] - wanted, M_PI));
+    is_near(apart, 0, 1e-5);
+  }
+  assert_int_equal(shape(&l, 0)->vertices, 6);
+  for (int i = 0; i < 6; i++) {
+    is_near((double)shape(&l, 0)->normals[3 * i + 2], 1, 0);
+    is_near((double)shape(&l, 0)->tangents[3 * i], 1, 1e-6);
+  }
+  end_load(&l);
+  free(g);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(vertex_colors), cmocka_unit_test(vertex_alpha),
                                      cmocka_unit_test(filters),       cmocka_unit_test(pointers),
-                                     cmocka_unit_test(faces),         cmocka_unit_test(variants)};
+                                     cmocka_unit_test(faces),         cmocka_unit_test(variants),
+                                     cmocka_unit_test(anisotropy)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -81,7 +81,7 @@ static int tiles_of(const uint32_t crop[4], uint32_t index, uint32_t count, uint
 
 static int take_tiles(const OptionValue *v, vlFilmDef *film) {
   for (int i = 0; i < 4; i++) {
-    uint32_t pixel = (uint32_t)v->integers[i], side = film->crop[i];
+    int64_t pixel = v->integers[i], side = film->crop[i];
     bool inside = i < 2 ? pixel >= side : pixel <= side;
     if (!inside || (pixel != side && pixel % FILM_BLOCK))
       return report_usage("--tiles \"%s\": must lie in the film, %u,%u,%u,%u, and be cut at multiples of %d", v->text,

@@ -369,6 +369,31 @@ static void wrong_edits(void **state) {
   end(context);
 }
 
+/* An object that is set again keeps its image in memory, also when another object has got it. */
+static void images_are_kept(void **state) {
+  (void)state;
+  static float image[8 * PIXELS];
+  vlContext *context = make_context();
+  Things t = make_scene(context);
+  vlImage *other = pattern(context, 9);
+  vlTextureDef texture = *vl_scene_texture(t.scene, t.image);
+  texture.image = other;
+  assert_int_equal(vl_scene_set_texture(t.scene, t.image, &texture, NULL), VL_OK);
+  vlLightDef light = *vl_scene_light(t.scene, t.sky);
+  light.image = vl_scene_texture(t.scene, t.image)->image;
+  assert_int_equal(vl_scene_set_light(t.scene, t.sky, &light, NULL), VL_OK);
+  assert_int_equal(vl_scene_set_texture(t.scene, t.image, &texture, NULL), VL_OK);
+  size_t before = vl_context_memory(context, NULL);
+  light = *vl_scene_light(t.scene, t.sky);
+  light.scale = 2;
+  assert_int_equal(vl_scene_set_light(t.scene, t.sky, &light, NULL), VL_OK);
+  assert_int_equal(vl_context_memory(context, NULL), before); /* no copy of the image */
+  vl_world_destroy(compare(context, t.scene, NULL, image));
+  vl_image_destroy(other);
+  vl_scene_destroy(t.scene);
+  end(context);
+}
+
 /* Changing an object a thousand times keeps the memory of one change. */
 static void edits_keep_no_memory(void **state) {
   (void)state;
@@ -396,6 +421,7 @@ int main(void) {
       cmocka_unit_test(a_scene_made_again),
       cmocka_unit_test(an_image_file_changes),
       cmocka_unit_test(wrong_edits),
+      cmocka_unit_test(images_are_kept),
       cmocka_unit_test(edits_keep_no_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -37,9 +37,9 @@ typedef struct vlFileWriter {
   size_t memory_size, memory_capacity;
 } vlFileWriter;
 vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error);
-/* Starts a writer to memory. It is not committed; the caller takes `memory` and frees it with vl_free. If memory runs
- * out, failed_errno is ENOMEM. */
-void vl_file_open_memory(vlFileWriter *writer, vlContext *context);
+/* Starts a writer to memory; name: for messages. It is not committed; the caller takes `memory` and frees it with
+ * vl_free. If memory runs out, failed_errno is ENOMEM. */
+void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *name);
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size);
 /* Writes at an absolute offset (for OpenEXR's callback). */
 void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset);

@@ -143,13 +143,14 @@ vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *err
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
 }
 
-void vl_file_open_memory(vlFileWriter *writer, vlContext *context) {
+void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *name) {
   writer->failed_errno = 0;
   writer->descriptor = -1;
   writer->context = context;
   writer->memory = NULL;
   writer->memory_size = writer->memory_capacity = 0;
-  writer->path[0] = writer->target[0] = writer->temporary[0] = 0;
+  writer->target[0] = writer->temporary[0] = 0;
+  snprintf(writer->path, sizeof writer->path, "%s", name);
 }
 
 static void write_memory(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {

@@ -276,7 +276,7 @@ vlResult vl_image_write_memory(const vlImage *image, const char *suffix, const v
   const vlCodec *codec = find_codec(suffix, error);
   if (!codec) return VL_ERROR_ARGUMENT;
   vlFileWriter writer;
-  vl_file_open_memory(&writer, image->context);
+  vl_file_open_memory(&writer, image->context, suffix);
   result = codec->write(image, &def, &writer, error);
   if (writer.failed_errno) result = vl_fail_memory(error);
   if (result != VL_OK) {

@@ -83,6 +83,7 @@ vlResult vl_image_create_parts(vlContext *context, const vlImageDef *def, bool p
   vlImage *made = vl_alloc_zero(context, 1, sizeof *made);
   if (!made) return VL_ERROR_MEMORY;
   made->context = context;
+  made->number = vl_context_number(context);
   made->width = def->width;
   made->height = def->height;
   made->channels = def->channels;

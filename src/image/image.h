@@ -16,6 +16,7 @@ typedef struct vlImageAttribute {
 
 struct vlImage {
   vlContext *context;
+  uint64_t number; /* of this image in its context; from 1 */
   uint32_t width, height, channels;
   vlPixelType type;
   vlEncoding encoding;

@@ -130,8 +130,17 @@ bool vl_scene_copy_spectrum(vlScene *scene, vlSpectrum *s, vlSource source, cons
   return vl_scene_copy_string(scene, &s->name);
 }
 
+/* Whether the scene owns an image: that of a def that is set again. */
+static bool is_own(const vlScene *scene, const vlImage *image) {
+  for (size_t i = 0; i < scene->images.count; i++)
+    if (scene->images.items[i] == image) return true;
+  for (size_t i = 0; i < scene->edits.count; i++)
+    if (scene->edits.items[i].image == image) return true;
+  return false;
+}
+
 bool vl_scene_copy_image(vlScene *scene, const vlImage **image) {
-  if (!*image) return true;
+  if (!*image || is_own(scene, *image)) return true;
   const vlImage *from = *image;
   uint32_t channels = vl_image_channels(from);
   vlImageDef def = vl_default_image_def(vl_image_width(from), vl_image_height(from), channels);

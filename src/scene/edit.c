@@ -62,12 +62,20 @@ static vlResult take_error(vlScene *scene, vlError *error) {
 
 /* ---- replacing a def --------------------------------------------------------------------------------------------- */
 
+/* A def that is set again keeps its image, which another object may then have, too. */
+static bool is_used(const vlScene *scene, const vlImage *image) {
+  bool used = false;
+  for (size_t i = 0; i < scene->textures.count; i++) used = used || scene->textures.items[i].image == image;
+  for (size_t i = 0; i < scene->lights.count; i++) used = used || scene->lights.items[i].image == image;
+  return used;
+}
+
 /* Frees what an earlier change of the object has allocated; entries from `end` on are of this change. */
 static void free_edits(vlScene *scene, const void *array, uint32_t id, size_t end) {
   size_t kept = 0;
   for (size_t i = 0; i < scene->edits.count; i++) {
     vlSceneEdit e = scene->edits.items[i];
-    if (i < end && e.array == array && e.id == id) {
+    if (i < end && e.array == array && e.id == id && !(e.image && is_used(scene, e.image))) {
       vl_free(scene->context, e.block);
       vl_image_destroy(e.image);
     } else {

@@ -12,8 +12,37 @@ vlBuildDef vl_default_build_def(void) {
   return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
 }
 
+/* ---- parts (part.h) ---------------------------------------------------------------------------------------------- */
+
+vlPart *vl_part_add(vlWorld *world) {
+  vlPart **slot = VL_PUSH(world->context, &world->parts);
+  if (!slot) return NULL;
+  vlPart *part = *slot = vl_alloc_zero(world->context, 1, sizeof *part);
+  if (!part) {
+    world->parts.count--;
+    return NULL;
+  }
+  part->context = world->context;
+  atomic_init(&part->users, 1);
+  return part;
+}
+
+bool vl_part_share(vlWorld *world, vlPart *part) {
+  vlPart **slot = VL_PUSH(world->context, &world->parts);
+  if (!slot) return false;
+  atomic_fetch_add(&part->users, 1);
+  *slot = part;
+  return true;
+}
+
+void vl_part_drop_last(vlWorld *world) {
+  vl_part_release(world->parts.items[--world->parts.count]);
+}
+
+/* ---- memory of a world ------------------------------------------------------------------------------------------- */
+
 void *vl_world_block(vlWorld *world, size_t count, size_t size) {
-  void **slot = VL_PUSH(world->context, &world->blocks);
+  void **slot = world->part ? VL_PUSH(world->context, &world->part->blocks) : VL_PUSH(world->context, &world->blocks);
   if (!slot) return NULL;
   *slot = vl_alloc_array(world->context, count ? count : 1, size);
   return *slot;
@@ -26,8 +55,17 @@ bool vl_world_copy_floats(vlWorld *world, const float *from, size_t count, float
   return true;
 }
 
+/* ---- building ---------------------------------------------------------------------------------------------------- */
+
 vlResult vl_world_step(const vlWorld *world, const char *name, double fraction, vlError *error) {
   return vl_task_stopped(world->task, name, fraction) ? vl_fail(error, VL_CANCELLED, "stopped") : VL_OK;
+}
+
+/* The previous world, if the new one can share its parts. */
+static const vlWorld *usable(const vlWorld *previous, const vlBuildDef *d) {
+  if (!previous) return NULL;
+  const vlBuildDef *p = &previous->def;
+  return p->color == d->color && p->bits == d->bits && p->imitate_pbrt == d->imitate_pbrt ? previous : NULL;
 }
 
 /* giving: the same scene if its meshes may be freed during the build, else null. */
@@ -44,6 +82,8 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   if (r != VL_OK) return r;
   if (scene->meshes_dropped)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the scene gave its meshes to an earlier world");
+  if (d.previous && d.previous->context != scene->context)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: the previous world is of another context");
   double start = vl_seconds();
   vlWorld *world = vl_alloc_zero(scene->context, 1, sizeof *world);
   if (!world) return vl_fail_memory(error);
@@ -51,6 +91,9 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   vl_task_start(&task, d.cancel, d.progress, d.progress_user);
   world->context = scene->context;
   world->def = d;
+  world->scene_number = scene->number;
+  world->previous = usable(d.previous, &d);
+  world->def.previous = NULL;
   world->def.cancel = NULL, world->def.progress = NULL, world->def.progress_user = NULL;
   world->task = &task;
   vlError local;
@@ -67,6 +110,8 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   if (r == VL_OK) r = vl_world_step(world, "accelerator", 1, &local);
   world->texture_memo = NULL;
   world->task = NULL;
+  world->previous = NULL;
+  world->part = NULL;
   if (r != VL_OK) {
     if (error) *error = local;
     vl_world_destroy(world);
@@ -94,9 +139,8 @@ void vl_world_destroy(vlWorld *world) {
   if (!world) return;
   vlContext *c = world->context;
   vl_accel_destroy(c, &world->accel);
-  for (size_t i = 0; i < world->coats.count; i++) vl_coat_free(c, world->coats.items[i].table);
-  for (size_t i = 0; i < world->measured.count; i++) vl_measured_free(c, world->measured.items[i]);
-  for (size_t i = 0; i < world->images.count; i++) vl_mipmap_destroy(world->images.items[i].mipmap);
+  for (size_t i = 0; i < world->parts.count; i++) vl_part_release(world->parts.items[i]); /* after the accelerator */
+  VL_ARRAY_FREE(c, &world->parts);
   for (size_t i = 0; i < world->blocks.count; i++) vl_free(c, world->blocks.items[i]);
   VL_ARRAY_FREE(c, &world->blocks);
   VL_ARRAY_FREE(c, &world->shapes);
@@ -109,7 +153,10 @@ void vl_world_destroy(vlWorld *world) {
   VL_ARRAY_FREE(c, &world->lights);
   VL_ARRAY_FREE(c, &world->infinite_lights);
   VL_ARRAY_FREE(c, &world->environments);
+  VL_ARRAY_FREE(c, &world->environment_parts);
   VL_ARRAY_FREE(c, &world->measured);
+  VL_ARRAY_FREE(c, &world->measured_parts);
+  VL_ARRAY_FREE(c, &world->medium_parts);
   VL_ARRAY_FREE(c, &world->coats);
   VL_ARRAY_FREE(c, &world->media);
   vl_free(c, world);

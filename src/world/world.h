@@ -17,6 +17,7 @@
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 #include "world/medium/medium.h"
+#include "world/part.h"
 #include "world/texture/texture.h"
 
 /* ---- shapes ------------------------------------------------------------------------------------------------------ */
@@ -122,6 +123,7 @@ typedef struct vlWorldHair {
 typedef struct vlWorldSubsurface {
   int32_t sigma_a, sigma_s, mfp;
   const struct vlBssrdfTable *table;
+  vlPart *part; /* owns the table */
 } vlWorldSubsurface;
 
 /* Says when all scattering of a material is specular (a delta distribution). */
@@ -161,6 +163,7 @@ typedef struct vlWorldMaterial {
 
 /* Table of a coat. Materials whose coats have equal parameters share one table. */
 typedef struct vlWorldCoat {
+  vlPart *part; /* owns the table */
   vlCoatTable *table;
   uint32_t depth; /* max_depth of the materials that share the table */
 } vlWorldCoat;
@@ -213,6 +216,19 @@ typedef struct vlWorldLight {
   bool plain_sphere;      /* a whole sphere, opaque, with the same emission everywhere */
 } vlWorldLight;
 
+/* What worlds share of a thing that may be read from a file. */
+typedef struct vlWorldFilePart {
+  vlPart *part;
+  vlFileStamp stamp; /* of the file when it was read */
+  uint32_t id;       /* of a medium: its id in the scene */
+} vlWorldFilePart;
+
+/* What worlds share of an environment: the distribution over its cells. */
+typedef struct vlWorldEnvironmentPart {
+  vlPart *part, *image; /* owner of the distribution; the part of its image */
+  double mean, illuminance;
+} vlWorldEnvironmentPart;
+
 #include "world/light/light_tree.h"
 
 /* Name and source location of an object in the scene, for reports (origins.c). */
@@ -226,8 +242,15 @@ typedef struct vlWorldOrigin {
 
 struct vlWorld {
   vlContext *context;
-  vlBuildDef def; /* without its pointers, which are valid during the build only */
-  vlTask *task;   /* of the build; null afterwards */
+  vlBuildDef def;                 /* without its pointers, which are valid during the build only */
+  vlTask *task;                   /* of the build; null afterwards */
+  const struct vlWorld *previous; /* during the build: the world whose parts may be shared; null: none */
+  uint64_t scene_number;          /* vlScene.number */
+  VL_ARRAY(vlPart *) parts;       /* all parts of which the world is a user */
+  vlPart *part;                   /* during the build: owner of new blocks; null: the world */
+  vlPart **shape_parts;           /* one per shape: the part with its arrays; null: the shape has none */
+  uint32_t *shape_from; /* during the build: index of the previous world's shape with the same geometry, or VL_NONE */
+  struct vlShapeSearch *shape_search; /* during the build (share.c) */
   VL_ARRAY(vlWorldShape) shapes;
   VL_ARRAY(vlWorldGroup) groups; /* element 0 holds the shapes outside of groups */
   VL_ARRAY(vlWorldInstance) instances;
@@ -238,11 +261,14 @@ struct vlWorld {
   VL_ARRAY(vlWorldLight) lights;
   VL_ARRAY(uint32_t) infinite_lights; /* indices of the lights that a ray hits if it misses all surfaces */
   VL_ARRAY(vlEnvironment) environments;
+  VL_ARRAY(vlWorldEnvironmentPart) environment_parts; /* one per environment */
   VL_ARRAY(vlMeasured *) measured;
+  VL_ARRAY(vlWorldFilePart) measured_parts; /* one per measured material */
   VL_ARRAY(vlWorldCoat) coats;
-  VL_ARRAY(vlWorldMedium) media; /* media in use */
-  VL_ARRAY(void *) blocks;       /* memory blocks owned by the world, such as dense spectra */
-  int32_t *texture_memo;         /* used during the build only: maps scene texture and role to the node */
+  VL_ARRAY(vlWorldMedium) media;          /* media in use */
+  VL_ARRAY(vlWorldFilePart) medium_parts; /* one per medium */
+  VL_ARRAY(void *) blocks;                /* memory blocks owned by the world, such as dense spectra */
+  int32_t *texture_memo;                  /* used during the build only: maps scene texture and role to the node */
   uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
   bool has_interfaces, has_subsurface; /* a material is an interface; a shape has subsurface scattering */
   bool by_channel; /* a medium (vlWorldMedium.by_channel) or a material (vlWorldPrincipled.by_channel) attenuates light

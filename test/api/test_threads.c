@@ -59,6 +59,70 @@ static void a_world_is_shared(void **state) {
   vl_context_destroy(context);
 }
 
+/* Ground truth, a build and an edit beside two renders. */
+static void *render_channels(void *argument) {
+  Job *job = argument;
+  vlCamera camera;
+  vlImage *ids = NULL;
+  vlChannelsDef def = vl_default_channels_def(SMALL_WIDTH, SMALL_HEIGHT);
+  if (small_camera(&camera) == VL_OK) vl_render_channels(job->world, &camera, &def, &job->image, &ids, NULL);
+  vl_image_destroy(ids);
+  return NULL;
+}
+
+static void *build_again(void *argument) {
+  Job *job = argument;
+  vlScene *scene = NULL;
+  vlBuildDef build = vl_default_build_def();
+  build.previous = job->world;
+  if (vl_scene_create(job->context, &scene) != VL_OK) return NULL;
+  small_scene(scene);
+  for (int i = 0; i < 3; i++) {
+    vlWorld *world = NULL;
+    double place[16];
+    small_place(place, 0.1 * i, 0.4, 0);
+    vl_scene_set_instance(scene, (vlInstanceId){1}, place, NULL);
+    if (vl_world_build(scene, &build, &world, NULL) != VL_OK) break;
+    if (i == 2) {
+      Job shot = {job->context, world, NULL};
+      render_one(&shot);
+      job->image = shot.image;
+    }
+    vl_world_destroy(world);
+  }
+  vl_scene_destroy(scene);
+  return NULL;
+}
+
+static void calls_overlap(void **state) {
+  (void)state;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 3;
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(&def, &context), VL_OK);
+  vlScene *scene = NULL;
+  vlWorld *world = NULL;
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  small_scene(scene);
+  assert_int_equal(vl_world_build(scene, NULL, &world, NULL), VL_OK);
+  vl_scene_destroy(scene);
+  static void *(*const calls[4])(void *) = {render_one, render_channels, build_again, render_one};
+  Job jobs[4];
+  pthread_t threads[4];
+  for (int i = 0; i < 4; i++) {
+    jobs[i] = (Job){context, world, NULL};
+    assert_int_equal(pthread_create(&threads[i], NULL, calls[i], &jobs[i]), 0);
+  }
+  for (int i = 0; i < 4; i++) pthread_join(threads[i], NULL);
+  for (int i = 0; i < 4; i++) assert_non_null(jobs[i].image);
+  assert_memory_equal(vl_image_const_pixels(jobs[0].image), vl_image_const_pixels(jobs[3].image),
+                      (size_t)SMALL_WIDTH * SMALL_HEIGHT * vl_image_channels(jobs[0].image) * sizeof(float));
+  for (int i = 0; i < 4; i++) vl_image_destroy(jobs[i].image);
+  vl_world_destroy(world);
+  assert_int_equal(vl_context_memory(context, NULL), 0);
+  vl_context_destroy(context);
+}
+
 /* The progress report reads what the workers count, from inside a pass. */
 static bool watch(void *user, const vlProgress *progress) {
   int *reports = user;
@@ -86,6 +150,7 @@ static void progress_is_told_meanwhile(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_world_is_shared), cmocka_unit_test(progress_is_told_meanwhile)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_world_is_shared), cmocka_unit_test(calls_overlap),
+                                     cmocka_unit_test(progress_is_told_meanwhile)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

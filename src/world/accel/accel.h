@@ -30,9 +30,11 @@ typedef struct vlAccelBundle {
 typedef struct vlAccel {
   void *device;  /* RTCDevice */
   void *scene;   /* RTCScene of the whole world */
-  void **groups; /* RTCScene of each group with index >= 1 */
+  void **groups; /* RTCScene of each group; of group 0 if split or if there are no instances, else null */
   uint32_t group_count;
-  void *user_data;        /* blocks of AccelGeometry */
+  /* The shapes of group 0 are in a scene of their own, which `scene` contains as instance 0. It can then be shared
+   * with the previous world, although instances have moved. The numbers of the other instances are the same. */
+  bool split;
   vlAccelBundle *bundles; /* one per group */
   uint32_t *members;      /* memory of the members of all bundles */
   vlRayLogFn *log;        /* null except in benchmarks */

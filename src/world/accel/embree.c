@@ -19,6 +19,7 @@
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
+#include "world/accel/share.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
@@ -51,19 +52,13 @@ static inline unsigned *hit_row(void *hit, unsigned n, int row, unsigned i) {
   return (unsigned *)hit + (size_t)row * n + i;
 }
 
+/* What user_bounds reads; needed only while a scene is built. During queries the world of the query gives the shape,
+ * because worlds share Embree's scenes. */
 typedef struct AccelGeometry {
   const vlWorld *world;
   const vlWorldShape *shape;
   const uint32_t *members; /* for a bundle: shape index of each primitive; otherwise null */
 } AccelGeometry;
-
-/* The shape that contains a primitive. *prim becomes the primitive's index within that shape. */
-static const vlWorldShape *shape_of(const AccelGeometry *g, uint32_t *prim) {
-  if (!g->members) return g->shape;
-  const vlWorldShape *s = &g->world->shapes.items[g->members[*prim]];
-  *prim = 0;
-  return s;
-}
 
 /* Embree's query context, extended by the rays of the call. */
 #if VELO_EMBREE_MAJOR >= 4
@@ -73,14 +68,26 @@ typedef struct RTCIntersectContext EmbreeContext;
 #endif
 typedef struct Query {
   EmbreeContext context; /* first, because Embree passes its address to callbacks */
+  const vlWorld *world;
   const vlRays *rays;
   vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
   uint32_t first;
 } Query;
 
-static vlLocalRay local_ray(const vlWorld *world, const EmbreeContext *context, unsigned id, unsigned inst) {
-  uint32_t instance = inst == RTC_INVALID_GEOMETRY_ID ? VL_NONE : inst - world->groups.items[0].count;
-  return vl_local_ray(world, ((const Query *)(const void *)context)->rays, id, instance);
+static const Query *query_of(const EmbreeContext *context) {
+  return (const Query *)(const void *)context;
+}
+
+/* Embree's number of an instance; VL_NONE for the shapes outside of groups. */
+_Static_assert(RTC_INVALID_GEOMETRY_ID == VL_NONE, "no instance");
+static inline uint32_t instance_of(const vlWorld *world, unsigned inst) {
+  return world->accel.split && inst == 0 ? VL_NONE : inst;
+}
+
+/* inst: as instance_of returns it. */
+static vlLocalRay local_ray(const Query *q, unsigned id, uint32_t inst) {
+  uint32_t instance = inst == VL_NONE ? VL_NONE : inst - q->world->groups.items[0].count;
+  return vl_local_ray(q->world, q->rays, id, instance);
 }
 
 unsigned vl_accel_enter(void) {
@@ -93,29 +100,29 @@ void vl_accel_leave(unsigned state) {
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
-static bool filter_rejects(const AccelGeometry *g, const struct RTCFilterFunctionNArguments *args, unsigned i,
-                           bool shadow) {
-  if (shadow && g->shape->pass_shadow) return true;
-  if (g->shape->alpha < 0 && !g->shape->one_sided) return false;
-  vlTextureCorner corner = {.shape = g->shape};
-  vlTextureQuery at = {.corner = &corner};
-  vlLocalRay r =
-      local_ray(g->world, args->context, *hit_row(args->ray, args->N, ID, i), *hit_row(args->hit, args->N, INST, i));
+static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsigned i, bool shadow) {
+  const Query *q = query_of(args->context);
+  uint32_t inst = instance_of(q->world, *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
-  corner.prim = prim;
-  bool behind = vl_local_triangle(g->shape, prim, &r, &at, corner.weights);
-  if (behind && g->shape->one_sided) return true;
-  return g->shape->alpha >= 0 && vl_alpha_passes(g->world, g->shape, &r, prim, 0, &at);
+  const vlWorldShape *shape = vl_accel_shape(q->world, inst, *hit_row(args->hit, args->N, GEOM, i), &prim);
+  if (shadow && shape->pass_shadow) return true;
+  if (shape->alpha < 0 && !shape->one_sided) return false;
+  vlTextureCorner corner = {.shape = shape, .prim = prim};
+  vlTextureQuery at = {.corner = &corner};
+  vlLocalRay r = local_ray(q, *hit_row(args->ray, args->N, ID, i), inst);
+  bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
+  if (behind && shape->one_sided) return true;
+  return shape->alpha >= 0 && vl_alpha_passes(q->world, shape, &r, prim, 0, &at);
 }
 
 /* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t of the hit. */
 static inline __attribute__((always_inline)) void read_hit(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                            unsigned i, vlNearest *hit) {
+  hit->world = query_of(args->context)->world;
   hit->t = *ray_row(args->ray, n, TFAR, i);
-  hit->instance = *hit_row(args->hit, n, INST, i);
+  hit->instance = instance_of(hit->world, *hit_row(args->hit, n, INST, i));
   hit->geometry = *hit_row(args->hit, n, GEOM, i);
   hit->primitive = *hit_row(args->hit, n, PRIM, i);
-  hit->shape = ((const AccelGeometry *)args->geometryUserPtr)->shape;
   for (int k = 0; k < 3; k++) {
     hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
     hit->o[k] = *ray_row(args->ray, n, ORIGIN + k, i);
@@ -135,7 +142,7 @@ static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctio
  * matter. */
 static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                              unsigned i) {
-  const Query *q = (const Query *)(const void *)args->context;
+  const Query *q = query_of(args->context);
   vlNearest *known = q->nearest + (*hit_row(args->ray, n, ID, i) - q->first);
   float t = *ray_row(args->ray, n, TFAR, i);
   if (vl_nearest_clearly(known, t))
@@ -157,16 +164,15 @@ static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
 }
 
 static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
-  bool any = !((const Query *)(const void *)args->context)->nearest;
+  bool any = !query_of(args->context)->nearest;
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 &&
-        (filter_rejects(args->geometryUserPtr, args, i, false) || !(any || is_nearest(args, args->N, i))))
+    if (args->valid[i] == -1 && (filter_rejects(args, i, false) || !(any || is_nearest(args, args->N, i))))
       args->valid[i] = 0;
 }
 
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++)
-    if (args->valid[i] == -1 && filter_rejects(args->geometryUserPtr, args, i, true)) args->valid[i] = 0;
+    if (args->valid[i] == -1 && filter_rejects(args, i, true)) args->valid[i] = 0;
 }
 
 /* ---- user geometry ----------------------------------------------------------------------------------------------- */
@@ -175,17 +181,20 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const AccelGeometry *g = args->geometryUserPtr;
   float low[3], high[3];
   uint32_t prim = args->primID;
-  const vlWorldShape *shape = shape_of(g, &prim);
+  const vlWorldShape *shape = g->members ? &g->world->shapes.items[g->members[prim]] : g->shape;
+  if (g->members) prim = 0;
   vl_world_prim_bounds(shape, prim, low, high);
   args->bounds_o->lower_x = low[0], args->bounds_o->lower_y = low[1], args->bounds_o->lower_z = low[2];
   args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
 }
 
-static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void *ray, unsigned n, unsigned i,
-                     uint32_t prim, bool shadow, double *t) {
-  const vlWorldShape *shape = shape_of(g, &prim);
+static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
+                     bool shadow, double *t) {
+  const Query *q = query_of(context);
+  uint32_t inst = instance_of(q->world, context->instID[0]);
+  const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
   if (shadow && shape->pass_shadow) return false;
-  vlLocalRay r = local_ray(g->world, context, *hit_row(ray, n, ID, i), context->instID[0]);
+  vlLocalRay r = local_ray(q, *hit_row(ray, n, ID, i), inst);
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
   while (vl_shape_intersect(shape, prim, r.o, r.d, t_min, t_max, &hit)) {
@@ -194,7 +203,7 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
       vl_shape_point(shape, prim, &hit, &point);
       vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                            vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-      if (vl_alpha_passes(g->world, shape, &r, prim, (float)hit.t, &at)) {
+      if (vl_alpha_passes(q->world, shape, &r, prim, (float)hit.t, &at)) {
         t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
         continue;
       }
@@ -206,16 +215,18 @@ static bool user_hit(const AccelGeometry *g, const EmbreeContext *context, void 
 }
 
 static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
-  const AccelGeometry *g = args->geometryUserPtr;
   void *ray = args->rayhit, *hit = ray_row(ray, args->N, HIT, 0);
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] != -1 || !user_hit(g, args->context, ray, args->N, i, args->primID, false, &t)) continue;
-    const Query *q = (const Query *)(const void *)args->context;
+    if (args->valid[i] != -1 || !user_hit(args->context, ray, args->N, i, args->geomID, args->primID, false, &t))
+      continue;
+    const Query *q = query_of(args->context);
     float limit = (float)t;
     if (q->nearest) {
-      vlNearest met = {
-          .t = (float)t, .instance = args->context->instID[0], .geometry = args->geomID, .primitive = args->primID};
+      vlNearest met = {.t = (float)t,
+                       .instance = instance_of(q->world, args->context->instID[0]),
+                       .geometry = args->geomID,
+                       .primitive = args->primID};
       if (!vl_nearest_offer(q->nearest + (*hit_row(ray, args->N, ID, i) - q->first), &met)) continue;
       limit = met.t * VL_NEAREST_WINDOW;
     }
@@ -227,10 +238,9 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
 }
 
 static void user_occluded(const struct RTCOccludedFunctionNArguments *args) {
-  const AccelGeometry *g = args->geometryUserPtr;
   for (unsigned i = 0; i < args->N; i++) {
     double t;
-    if (args->valid[i] == -1 && user_hit(g, args->context, args->ray, args->N, i, args->primID, true, &t))
+    if (args->valid[i] == -1 && user_hit(args->context, args->ray, args->N, i, args->geomID, args->primID, true, &t))
       *ray_row(args->ray, args->N, TFAR, i) = -INFINITY;
   }
 }
@@ -369,7 +379,8 @@ const char *vl_accel_fast_set(void) {
  * releases it again. */
 static bool has_room(const vlWorld *world) {
   size_t primitives = 0;
-  for (size_t i = 0; i < world->shapes.count; i++) primitives += (size_t)world->shapes.items[i].faces + 1;
+  for (size_t i = 0; i < world->shapes.count; i++)
+    if (world->shape_from[i] == VL_NONE) primitives += (size_t)world->shapes.items[i].faces + 1;
   size_t bytes = ((size_t)64 << 20) + ((size_t)72 << 20) * vl_context_threads(world->context) + 256 * primitives;
   return vl_machine_has_addresses(bytes);
 }
@@ -378,10 +389,21 @@ static bool on_memory(void *context, ssize_t bytes, bool taken) {
   return vl_count_foreign(context, (int64_t)bytes, taken);
 }
 
-vlResult vl_accel_build(vlWorld *world, vlError *error) {
-  vlAccel *a = &world->accel;
+/* A world's accelerator under construction. */
+typedef struct Builder {
+  vlWorld *world;
+  RTCDevice device;
+  AccelGeometry *geometries; /* one per shape */
+} Builder;
+
+/* The device is shared with the previous world. */
+static vlResult open_device(vlWorld *world, RTCDevice *device, vlError *error) {
   char config[64];
-  if (!has_room(world)) return vl_fail_memory(error);
+  *device = world->previous ? world->previous->accel.device : NULL;
+  if (*device) {
+    rtcRetainDevice(*device);
+    return VL_OK;
+  }
   vlResult startable = vl_try_threads(world->context, error);
   if (startable != VL_OK) return startable;
   const char *set;
@@ -389,45 +411,14 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   if (chosen != VL_OK) return chosen;
   snprintf(config, sizeof config, "threads=%u,hugepages=1%s%s", vl_context_threads(world->context), set ? ",isa=" : "",
            set ? set : "");
-  RTCDevice device = rtcNewDevice(config);
-  if (!device)
+  *device = rtcNewDevice(config);
+  if (!*device)
     return vl_fail(error, VL_ERROR_MEMORY, "Embree gives no device (error %d)", (int)rtcGetDeviceError(NULL));
-  a->device = device;
-  rtcSetDeviceMemoryMonitorFunction(device, on_memory, world->context);
-  AccelGeometry *geometries = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *geometries);
-  a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
-  a->user_data = geometries;
-  a->bundles = vl_alloc_zero(world->context, world->groups.count, sizeof *a->bundles);
-  a->members = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *a->members);
-  if (!geometries || !a->groups || !a->bundles || !a->members) return vl_fail_memory(error);
-  uint32_t bundled_count = 0;
-  a->group_count = (uint32_t)world->groups.count;
-  for (size_t i = 0; i < world->shapes.count; i++)
-    geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
-  for (size_t k = world->groups.count; k-- > 0;) { /* group 0, the world itself, comes last: it refers to the others */
-    const vlWorldGroup *group = &world->groups.items[k];
-    RTCScene scene = new_scene(world);
-    if (!scene) return vl_fail_memory(error);
-    a->groups[k] = scene;
-    vlResult r = VL_OK;
-    vlAccelBundle *bundle = &a->bundles[k];
-    bundled_count += vl_accel_find_bundle(world, group, bundle, a->members + bundled_count);
-    for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
-      AccelGeometry *g = &geometries[group->shapes[i]];
-      if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* is in the bundle */
-      if (bundle->members && i == bundle->geometry) g->members = bundle->members;
-      r = attach_shape(device, scene, i, g, bundle->count, error);
-    }
-    for (size_t i = 0; k == 0 && r == VL_OK && i < world->instances.count; i++) {
-      const vlWorldInstance *instance = &world->instances.items[i];
-      r = attach_instance(device, scene, a->groups[instance->group], group->count + (unsigned)i, instance, error);
-    }
-    if (r != VL_OK) return r;
-    rtcCommitScene(scene);
-    rtcSetSceneProgressMonitorFunction(scene, NULL, NULL);
-    if ((r = vl_world_step(world, "accelerator", 0.5 + 0.5 / (double)(k + 1), error)) != VL_OK) return r;
-  }
-  a->scene = a->groups[0];
+  rtcSetDeviceMemoryMonitorFunction(*device, on_memory, world->context);
+  return VL_OK;
+}
+
+static vlResult device_error(RTCDevice device, vlError *error) {
   enum RTCError code = rtcGetDeviceError(device);
   if (code == RTC_ERROR_OUT_OF_MEMORY) return vl_fail_memory(error);
   if (code == RTC_ERROR_UNKNOWN) /* Embree's scheduler reports this error when memory is short */
@@ -436,12 +427,111 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   return VL_OK;
 }
 
+/* Ends the building of a scene. done: the share of the groups that is built. */
+static vlResult commit(const vlWorld *world, RTCScene scene, double done, vlError *error) {
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, NULL, NULL);
+  vlResult r = vl_world_step(world, "accelerator", 0.5 + 0.5 * done, error);
+  return r == VL_OK ? device_error(world->accel.device, error) : r;
+}
+
+static vlResult attach_group(const Builder *b, RTCScene scene, uint32_t k, vlError *error) {
+  const vlWorldGroup *group = &b->world->groups.items[k];
+  const vlAccelBundle *bundle = &b->world->accel.bundles[k];
+  vlResult r = VL_OK;
+  for (uint32_t i = 0; r == VL_OK && i < group->count; i++) {
+    AccelGeometry *g = &b->geometries[group->shapes[i]];
+    if (bundle->members && i > bundle->geometry && vl_accel_bundled(g->shape)) continue; /* is in the bundle */
+    if (bundle->members && i == bundle->geometry) g->members = bundle->members;
+    r = attach_shape(b->device, scene, i, g, bundle->count, error);
+  }
+  return r;
+}
+
+/* The scene of a group's shapes: shared, or built. */
+static vlResult make_group(const Builder *b, uint32_t k, vlError *error) {
+  vlWorld *world = b->world;
+  vlAccel *a = &world->accel;
+  RTCScene shared = vl_accel_find_group(world, k);
+  if (shared) {
+    rtcRetainScene(shared);
+    a->groups[k] = shared;
+    return VL_OK;
+  }
+  RTCScene scene = new_scene(world);
+  if (!scene) return vl_fail_memory(error);
+  a->groups[k] = scene;
+  vlResult r = attach_group(b, scene, k, error);
+  return r == VL_OK ? commit(world, scene, 1.0 / (k + 1), error) : r;
+}
+
+/* The scene of the whole world, in one of three ways: that of group 0, if there are no instances; one that contains the
+ * shapes of group 0 and the instances; or, split, one of instances alone. */
+static vlResult make_whole(const Builder *b, vlError *error) {
+  vlWorld *world = b->world;
+  vlAccel *a = &world->accel;
+  uint32_t own = world->groups.items[0].count;
+  vlResult r = VL_OK;
+  if (vl_accel_same_whole(world)) {
+    a->scene = world->previous->accel.scene;
+    a->split = world->previous->accel.split;
+    rtcRetainScene(a->scene);
+    a->groups[0] = world->previous->accel.groups[0];
+    if (a->groups[0]) rtcRetainScene(a->groups[0]);
+    return VL_OK;
+  }
+  if (world->instances.count == 0) {
+    r = make_group(b, 0, error);
+    a->scene = a->groups[0];
+    if (a->scene) rtcRetainScene(a->scene);
+    return r;
+  }
+  bool split = vl_accel_must_split(world);
+  if (split) r = make_group(b, 0, error);
+  if (r != VL_OK) return r;
+  a->split = split;
+  RTCScene scene = a->scene = new_scene(world);
+  if (!scene) return vl_fail_memory(error);
+  static const vlWorldInstance still = {.from_group = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+  r = split ? attach_instance(b->device, scene, a->groups[0], 0, &still, error) : attach_group(b, scene, 0, error);
+  for (size_t i = 0; r == VL_OK && i < world->instances.count; i++) {
+    const vlWorldInstance *instance = &world->instances.items[i];
+    r = attach_instance(b->device, scene, a->groups[instance->group], own + (unsigned)i, instance, error);
+  }
+  return r == VL_OK ? commit(world, scene, 1, error) : r;
+}
+
+vlResult vl_accel_build(vlWorld *world, vlError *error) {
+  vlAccel *a = &world->accel;
+  if (!has_room(world)) return vl_fail_memory(error);
+  RTCDevice device;
+  vlResult r = open_device(world, &device, error);
+  if (r != VL_OK) return r;
+  a->device = device;
+  a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
+  a->bundles = vl_alloc_zero(world->context, world->groups.count, sizeof *a->bundles);
+  a->members = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *a->members);
+  if (!a->groups || !a->bundles || !a->members) return vl_fail_memory(error);
+  a->group_count = (uint32_t)world->groups.count;
+  Builder b = {world, device, vl_alloc_array(world->context, world->shapes.count + 1, sizeof *b.geometries)};
+  if (!b.geometries) return vl_fail_memory(error);
+  for (size_t i = 0; i < world->shapes.count; i++)
+    b.geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
+  uint32_t bundled_count = 0;
+  for (size_t k = world->groups.count; k-- > 0;)
+    bundled_count += vl_accel_find_bundle(world, &world->groups.items[k], &a->bundles[k], a->members + bundled_count);
+  for (size_t k = world->groups.count; r == VL_OK && k-- > 1;) r = make_group(&b, (uint32_t)k, error);
+  if (r == VL_OK) r = make_whole(&b, error);
+  vl_free(world->context, b.geometries);
+  return r == VL_OK ? device_error(device, error) : r;
+}
+
 void vl_accel_destroy(vlContext *context, vlAccel *a) {
   for (uint32_t k = 0; k < a->group_count; k++)
     if (a->groups[k]) rtcReleaseScene(a->groups[k]);
+  if (a->scene) rtcReleaseScene(a->scene);
   if (a->device) rtcReleaseDevice(a->device);
   vl_free(context, a->groups);
-  vl_free(context, a->user_data);
   vl_free(context, a->bundles);
   vl_free(context, a->members);
   memset(a, 0, sizeof *a);
@@ -454,7 +544,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 #define BEGIN_QUERY(query, r, coherent)                                                               \
   Query query;                                                                                        \
   rtcInitRayQueryContext(&query.context);                                                             \
-  query.rays = (r), query.nearest = NULL, query.first = 0;                                            \
+  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0;                       \
   struct RTCIntersectArguments closest_arguments;                                                     \
   rtcInitIntersectArguments(&closest_arguments);                                                      \
   closest_arguments.context = &query.context;                                                         \
@@ -467,10 +557,10 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
 #define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), &closest_arguments)
 #else
-#define BEGIN_QUERY(query, r, coherent)                    \
-  Query query;                                             \
-  rtcInitIntersectContext(&query.context);                 \
-  query.rays = (r), query.nearest = NULL, query.first = 0; \
+#define BEGIN_QUERY(query, r, coherent)                                         \
+  Query query;                                                                  \
+  rtcInitIntersectContext(&query.context);                                      \
+  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0; \
   query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
@@ -483,16 +573,10 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
     *shape = *prim_out = *instance = VL_NONE;
     return;
   }
-  uint32_t group = 0;
-  *instance = VL_NONE;
-  if (inst != RTC_INVALID_GEOMETRY_ID) {
-    *instance = inst - world->groups.items[0].count;
-    group = world->instances.items[*instance].group;
-  }
-  const vlAccelBundle *bundle = &world->accel.bundles[group];
-  bool bundled_hit = bundle->members && geom == bundle->geometry;
-  *shape = bundled_hit ? bundle->members[prim] : world->groups.items[group].shapes[geom];
-  *prim_out = bundled_hit ? 0 : prim;
+  uint32_t number = instance_of(world, inst);
+  *instance = number == VL_NONE ? VL_NONE : number - world->groups.items[0].count;
+  *prim_out = prim;
+  *shape = (uint32_t)(vl_accel_shape(world, number, geom, prim_out) - world->shapes.items);
 }
 
 /* Embree accepts neither NaN nor origins beyond its range. Such rays miss everything. Only cameras, and media around

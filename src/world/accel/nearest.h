@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "world/accel/bundle.h"
 #include "world/shape/moving.h"
 
 /* Embree computes t as T * rcp(D), where velo divides. The reciprocal (an estimate and one Newton step) differs between
@@ -20,7 +21,7 @@
 typedef struct vlNearest {
   float t; /* for triangles Embree's distance, for other shapes velo's; infinity: no hit yet */
   uint32_t instance, geometry, primitive;
-  const vlWorldShape *shape;   /* null: t is velo's own, and the following members are not set */
+  const vlWorld *world;        /* null: t is velo's own, and the following members are not set */
   float normal[3], o[3], d[3]; /* normal (not normalised) and ray, in the space of the shape's group */
   float time;
 } vlNearest;
@@ -36,9 +37,11 @@ static inline float vl_plane_distance(const float corner[3], const float n[3], c
 
 /* The distance in velo's own arithmetic. */
 static inline float vl_nearest_distance(const vlNearest *h) {
-  if (!h->shape) return h->t;
+  if (!h->world) return h->t;
   float room[3];
-  const float *corner = vl_vertex_at(h->shape, h->shape->indices[3 * (size_t)h->primitive], h->time, room);
+  uint32_t prim = h->primitive;
+  const vlWorldShape *s = vl_accel_shape(h->world, h->instance, h->geometry, &prim);
+  const float *corner = vl_vertex_at(s, s->indices[3 * (size_t)prim], h->time, room);
   return vl_plane_distance(corner, h->normal, h->o, h->d);
 }
 

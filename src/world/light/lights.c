@@ -72,6 +72,32 @@ float vl_light_texel_luminance(vlTexel t, uint32_t channels) {
 
 /* ---- infinite lights --------------------------------------------------------------------------------------------- */
 
+/* Makes the distribution over the cells, or shares that of the previous world. */
+static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean, double *illuminance, vlError *error) {
+  const vlWorld *previous = world->previous;
+  vlPart *image = world->images.items[env->image].part;
+  vlWorldEnvironmentPart *kept = VL_PUSH(world->context, &world->environment_parts);
+  if (!kept) return vl_fail_memory(error);
+  for (size_t i = 0; previous && i < previous->environments.count; i++) {
+    const vlWorldEnvironmentPart *known = &previous->environment_parts.items[i];
+    const vlEnvironment *from = &previous->environments.items[i];
+    if (known->image != image) continue;
+    if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
+    *kept = *known;
+    env->size = from->size, env->cells = from->cells, env->rows = from->rows;
+    env->row_guide = from->row_guide, env->cell_guide = from->cell_guide;
+    *mean = known->mean, *illuminance = known->illuminance;
+    return VL_OK;
+  }
+  if (!(kept->part = vl_part_add(world))) return vl_fail_memory(error);
+  world->part = kept->part;
+  vlResult r = vl_world_build_environment(world, env, &kept->mean, &kept->illuminance, error);
+  world->part = NULL;
+  kept->image = image;
+  *mean = kept->mean, *illuminance = kept->illuminance;
+  return r;
+}
+
 vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,
                                    vlError *error) {
   light->environment = VL_NONE;
@@ -101,7 +127,7 @@ vlResult vl_compile_light_infinite(vlWorld *world, const vlLightDef *def, vlWorl
       env->light_from_world[3 * i + j] = (float)inverse.m[4 * i + j];
     }
   double mean = 0, illuminance = 0;
-  vlResult r = vl_world_build_environment(world, env, &mean, &illuminance, error);
+  vlResult r = distribution_of(world, env, &mean, &illuminance, error);
   if (def->illuminance == def->illuminance && illuminance > 0)
     e->image_scale *= (float)(def->illuminance / illuminance);
   light->environment = (uint32_t)world->environments.count - 1;

@@ -26,29 +26,48 @@ static float alpha_of(float roughness, bool remap) {
   return remap ? sqrtf(roughness > 0 ? roughness : 0) : roughness;
 }
 
+static const vlWorldCoat *find_coat(const vlWorld *world, const vlCoatTable *wanted, uint32_t depth) {
+  for (size_t i = 0; i < world->coats.count; i++) {
+    const vlCoatTable *t = world->coats.items[i].table;
+    if (t && t->eta == wanted->eta && t->tau == wanted->tau && world->coats.items[i].depth == depth &&
+        t->alpha_min == wanted->alpha_min && t->alpha_max == wanted->alpha_max && t->conserves == wanted->conserves)
+      return &world->coats.items[i];
+  }
+  return NULL;
+}
+
+static void free_coat(vlContext *context, void *table) {
+  vl_coat_free(context, table);
+}
+
 /* Gives the coat table for this range of alphas. Coats with equal parameters share a table. */
 static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, float low, float high,
                            const vlCoatTable **table, vlError *error) {
   float thickness = def->thickness.value;
-  for (size_t i = 0; i < world->coats.count; i++) {
-    vlCoatTable *t = world->coats.items[i].table;
-    if (t->eta == m->eta_s && t->tau == thickness && world->coats.items[i].depth == def->max_depth &&
-        t->alpha_min == low && t->alpha_max == high && t->conserves == def->conserve_energy) {
-      *table = t;
-      return VL_OK;
-    }
+  const vlCoatTable wanted = {
+      .eta = m->eta_s, .tau = thickness, .alpha_min = low, .alpha_max = high, .conserves = def->conserve_energy};
+  const vlWorldCoat *known = find_coat(world, &wanted, def->max_depth);
+  if (known) return *table = known->table, VL_OK;
+  known = world->previous ? find_coat(world->previous, &wanted, def->max_depth) : NULL;
+  if (known) {
+    vlWorldCoat *shared = VL_PUSH(world->context, &world->coats);
+    if (!shared || !vl_part_share(world, known->part)) return vl_fail_memory(error);
+    *shared = *known;
+    return *table = known->table, VL_OK;
   }
   vlCoatTable *built = NULL;
   if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
     return vl_fail_memory(error);
   vlResult r = def->conserve_energy ? vl_coat_conserve(world->context, built) : VL_OK;
   vlWorldCoat *slot = r != VL_OK ? NULL : VL_PUSH(world->context, &world->coats);
-  if (!slot) {
+  vlPart *part = slot ? vl_part_add(world) : NULL;
+  if (!part) {
     vl_coat_free(world->context, built);
     return vl_fail_memory(error);
   }
+  part->destroy = free_coat, part->object = built;
   built->imitate = world->def.imitate_pbrt;
-  *slot = (vlWorldCoat){built, def->max_depth};
+  *slot = (vlWorldCoat){part, built, def->max_depth};
   *table = built;
   return VL_OK;
 }
@@ -63,16 +82,40 @@ static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMateria
   return coat_table(world, def, m, alpha, alpha, &m->widened, error);
 }
 
+static void free_measured(vlContext *context, void *measured) {
+  vl_measured_free(context, measured);
+}
+
 /* Loads a measured material; each file is read once. */
 static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
   for (size_t i = 0; i < world->measured.count && !m->measured; i++)
-    if (strcmp(world->measured.items[i]->path, def->measured) == 0) m->measured = world->measured.items[i];
+    if (world->measured.items[i] && strcmp(world->measured.items[i]->path, def->measured) == 0)
+      m->measured = world->measured.items[i];
   if (m->measured) return VL_OK;
-  vlMeasured **slot = VL_PUSH(world->context, &world->measured);
+  vlFileStamp stamp = vl_file_stamp(def->measured);
+  const vlWorld *previous = world->previous;
+  vlWorldFilePart *kept = VL_PUSH(world->context, &world->measured_parts);
+  vlMeasured **slot = kept ? VL_PUSH(world->context, &world->measured) : NULL;
   if (!slot) return vl_fail_memory(error);
-  vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB, slot, error);
-  m->measured = *slot;
-  return r;
+  for (size_t i = 0; previous && stamp.there && i < previous->measured.count; i++) {
+    const vlWorldFilePart *known = &previous->measured_parts.items[i];
+    vlMeasured *from = previous->measured.items[i];
+    if (!vl_file_stamp_same(&known->stamp, &stamp) || strcmp(from->path, def->measured) != 0) continue;
+    if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
+    *kept = *known;
+    m->measured = *slot = from;
+    return VL_OK;
+  }
+  vlMeasured *made = NULL;
+  vlResult r = vl_measured_read(world->context, def->measured, world->def.color == VL_COLOR_RGB, &made, error);
+  if (r != VL_OK) return r;
+  vlPart *part = vl_part_add(world);
+  if (!part) vl_measured_free(world->context, made);
+  if (!part) return vl_fail_memory(error);
+  part->destroy = free_measured, part->object = made;
+  *kept = (vlWorldFilePart){part, stamp, 0};
+  m->measured = *slot = made;
+  return VL_OK;
 }
 
 /* ---- what several kinds have ------------------------------------------------------------------------------------- */

@@ -3,14 +3,29 @@
 #include "world/material/bssrdf.h"
 #include "world/material/compile.h"
 
-static const vlBssrdfTable *table_of(vlWorld *world, float eta, float g) {
+static const vlWorldSubsurface *find(const vlWorld *world, float eta, float g) {
   for (size_t i = 0; i < world->materials.count; i++) {
     const vlWorldSubsurface *other = world->materials.items[i].subsurface;
-    if (other && other->table->eta == eta && other->table->g == g) return other->table;
+    if (other && other->table->eta == eta && other->table->g == g) return other;
   }
+  return NULL;
+}
+
+/* False: out of memory. */
+static bool set_table(vlWorld *world, float eta, float g, vlWorldSubsurface *s) {
+  const vlWorldSubsurface *known = find(world, eta, g);
+  if (!known && world->previous && (known = find(world->previous, eta, g)) && !vl_part_share(world, known->part))
+    return false;
+  if (known) return s->table = known->table, s->part = known->part, true;
+  vlPart *part = s->part = vl_part_add(world);
+  if (!part) return false;
+  world->part = part;
   vlBssrdfTable *table = vl_world_block(world, 1, sizeof *table);
-  if (table) vl_bssrdf_build(world->context, eta, g, table);
-  return table;
+  world->part = NULL;
+  if (!table) return false;
+  vl_bssrdf_build(world->context, eta, g, table);
+  s->table = table;
+  return true;
 }
 
 vlResult vl_compile_subsurface_material(const vlMaterialBuild *b) {
@@ -25,7 +40,7 @@ vlResult vl_compile_subsurface_material(const vlMaterialBuild *b) {
   m->eta_s = b->def->eta.value.value * b->def->eta.value.scale;
   vlResult r = vl_material_roughness(b);
   if (r != VL_OK) return r;
-  if (!(s->table = table_of(b->world, m->eta_s, b->def->g.value))) return vl_fail_memory(b->error);
+  if (!set_table(b->world, m->eta_s, b->def->g.value, s)) return vl_fail_memory(b->error);
   if (d->from_reflectance) {
     r = vl_material_spectrum(b, &b->def->reflectance, &m->reflectance);
     if (r == VL_OK) r = vl_material_spectrum(b, &d->mfp, &s->mfp);

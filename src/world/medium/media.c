@@ -118,6 +118,31 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   return compile_kind[def->kind](world, def, m, error);
 }
 
+/* Compiles a medium, or shares that of the previous world: media of a scene cannot be changed, but the file of one
+ * can. */
+static vlResult obtain(vlWorld *world, const vlScene *scene, vlMediumId id, vlWorldMedium *m, vlError *error) {
+  const vlMediumDef *def = &scene->media.items[id.index - 1];
+  const vlWorld *previous = world->previous;
+  vlFileStamp stamp = vl_file_stamp(def->path);
+  vlWorldFilePart *kept = VL_PUSH(world->context, &world->medium_parts);
+  if (!kept) return vl_fail_memory(error);
+  bool same_scene = previous && previous->scene_number == scene->number;
+  for (size_t i = 0; same_scene && i < previous->media.count; i++) {
+    const vlWorldFilePart *known = &previous->medium_parts.items[i];
+    if (known->id != id.index || !vl_file_stamp_same(&known->stamp, &stamp)) continue;
+    if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
+    *kept = *known;
+    *m = previous->media.items[i];
+    world->by_channel = world->by_channel || m->by_channel;
+    return VL_OK;
+  }
+  *kept = (vlWorldFilePart){vl_part_add(world), stamp, id.index};
+  if (!(world->part = kept->part)) return vl_fail_memory(error);
+  vlResult r = compile(world, def, m, error);
+  world->part = NULL;
+  return r;
+}
+
 /* Returns the index in world->media of a medium of the scene. The medium is compiled at its first use. */
 static vlResult use(vlWorld *world, const vlScene *scene, uint32_t *compiled, vlMediumId id, uint32_t *index,
                     vlError *error) {
@@ -128,7 +153,7 @@ static vlResult use(vlWorld *world, const vlScene *scene, uint32_t *compiled, vl
     vlWorldMedium *m = VL_PUSH(world->context, &world->media);
     if (!m) return vl_fail_memory(error);
     memset(m, 0, sizeof *m);
-    vlResult r = compile(world, def, m, error);
+    vlResult r = obtain(world, scene, id, m, error);
     if (r != VL_OK) return vl_world_placed(def->source, error, r);
     compiled[id.index - 1] = (uint32_t)world->media.count;
   }

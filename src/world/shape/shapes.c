@@ -8,6 +8,7 @@
 #include "scene/schema/schema.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
+#include "world/shape/share.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 
@@ -44,8 +45,64 @@ static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShap
   return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
 }
 
-static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
-                          vlError *error) {
+static void grow_bounds(float low[3], float high[3], const float p[3]) {
+  for (int i = 0; i < 3; i++) {
+    low[i] = p[i] < low[i] ? p[i] : low[i];
+    high[i] = p[i] > high[i] ? p[i] : high[i];
+  }
+}
+
+static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
+  for (int i = 0; i < 3; i++) low[i] = INFINITY, high[i] = -INFINITY;
+  if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
+    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
+    return;
+  }
+  for (uint32_t i = 0; i < s->faces; i++) {
+    float a[3], b[3];
+    vl_world_prim_bounds(s, i, a, b);
+    grow_bounds(low, high, a);
+    grow_bounds(low, high, b);
+  }
+}
+
+static vlResult compile_geometry(vlWorld *world, const vlScene *scene, const vlShapeDef *def, const vlMat4 *m,
+                                 const vlMat4 *inverse, vlWorldShape *s, vlError *error) {
+  if (!def->displacement.texture.index) return vl_shape_compile(world, def, m, inverse, s, error);
+  vlShapeDef fine;
+  vlPart *part = world->part;
+  world->part = NULL; /* texture nodes belong to the world */
+  vlResult r = vl_world_displace(world, scene, def, m, &fine, error);
+  world->part = part;
+  if (r != VL_OK) return r;
+  r = vl_shape_compile(world, &fine, m, inverse, s, error);
+  vl_world_displace_free(world, &fine);
+  return r;
+}
+
+/* Compiles the geometry, or shares that of the previous world. Shapes with arrays have a part for them. */
+static vlResult add_geometry(vlWorld *world, const vlScene *scene, size_t index, const vlMat4 *m, const vlMat4 *inverse,
+                             vlWorldShape *s, vlError *error) {
+  const vlShapeDef *def = &scene->shapes.items[index];
+  bool done, arrays = vl_shape_is_mesh(def->kind) || def->kind == VL_SHAPE_CURVES || def->centers;
+  world->shape_parts[index] = NULL;
+  world->shape_from[index] = VL_NONE;
+  if (!vl_shape_reuse(world, scene, index, s, &done)) return vl_fail_memory(error);
+  if (done) return VL_OK;
+  vlPart *part = arrays ? vl_part_add(world) : NULL;
+  if (arrays && !part) return vl_fail_memory(error);
+  world->part = part;
+  vlResult r = compile_geometry(world, scene, def, m, inverse, s, error);
+  world->part = NULL;
+  if (r != VL_OK || !part) return r;
+  compute_bounds(s, part->low, part->high);
+  world->shape_parts[index] = part;
+  return vl_shape_match(world, index, s) ? VL_OK : vl_fail_memory(error);
+}
+
+static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vlError *error) {
+  const vlShapeDef *def = &scene->shapes.items[index];
+  vlWorldShape *s = &world->shapes.items[index];
   vlMat4 m = vl_mat4_load(def->group_from_shape), inverse;
   if (!vl_mat4_inverse(m, &inverse)) return fail_shape(def, error, "the shape's transform is singular");
   bool mirrored = vl_mat4_determinant3(m) < 0;
@@ -75,39 +132,23 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, const vlShapeDef
   s->faces = s->steps = 1;
   store_affine_d(&m, s->from_shape);
   store_affine_d(&inverse, s->to_shape);
-  if (!def->displacement.texture.index) return vl_shape_compile(world, def, &m, &inverse, s, error);
-  vlShapeDef fine;
-  vlResult r = vl_world_displace(world, scene, def, &m, &fine, error);
-  if (r != VL_OK) return r;
-  r = vl_shape_compile(world, &fine, &m, &inverse, s, error);
-  vl_world_displace_free(world, &fine);
-  return r;
+  return add_geometry(world, scene, index, &m, &inverse, s, error);
 }
 
-static void grow_bounds(float low[3], float high[3], const float p[3]) {
-  for (int i = 0; i < 3; i++) {
-    low[i] = p[i] < low[i] ? p[i] : low[i];
-    high[i] = p[i] > high[i] ? p[i] : high[i];
-  }
-}
-
-static void shape_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
-    for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
-    return;
-  }
-  for (uint32_t i = 0; i < s->faces; i++) {
-    float a[3], b[3];
-    vl_world_prim_bounds(s, i, a, b);
-    grow_bounds(low, high, a);
-    grow_bounds(low, high, b);
-  }
+/* Extends the box by a shape. */
+static void shape_bounds(const vlWorld *world, size_t index, float low[3], float high[3]) {
+  const vlPart *part = world->shape_parts[index];
+  float a[3], b[3];
+  if (!part) compute_bounds(&world->shapes.items[index], a, b);
+  const float *from = part ? part->low : a, *to = part ? part->high : b;
+  if (!(from[0] <= to[0])) return;
+  grow_bounds(low, high, from);
+  grow_bounds(low, high, to);
 }
 
 static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
   for (int i = 0; i < 3; i++) group->low[i] = INFINITY, group->high[i] = -INFINITY;
-  for (uint32_t i = 0; i < group->count; i++)
-    shape_bounds(&world->shapes.items[group->shapes[i]], group->low, group->high);
+  for (uint32_t i = 0; i < group->count; i++) shape_bounds(world, group->shapes[i], group->low, group->high);
 }
 
 static void instance_bounds(const vlWorld *world, const vlWorldInstance *instance, float low[3], float high[3]) {
@@ -169,7 +210,7 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     const vlWorldShape *s = &world->shapes.items[root->shapes[i]];
     const vlSource *source = &scene->shapes.items[root->shapes[i]].source;
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
-    shape_bounds(s, a, b);
+    shape_bounds(world, root->shapes[i], a, b);
     check_edges(world, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source, &warned);
     if (a[0] <= b[0]) grow_bounds(low, high, a), grow_bounds(low, high, b);
     vlResult r = check_reach(low, high, source, error);
@@ -232,11 +273,14 @@ vlResult vl_world_add_shapes(vlWorld *world, const vlScene *scene, vlError *erro
   if (!VL_RESERVE(world->context, &world->shapes, scene->shapes.count) ||
       !VL_RESERVE(world->context, &world->groups, group_count))
     return vl_fail_memory(error);
+  world->shape_parts = vl_world_block(world, scene->shapes.count, sizeof(vlPart *));
+  world->shape_from = vl_world_block(world, scene->shapes.count, sizeof(uint32_t));
+  if (!world->shape_parts || !world->shape_from) return vl_fail_memory(error);
   world->groups.count = group_count;
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *def = &scene->shapes.items[i];
     vlResult r = vl_world_step(world, "shapes", 0.4 + 0.1 * (double)i / (double)scene->shapes.count, error);
-    if (r == VL_OK) r = add_shape(world, scene, def, &world->shapes.items[i], error);
+    if (r == VL_OK) r = add_shape(world, scene, i, error);
     if (r != VL_OK) return r;
     world->shapes.count = i + 1;
     if (is_in_group(scene, i)) world->groups.items[def->group.index].count++;

@@ -4,6 +4,7 @@
 #ifndef WORLD_TEXTURE_TEXTURE_H
 #define WORLD_TEXTURE_TEXTURE_H
 
+#include "base/file_stamp.h"
 #include "color/color.h"
 #include "image/mipmap.h"
 
@@ -80,8 +81,22 @@ typedef struct vlTextureNode {
   float texture_from_world[12];
 } vlTextureNode;
 
+/* What tells whether an image is that of an earlier build: from which bytes it was made, and how. */
+typedef struct vlImageKey {
+  vlFileStamp stamp;  /* of a file; `there` is false for bytes in memory */
+  uint64_t size;      /* number of bytes in memory */
+  uint64_t owner;     /* of bytes in memory: their number in the scene; 0: not known */
+  uint8_t digest[16]; /* of bytes in memory */
+  bool pyramid, keep_coverage, encoding_given;
+  vlEncoding encoding;
+  float gamma;
+} vlImageKey;
+
+struct vlPart;
 typedef struct vlWorldImage {
   vlMipmap *mipmap;
+  struct vlPart *part; /* owns the mipmap */
+  vlImageKey key;
   const char *path; /* path and the options that change the pixels, so that each file is read once; or null */
   const void *data; /* the image file in memory, if path is null */
   vlEncoding encoding;

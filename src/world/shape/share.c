@@ -1,0 +1,165 @@
+/* world/shape/share.c: see share.h. Shapes of one scene are recognised by their index, since their geometry cannot be
+ * changed. Others, and displaced meshes, are compiled and then compared number by number. */
+#include "world/shape/share.h"
+
+#include <string.h>
+
+#include "scene/scene.h"
+
+/* ---- comparison -------------------------------------------------------------------------------------------------- */
+
+enum { ARRAYS = 13 };
+typedef struct Arrays {
+  void *item[ARRAYS];
+  size_t bytes[ARRAYS];
+} Arrays;
+
+static Arrays arrays_of(const vlWorldShape *s) {
+  size_t v = sizeof(float) * (size_t)s->vertices, n = v * s->steps, f = s->faces;
+  size_t corners = s->kind == VL_SHAPE_BILINEAR ? 4 : 3, segments = f >> s->split;
+  bool curves = s->kind == VL_SHAPE_CURVES;
+  Arrays a = {{s->positions, s->normals, s->tangents, s->uvs, s->indices, s->tangent_signs, s->more_uvs[0],
+               s->more_uvs[1], s->more_uvs[2], s->colors, s->widths, s->centers, s->radii},
+              {curves ? 12 * segments * sizeof(float) : 3 * n, curves ? 6 * segments * sizeof(float) : 3 * n, 3 * v,
+               2 * v, corners * f * sizeof(uint32_t), v, 2 * v, 2 * v, 2 * v, 4 * v, 2 * segments * sizeof(float),
+               3 * f * sizeof(double), f * sizeof(float)}};
+  return a;
+}
+
+/* Clears the members that do not describe the geometry, and the addresses. */
+static void mask(vlWorldShape *s) {
+  s->material = s->first_light = s->inside = s->outside = 0;
+  s->alpha = 0;
+  s->pass_shadow = s->backdrop = false;
+  s->positions = s->normals = s->tangents = s->uvs = s->tangent_signs = s->colors = s->emission_uvs = s->widths = NULL;
+  s->radii = NULL;
+  s->centers = NULL;
+  s->indices = s->light_of = NULL;
+  for (int k = 0; k < 3; k++) s->more_uvs[k] = NULL;
+}
+
+static bool same_numbers(const vlWorldShape *a, const vlWorldShape *b) {
+  vlWorldShape x, y;
+  memcpy(&x, a, sizeof x); /* with the padding, which is 0 */
+  memcpy(&y, b, sizeof y);
+  mask(&x);
+  mask(&y);
+  return memcmp(&x, &y, sizeof x) == 0;
+}
+
+static bool same_arrays(const vlWorldShape *a, const vlWorldShape *b) {
+  Arrays x = arrays_of(a), y = arrays_of(b);
+  for (int k = 0; k < ARRAYS; k++) {
+    if (!x.item[k] != !y.item[k] || (x.item[k] && x.bytes[k] != y.bytes[k])) return false;
+    if (x.item[k] && x.item[k] != y.item[k] && memcmp(x.item[k], y.item[k], x.bytes[k]) != 0) return false;
+  }
+  return true;
+}
+
+bool vl_shape_same(const vlWorld *world, size_t i, const vlWorld *previous, size_t j) {
+  const vlWorldShape *a = &world->shapes.items[i], *b = &previous->shapes.items[j];
+  if (a->kind != b->kind || world->shape_parts[i] != previous->shape_parts[j] || a->pass_shadow != b->pass_shadow ||
+      (a->alpha < 0) != (b->alpha < 0) || a->one_sided != b->one_sided)
+    return false;
+  return world->shape_parts[i] || same_numbers(a, b);
+}
+
+/* ---- reuse ------------------------------------------------------------------------------------------------------- */
+
+/* Gives *s the geometry of another shape. */
+static void take(const vlWorldShape *from, vlWorldShape *s) {
+  vlWorldShape own = *s;
+  memcpy(s, from, sizeof *s);
+  s->material = own.material;
+  s->alpha = own.alpha;
+  s->pass_shadow = own.pass_shadow;
+  s->backdrop = own.backdrop;
+  s->first_light = VL_NONE;
+  s->inside = s->outside = 0;
+  s->light_of = NULL;
+  s->emission_uvs = NULL;
+}
+
+static bool same_times(const vlWorld *a, const vlWorld *b) {
+  return a->time_open == b->time_open && a->time_close == b->time_close;
+}
+
+bool vl_shape_reuse(vlWorld *world, const vlScene *scene, size_t index, vlWorldShape *s, bool *done) {
+  const vlWorld *previous = world->previous;
+  *done = false;
+  if (!previous || previous->scene_number != scene->number || index >= previous->shapes.count ||
+      scene->shapes.items[index].displacement.texture.index)
+    return true;
+  const vlWorldShape *old = &previous->shapes.items[index];
+  if (old->steps > 1 && !same_times(world, previous)) return true;
+  vlPart *part = previous->shape_parts[index];
+  if (part && !vl_part_share(world, part)) return false;
+  take(old, s);
+  world->shape_parts[index] = part;
+  world->shape_from[index] = (uint32_t)index;
+  *done = true;
+  return true;
+}
+
+/* ---- search ------------------------------------------------------------------------------------------------------ */
+
+/* A hash table of the previous world's shapes with parts. */
+struct vlShapeSearch {
+  uint32_t size, *first, *next; /* first: by hash; index + 1 of a shape, 0: none */
+};
+
+/* A hash of a few numbers of the geometry. */
+static uint32_t fingerprint(const vlWorldShape *s) {
+  uint32_t h = (uint32_t)s->kind * 31 + s->vertices * 2654435761u + s->faces * 40503u;
+  Arrays a = arrays_of(s);
+  for (int k = 0; k < ARRAYS; k++) {
+    size_t words = a.item[k] ? a.bytes[k] / 4 : 0;
+    for (size_t i = 0; i < words; i += words / 8 + 1) {
+      uint32_t word;
+      memcpy(&word, (const char *)a.item[k] + 4 * i, 4);
+      h = (h ^ word) * 16777619u + (uint32_t)k;
+    }
+  }
+  return h;
+}
+
+static struct vlShapeSearch *make_search(vlWorld *world) {
+  const vlWorld *previous = world->previous;
+  uint32_t size = 16;
+  while (size < previous->shapes.count) size *= 2;
+  struct vlShapeSearch *t = vl_world_block(world, 1, sizeof *t);
+  if (!t) return NULL;
+  t->size = size;
+  t->first = vl_world_block(world, size, sizeof *t->first);
+  t->next = vl_world_block(world, previous->shapes.count + 1, sizeof *t->next);
+  if (!t->first || !t->next) return NULL;
+  memset(t->first, 0, size * sizeof *t->first);
+  for (uint32_t i = (uint32_t)previous->shapes.count; i-- > 0;) { /* the first of equal ones is found first */
+    if (!previous->shape_parts[i]) continue;
+    uint32_t *slot = &t->first[fingerprint(&previous->shapes.items[i]) & (size - 1)];
+    t->next[i] = *slot;
+    *slot = i + 1;
+  }
+  return t;
+}
+
+bool vl_shape_match(vlWorld *world, size_t index, vlWorldShape *s) {
+  const vlWorld *previous = world->previous;
+  if (!previous) return true;
+  vlPart *current = world->part;
+  world->part = NULL; /* the table belongs to the world */
+  if (!world->shape_search) world->shape_search = make_search(world);
+  world->part = current;
+  const struct vlShapeSearch *t = world->shape_search;
+  if (!t) return false;
+  for (uint32_t i = t->first[fingerprint(s) & (t->size - 1)]; i; i = t->next[i - 1]) {
+    const vlWorldShape *old = &previous->shapes.items[i - 1];
+    if (!same_numbers(old, s) || !same_arrays(old, s)) continue;
+    vl_part_drop_last(world);
+    take(old, s);
+    world->shape_parts[index] = previous->shape_parts[i - 1];
+    world->shape_from[index] = i - 1;
+    return vl_part_share(world, previous->shape_parts[i - 1]);
+  }
+  return true;
+}

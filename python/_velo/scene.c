@@ -133,13 +133,6 @@ static PyObject *scene_info(Scene *self, void *unused) {
 #undef COUNT
 }
 
-static PyObject *scene_missing(Scene *self, void *unused) {
-  (void)unused;
-  if (!scene_open(self)) return NULL;
-  const vlSceneDefs *defs = vl_scene_defs(self->scene);
-  return Py_BuildValue("(NN)", PyBool_FromLong(defs->camera_missing), PyBool_FromLong(defs->light_missing));
-}
-
 static PyObject *scene_camera(Scene *self, PyObject *unused) {
   (void)unused;
   if (!scene_open(self)) return NULL;
@@ -181,7 +174,6 @@ static PyObject *scene_context(Scene *self, void *unused) {
 static PyGetSetDef scene_members[] = {
     {"context", (getter)scene_context, NULL, "The context that it was made from.", NULL},
     {"info", (getter)scene_info, NULL, "Counts of shapes, triangles, textures and so on.", NULL},
-    {"_missing", (getter)scene_missing, NULL, "Whether camera and light are missing.", NULL},
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot scene_slots[] = {

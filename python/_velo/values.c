@@ -63,10 +63,17 @@ static const char *last_word(const char *member) {
   return dot ? dot + 1 : member;
 }
 
+/* The keyword that messages show: the member's last word, or the name that a row of rows.c gives in its place. */
+static const char *shown_name(const vlParameter *p) {
+  bool own = p->name && (strcmp(p->name, "filter") == 0 || strncmp(p->name, "filter_", 7) == 0 ||
+                         strcmp(p->name, "stereo_mode") == 0);
+  return own ? p->name : last_word(p->member);
+}
+
 bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (rows[i].member && rows[i].member[0] && !(rows[i].flags & VL_PARAMETER_SHORTHAND) &&
-        !append_text(list, last_word(rows[i].member)))
+        !append_text(list, shown_name(&rows[i])))
       return false;
   return true;
 }

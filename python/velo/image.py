@@ -20,7 +20,7 @@ class Image(_velo.Image):
     width, `image["N"]` of height x width x 3, `image["id.object"]` of uint32. Arrays share the image's memory and keep it
     alive. Where numpy is not installed, they are memoryviews."""
 
-    _parts: tuple["Image", ...]
+    _more: tuple["Image", ...]
 
     def __new__(cls, array: Any, names: Optional[Sequence[str]] = None, *, encoding: Optional[str] = None,
                 context: Any = None) -> "Image":
@@ -102,7 +102,8 @@ class Image(_velo.Image):
 
     def _repr_png_(self) -> bytes:
         """The image as a PNG, for notebooks."""
-        shown = self if memoryview(self).itemsize == 1 else self._view("standard", 0.0)
+        buffer: Any = self
+        shown = self if memoryview(buffer).itemsize == 1 else self._view("standard", 0.0)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "image.png")
             _velo.image_write([shown], path, {})

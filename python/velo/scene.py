@@ -62,10 +62,13 @@ class Scene(_velo.Scene):
 
     After an error of an add_ method the scene keeps this error and cannot be used further."""
 
+    _world: Optional[tuple[Any, World]]
+    _film: Optional[Film]
+
     def __new__(cls, *, context: Any = None) -> "Scene":
         self = super().__new__(cls, context or default_context())
-        self._world: Optional[tuple[Any, World]] = None
-        self._film: Optional[Film] = None
+        self._world = None
+        self._film = None
         return self
 
     # ---- files and camera

@@ -16,7 +16,8 @@ from velo.dataset.generate import generate, make_writers
 from velo.dataset.random import Random
 from velo.dataset.recipe import (Around, Distractors, Environment, Fixed, Ground, InVolume, Lights, Materials, Model,
                                  OnSurface, Poses, Recipe, Rig, Trajectory, read_recipe, recipe_from)
-from velo.dataset.stage import Frame, Instance, Plan, Stage, View
+from velo.dataset.cameras import View
+from velo.dataset.stage import Frame, Instance, Plan, Stage
 
 __all__ = ["Around", "Distractors", "Environment", "Fixed", "Frame", "Ground", "InVolume", "Instance", "Lights",
            "Materials", "Model", "OnSurface", "Plan", "Poses", "Random", "Recipe", "Rig", "Stage", "Trajectory", "View",

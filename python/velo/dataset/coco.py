@@ -120,7 +120,8 @@ class CocoWriter(Writer):
             if model.keypoints:
                 category.update(keypoints=list(model.keypoints), skeleton=[list(pair) for pair in model.skeleton])
             categories.append(category)
-        images, annotations = [], []
+        images: list[dict[str, Any]] = []
+        annotations: list[dict[str, Any]] = []
         for image, (_, part) in enumerate(self.parts(), 1):
             images.append({"id": image, **part["image"]})
             for annotation in part["annotations"]:

@@ -1,7 +1,7 @@
 """Where the objects of a frame are."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import Any, Callable, NamedTuple, Optional
 
 from velo._errors import UsageError
 from velo.dataset.geometry import Box, Matrix, basis, dot, place, transform
@@ -10,8 +10,8 @@ from velo.dataset.recipe import InVolume, OnSurface, Poses
 
 
 class Thing(NamedTuple):
-    """What is placed: a number of the caller's, and the bounding box in its own space."""
-    index: int
+    """What is placed, with the bounding box in its own space."""
+    number: int  #: from 0; below 0: a distractor
     name: str
     low: Any
     high: Any
@@ -55,7 +55,9 @@ def place_things(rule: Any, things: list[Thing], frame: int, random: Random) -> 
     """A pose (world from model's file, with its scale) for each thing; None: there was no room."""
     if isinstance(rule, Poses):
         raise UsageError("given poses are not placed")
-    attempt = _try_surface if isinstance(rule, OnSurface) else _try_volume
+    attempt: Callable[[Any, Thing, Random], Matrix] = _try_volume
+    if isinstance(rule, OnSurface):
+        attempt = _try_surface
     boxes: list[Box] = []
     result: list[tuple[Thing, Optional[Matrix]]] = []
     for thing in things:

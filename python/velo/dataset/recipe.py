@@ -196,7 +196,7 @@ def _value(name: str, value: Any, where: str) -> Any:
 
 def recipe_from(data: dict[str, Any], folder: str = "") -> Recipe:
     """A recipe from dicts and lists, as YAML or JSON have them."""
-    recipe = _make(Recipe, data, "recipe")
+    recipe: Recipe = _make(Recipe, data, "recipe")
     recipe.folder = recipe.folder or folder
     return recipe
 
@@ -209,7 +209,7 @@ def read_recipe(path: Union[str, "os.PathLike[str]"]) -> Recipe:
         data = json.loads(text)
     else:
         try:
-            import yaml
+            import yaml  # type: ignore[import]
         except ImportError:
             raise UsageError("YAML recipes need Python's module yaml (Debian: python3-yaml); JSON ones do not") from None
         data = yaml.safe_load(text)

@@ -138,10 +138,10 @@ class Stage:
             for thing, pose in place_things(recipe.placing, things, frame, random("placing")):
                 if pose is None:
                     _log.warning("frame %d: no room for %s", frame, thing.name)
-                elif thing.index >= 0:
-                    objects.append(Placed(thing.index, pose))
+                elif thing.number >= 0:
+                    objects.append(Placed(thing.number, pose))
                 else:
-                    distractors.append({**sizes[-1 - thing.index], "pose": pose})
+                    distractors.append({**sizes[-1 - thing.number], "pose": pose})
         plan = Plan(frame, random("render").seed32(), objects, self._cameras.views(frame), distractors)
         plan.lights = self._plan_lights(random("lights"))
         plan.environment = self._plan_environment(random("environment"))
@@ -219,8 +219,8 @@ class Stage:
                 groups[item.model] = _load_model(scene, recipe.models[item.model], recipe.folder)[0]
         if plan.ground is not None and recipe.ground:
             self._add_ground(scene, plan.ground)
-        for item in plan.distractors:
-            self._add_distractor(scene, item)
+        for distractor in plan.distractors:
+            self._add_distractor(scene, distractor)
         for light in plan.lights:
             scene.add_light("point", from_=light["from_"], power=light["power"], color=velo.blackbody(light["kelvin"]))
         if plan.environment:

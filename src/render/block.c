@@ -7,11 +7,11 @@ enum { TILE_PIXELS = VL_RENDER_TILE * VL_RENDER_TILE };
 
 /* Rows after those of vlFilmRayRows. */
 enum Row {
-  LAMBDA = VL_FILM_ROWS,
-  INV_PDF = LAMBDA + 4,
-  RADIANCE = INV_PDF + 4,
+  LAMBDA = VL_ROW_LAMBDA,
+  INV_PDF = VL_ROW_INV_PDF,
+  RADIANCE = VL_ROW_RADIANCE,
   ALPHA = RADIANCE + 4,
-  RED,
+  RED = VL_ROW_RED,
   GREEN,
   BLUE,
   ROWS
@@ -82,7 +82,7 @@ static void clear_background(uint32_t n, const float *alpha, float *const radian
     for (uint32_t i = 0; i < n; i++) radiance[c][i] = alpha[i] > 0.0f ? radiance[c][i] : 0.0f;
 }
 
-static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
+void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   const vlCameraCompiled *camera = &r->film_rays.camera;
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   const vlCameraRays rays = rows.rays;
@@ -100,7 +100,8 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
                         .py = rows.py,
                         .index = rows.index,
                         .time = r->film_rays.moves ? rays.time : NULL,
-                        .alpha = row(w, ALPHA)};
+                        .alpha = row(w, ALPHA),
+                        .recorder = w->recorder};
   vlExposure expose = {.n = n, .exposure = r->exposure_time};
   for (int c = 0; c < 4; c++) {
     expose.radiance[c] = batch.radiance[c] = row(w, RADIANCE + c);
@@ -115,7 +116,7 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   if (r->def->transparent) clear_background(n, batch.alpha, batch.radiance);
   if (vl_camera_weighted(camera)) weigh(n, rays.weight, rays.valid, batch.alpha, batch.radiance);
   if (!camera->plain) clear_invalid(n, rays.valid, batch.alpha, batch.radiance);
-  if (vl_film_def(r->film)->buckets) {
+  if (vl_film_def(r->film)->buckets && !w->recorder) {
     vlFilmSpectra spectra = {.n = n, .px = rows.px, .py = rows.py, .weight = rows.weight};
     for (int c = 0; c < 4; c++) spectra.radiance[c] = batch.radiance[c], spectra.lambda[c] = batch.lambda[c];
     vl_film_add_spectra(r->film, &spectra);
@@ -123,6 +124,7 @@ static void render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
   if (r->two_way)
     vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
+  if (w->recorder) return;
   vlFilmSamples add = {n, rows.px, rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, rows.weight};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
@@ -154,7 +156,7 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
   for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->stop.stopped);) {
     uint32_t most = VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y), count = end - s < most ? end - s : most;
     uint32_t n = list_samples(r, w, block, s, count);
-    if (n) render_batch(r, w, n);
+    if (n) vl_render_batch(r, w, n);
     s += count;
     vl_accel_leave(state); /* the user's callback runs with its own floating-point state */
     vl_stop_check(&r->stop);

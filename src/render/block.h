@@ -19,6 +19,13 @@
 #include "velo/render.h"
 
 enum { VL_RENDER_TILE = 16, VL_RENDER_ROWS = VL_FILM_ROWS + 16 };
+/* Some of the rows after those of vlFilmRayRows: 4 wavelengths, 4 densities, 4 of radiance; red, green, blue. */
+enum {
+  VL_ROW_LAMBDA = VL_FILM_ROWS,
+  VL_ROW_INV_PDF = VL_ROW_LAMBDA + 4,
+  VL_ROW_RADIANCE = VL_ROW_INV_PDF + 4,
+  VL_ROW_RED = VL_ROW_RADIANCE + 5
+};
 
 typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
@@ -26,6 +33,7 @@ typedef struct vlRenderWorker {
   _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker; the progress report reads them */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
+  struct vlPathRecorder *recorder; /* records the paths; the film then gets no samples. Null: none */
 } vlRenderWorker;
 
 typedef struct vlRenderRun {
@@ -58,6 +66,13 @@ typedef struct vlRenderRun {
  * so many that a worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
+/* Makes a run from world, film, def and sequence: rays, sampler, tracer, crop. In render.c. */
+void vl_render_prepare(vlRenderRun *r, const vlCamera *camera);
+/* Checks the arguments of a render. In render.c. */
+vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                         vlError *error);
+/* Traces and exposes the n samples that the worker's rows list, and adds them to the film. */
+void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n);
 /* A task of vl_parallel_for; user is the run. */
 void vl_render_block(void *user, uint32_t block, uint32_t worker);
 

@@ -48,8 +48,8 @@ static bool ask_to_stop(void *user) {
   return !vl_render_report(r, false, r->work_done + share * r->work_pass);
 }
 
-static vlResult check_arguments(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                                vlError *error) {
+vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                         vlError *error) {
   if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
   if (def->cookie != VL_COOKIE_RENDER) return vl_fail(error, VL_ERROR_ARGUMENT, "render: " VL_BAD_COOKIE);
   const vlFilmDef *f = vl_film_def(film);
@@ -137,7 +137,7 @@ static vlResult prepare_two_way(vlRenderRun *r, const vlCamera *camera, vlError 
   return VL_OK;
 }
 
-static void prepare(vlRenderRun *r, const vlCamera *camera) {
+void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   const vlFilmDef *f = vl_film_def(r->film);
   vlIsa isa = vl_context_isa(world->context);
@@ -278,7 +278,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   vl_error_clear(error);
   vlRenderDef standard = vl_default_render_def();
   if (!def) def = &standard;
-  vlResult result = check_arguments(world, camera, film, def, error);
+  vlResult result = vl_render_check(world, camera, film, def, error);
   if (result != VL_OK) return result;
   vlRenderRun render, *r = &render;
   memset(r, 0, sizeof *r);
@@ -296,7 +296,7 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   vl_film_set_sequence(film, r->sequence);
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
-  prepare(r, &focused);
+  vl_render_prepare(r, &focused);
   result = make_workers(r, world->context, error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def) != VL_OK)

@@ -125,8 +125,9 @@ typedef struct vlVolumeScratch {
   vlPaths scattered;    /* paths that scatter in media */
   vlVolumeRows a, b, c; /* data of the paths vlTraceScratch.a, vlTraceScratch.b and `scattered` */
   VL_ROW uint8_t event[VL_ROW_SIZE];
-  VL_ROW float t[VL_ROW_SIZE];    /* distance along the ray at which a medium scatters */
-  VL_ROW float odds[VL_ROW_SIZE]; /* by lane: vlFlight.odds of the path's last flight */
+  VL_ROW float t[VL_ROW_SIZE];        /* distance along the ray at which a medium scatters */
+  VL_ROW float odds[VL_ROW_SIZE];     /* by lane: vlFlight.odds of the path's last flight */
+  VL_ROW float given[4][VL_ROW_SIZE]; /* only if paths are recorded: radiance that media added to the last flight */
   /* by shadow ray: densities of the light sample and of the BSDF or phase function */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];

@@ -15,6 +15,7 @@ struct vlTwoWay; /* two_way.h */
 struct vlTwoWayRows;
 struct vlCameraView;
 struct vlLightBatch;
+struct vlPathRecorder; /* tracer/record.h */
 
 enum { VL_BATCH = 1024 };
 
@@ -77,6 +78,7 @@ typedef struct vlTraceBatch {
   struct vlTwoWayRows *two_way; /* if vlTraceDef.two_way is set: working memory of one worker, like vlTraceScratch */
   const struct vlCameraView
       *eyes; /* if two_way is set and the camera moves: the camera's view for each lane; else null */
+  struct vlPathRecorder *recorder; /* records the paths of the tracers path and volpath; null: none */
 } vlTraceBatch;
 
 typedef struct vlTraceScratch vlTraceScratch;

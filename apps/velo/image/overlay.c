@@ -5,17 +5,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double sample(const vlImage *image, uint32_t x, uint32_t y, int channel) {
-  double v = vl_image_get(image, x, y, (uint32_t)channel);
-  v = v > 0.0 ? v < 1.0 ? v : 1.0 : 0.0; /* NaN becomes black */
-  return v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+static uint8_t encoded(double v) {
+  v = v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1.0 / 2.4) - 0.055;
+  return (uint8_t)floor(255.0 * v + 0.5);
+}
+
+static double decoded(uint8_t byte) {
+  double v = byte / 255.0;
+  return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+static float sample(const vlImage *image, uint32_t x, uint32_t y, int channel) {
+  float v = (float)vl_image_get(image, x, y, (uint32_t)channel);
+  return v > 0.0F ? v < 1.0F ? v : 1.0F : 0.0F; /* NaN becomes black */
 }
 
 bool overlay_begin(Overlay *o, const vlImage *image) {
   o->width = vl_image_width(image);
   o->height = vl_image_height(image);
   size_t pixels = (size_t)o->width * o->height;
-  o->rgb = malloc(3 * pixels);
+  o->rgb = malloc(3 * pixels * sizeof *o->rgb);
   o->coverage = calloc(pixels, sizeof *o->coverage);
   if (!o->rgb || !o->coverage) return false;
   static const char *const names[3] = {"R", "G", "B"};
@@ -25,7 +34,7 @@ bool overlay_begin(Overlay *o, const vlImage *image) {
     if (channel < 0) channel = 0;
     for (uint32_t y = 0; y < o->height; y++)
       for (uint32_t x = 0; x < o->width; x++)
-        o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] = (uint8_t)floor(255.0 * sample(image, x, y, channel) + 0.5);
+        o->rgb[3 * ((size_t)y * o->width + x) + (size_t)k] = sample(image, x, y, channel);
   }
   return true;
 }
@@ -88,6 +97,35 @@ void overlay_ring(Overlay *o, double x, double y, double radius, double width) {
   }
 }
 
+/* Whether a point is inside of a quadrilateral, which may be concave: the even-odd rule. */
+static bool inside(const double q[4][2], double x, double y) {
+  bool in = false;
+  for (int i = 0; i < 4; i++) {
+    const double *a = q[i], *b = q[(i + 1) % 4];
+    if ((a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])) in = !in;
+  }
+  return in;
+}
+
+void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *user) {
+  enum { SIDE = 4 };
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (int i = 0; i < 4; i++)
+    for (int k = 0; k < 2; k++) low[k] = fmin(low[k], q[i][k]), high[k] = fmax(high[k], q[i][k]);
+  if (!isfinite(low[0] + low[1] + high[0] + high[1])) return;
+  long x0 = (long)fmax(0, floor(low[0])), x1 = (long)fmin(o->width, ceil(high[0]));
+  long y0 = (long)fmax(0, floor(low[1])), y1 = (long)fmin(o->height, ceil(high[1]));
+  for (long y = y0; y < y1; y++)
+    for (long x = x0; x < x1; x++) {
+      int count = 0;
+      for (int s = 0; s < SIDE * SIDE; s++)
+        count += inside(q, (double)x + (s % SIDE + 0.5) / SIDE, (double)y + (s / SIDE + 0.5) / SIDE);
+      if (!count || (seen && !seen(user, (double)x + 0.5, (double)y + 0.5))) continue;
+      float *cover = &o->coverage[(size_t)y * o->width + (size_t)x];
+      *cover = fminf(1.0F, *cover + (float)count / (SIDE * SIDE)); /* neighbours share an edge */
+    }
+}
+
 void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const double n[3], double from, double to,
                  double width) {
   enum { STEPS = 2048 };
@@ -108,13 +146,11 @@ void overlay_arc(Overlay *o, const vlCamera *camera, const double d[3], const do
 
 void overlay_paint(Overlay *o, const uint8_t color[3], double opacity) {
   size_t pixels = (size_t)o->width * o->height;
+  const float linear[3] = {(float)decoded(color[0]), (float)decoded(color[1]), (float)decoded(color[2])};
   for (size_t i = 0; i < pixels; i++) {
     if (o->coverage[i] <= 0.0F) continue;
-    double c = opacity * (double)o->coverage[i];
-    for (size_t k = 0; k < 3; k++) {
-      double v = (1.0 - c) * o->rgb[3 * i + k] + c * color[k];
-      o->rgb[3 * i + k] = (uint8_t)floor(v + 0.5);
-    }
+    float c = (float)opacity * o->coverage[i];
+    for (size_t k = 0; k < 3; k++) o->rgb[3 * i + k] += c * (linear[k] - o->rgb[3 * i + k]);
     o->coverage[i] = 0.0F;
   }
 }
@@ -126,7 +162,8 @@ vlResult overlay_write(const Overlay *o, vlContext *context, const char *path, v
   def.encoding = VL_ENCODING_SRGB;
   vlResult result = vl_image_create(context, &def, &image);
   if (result == VL_OK) {
-    memcpy(vl_image_pixels(image), o->rgb, 3 * (size_t)o->width * o->height);
+    uint8_t *to = vl_image_pixels(image);
+    for (size_t i = 0; i < 3 * (size_t)o->width * o->height; i++) to[i] = encoded((double)o->rgb[i]);
     result = vl_image_write(image, path, NULL, error);
   }
   vl_image_destroy(image);

@@ -1,5 +1,5 @@
-/* image/overlay.h: antialiased lines over an image. Curves of one colour are first accumulated as coverage and then
- * painted together, so that crossings are not painted twice. */
+/* image/overlay.h: antialiased lines, quadrilaterals and labels over an image, in linear light. What has one colour is
+ * first accumulated as coverage and then painted together, so that crossings are not painted twice. */
 #ifndef APP_IMAGE_OVERLAY_H
 #define APP_IMAGE_OVERLAY_H
 
@@ -7,11 +7,11 @@
 
 typedef struct Overlay {
   uint32_t width, height;
-  uint8_t *rgb;    /* display values */
+  float *rgb;      /* linear light, 0 to 1 */
   float *coverage; /* coverage in [0, 1] by the curves since the last overlay_paint */
 } Overlay;
 
-/* Makes an overlay of the image's display values. 8-bit values are unchanged; linear light is sRGB-encoded. Returns
+/* Makes an overlay of the image, clamped to [0, 1]. 8-bit values that are not painted are written unchanged. Returns
  * false if out of memory. */
 bool overlay_begin(Overlay *overlay, const vlImage *image);
 void overlay_end(Overlay *overlay);
@@ -22,7 +22,13 @@ void overlay_ring(Overlay *overlay, double x, double y, double radius, double wi
  * image of a straight line in the world, or of the horizon. d and n are orthogonal unit vectors in world space. */
 void overlay_arc(Overlay *overlay, const vlCamera *camera, const double d[3], const double n[3], double from, double to,
                  double width);
-/* Paints the coverage with `opacity` in [0, 1] and clears it. */
+/* Adds a quadrilateral; seen is called with each pixel's centre: 0 where it is hidden. Null: it is not hidden. */
+typedef bool OverlaySeen(void *user, double x, double y);
+void overlay_quad(Overlay *overlay, const double corners[4][2], OverlaySeen *seen, void *user);
+/* Adds a text in strokes: small letters, digits, P and '. (x, y): left end of the base line; size: height of a P. */
+void overlay_text(Overlay *overlay, const char *text, double x, double y, double size, double width);
+double overlay_text_width(const char *text, double size);
+/* Paints the coverage with `opacity` in [0, 1] and clears it. color: sRGB. */
 void overlay_paint(Overlay *overlay, const uint8_t color[3], double opacity);
 vlResult overlay_write(const Overlay *overlay, vlContext *context, const char *path, vlError *error);
 

@@ -108,4 +108,26 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
 /* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
 
+/* The inverse of the mean density of path i of a over the techniques that could have made it. light_pdf: density of
+ * light sampling; 0 if light sampling could not make this path. */
+static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, float light_pdf) {
+  const vlVolumeRows *v = &t->s->volume.a;
+  float density[4];
+  for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
+  return 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
+}
+
+/* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase sampling (pdf; 0: light
+ * sampling alone). */
+static inline float vl_volume_shadow_density(const vlVolumeScratch *v, const vlFlight *f, uint32_t k, float pdf) {
+  float density[4];
+  for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f->l[c] * v->light_pdf[k] + f->u[c] * pdf);
+  return vl_flight_mean(density, f->channels);
+}
+
+/* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the n paths of a; and the
+ * `count` shadow rays, after they were traced. */
+void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth);
+void vl_volume_record_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+
 #endif

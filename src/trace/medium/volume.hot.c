@@ -10,6 +10,7 @@
  * light sampling had sampled its last segment. */
 #include "trace/medium/volume.h"
 #include "trace/medium/phase.h"
+#include "trace/tracer/record.h"
 
 /* ---- weights and densities --------------------------------------------------------------------------------------- */
 
@@ -79,6 +80,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   v->event[i] = (uint8_t)event;
   v->odds[p->lane[i]] = vl_some_odds(f.odds);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
+  for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = given[c];
   if (event == VL_ON_SURFACE)
     h->material[i] = vl_hit_material(world, p, h, i);
   else
@@ -103,10 +105,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
 /* light_pdf: density of light sampling; 0 if light sampling could not make this path. */
 static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
   const vlPaths *p = &t->s->a;
-  const vlVolumeRows *v = &t->s->volume.a;
-  float density[4];
-  for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
-  float inv = 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
+  float inv = vl_volume_inverse_density(t, i, light_pdf);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
 }
 
@@ -222,8 +221,11 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
   if (count == 0) return 0;
+  if (t->batch->recorder) vl_record_scattering(t, &t->s->volume.scattered, count);
   phase_light(t, count, depth, dimension);
-  return vl_volume_phase_scatter(t, count, depth + 1, dimension);
+  uint32_t on = vl_volume_phase_scatter(t, count, depth + 1, dimension);
+  if (t->batch->recorder) vl_record_phase(t, &t->s->volume.scattered, count, on, depth + 1);
+  return on;
 }
 
 /* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
@@ -288,6 +290,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vl_stage_shade(t, n);
   vl_stage_regularize(t, n);
   for (uint32_t i = 0; i < n; i++) vl_volume_normalise(t, &s->b, &v->b, i);
+  if (t->batch->recorder) vl_record_shaded(t, n);
   surface_light(t, n, depth, dimension);
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
   vl_volume_go_on(t, count);
@@ -326,6 +329,7 @@ void vl_volume_tracer(vlTracing *t) {
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     vl_volume_travel(t, n, depth, depth < t->def->max_depth);
     emission(t, n);
+    if (t->batch->recorder) vl_volume_record_travel(t, n, depth);
     if (depth >= t->def->max_depth) break;
     uint32_t inside = scatter_in_media(t, n, depth);
     uint32_t *kept = s->volume.kept;

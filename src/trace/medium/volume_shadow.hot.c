@@ -74,12 +74,11 @@ void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows,
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
+  if (t->batch->recorder) vl_volume_record_shadows(t, p, rows, count, depth);
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k]) continue;
     vlFlight f = vl_volume_shadow_flight(t, p, rows, k, depth);
-    float density[4];
-    for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f.l[c] * v->light_pdf[k] + f.u[c] * v->pdf[k]);
-    float inv = 1.0f / vl_flight_mean(density, f.channels);
+    float inv = 1.0f / vl_volume_shadow_density(v, &f, k, v->pdf[k]);
     for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * f.beta[c] * inv;
   }
 }

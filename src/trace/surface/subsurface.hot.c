@@ -12,6 +12,7 @@
 #include "math/warp.h"
 #include "trace/material/rows.h"
 #include "trace/medium/volume.h"
+#include "trace/tracer/record.h"
 #include "world/material/bssrdf.h"
 
 /* Largest number of crossings of one probe. */
@@ -320,12 +321,15 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
   if (probes == 0) return n;
   aim_probes(t, probes, dimension);
   follow_probes(t, probes, depth);
+  if (t->batch->recorder) vl_record_probes(t, probes);
   uint32_t exits = gather_exits(t, probes);
   for (uint32_t i = 0; i < exits; i++) weigh_exit(t, i);
+  if (t->batch->recorder) vl_record_exits(t, exits);
   if (exits) {
     light_exits(t, exits, depth, dimension);
     leave(t, exits, dimension);
   }
+  if (t->batch->recorder) vl_record_left(t, exits);
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
     s->order[count] = k;

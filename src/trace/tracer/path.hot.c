@@ -1,6 +1,6 @@
 /* trace/tracer/path.hot.c: path tracing with next-event estimation, multiple importance sampling (power heuristic) and
  * Russian roulette (pbrt book 13.4), bounce by bounce over a batch. */
-#include "trace/stages.h"
+#include "trace/tracer/record.h"
 
 /* ---- runs of one BSDF -------------------------------------------------------------------------------------------- */
 
@@ -102,6 +102,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
+  if (t->batch->recorder) vl_record_direct_light(t, n, count);
   for (uint32_t k = 0; k < count; k++)
     if (!q->occluded[k])
       for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k];
@@ -190,6 +191,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     if (broken[i] > 0.0f) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
   }
   for (uint32_t k = 0; t->world->by_channel && k < count; k++) vl_passed_go_on(t, s->order[k]);
+  if (t->batch->recorder) vl_record_scatter(t, n, count, depth);
   vl_permute_paths(p, &s->a, s->order, count);
   return count;
 }
@@ -202,12 +204,18 @@ void vl_path_tracer(vlTracing *t) {
     vl_stage_hits(t, n, depth == 0);
     if (depth == 0) vl_stage_alpha(t);
     vl_stage_emission(t, n);
+    if (t->batch->recorder) {
+      vl_record_arrivals(t, n, depth);
+      vl_record_emission(t, n);
+      if (depth >= t->def->max_depth) vl_record_depth(t, n);
+    }
     if (depth >= t->def->max_depth) break;
     n = vl_stage_sort(t, n);
     if (n == 0) break;
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
     vl_stage_shade(t, n);
     vl_stage_regularize(t, n);
+    if (t->batch->recorder) vl_record_shaded(t, n);
     direct_light(t, n, dimension);
     n = vl_stage_scatter(t, n, depth + 1, dimension);
   }

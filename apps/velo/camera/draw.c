@@ -1,0 +1,318 @@
+/* camera/draw.c: `velo camera draw`: a camera seen from outside, as drawings of perspective show it. */
+#include "camera/draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "render/lens_options.h"
+#include "render/outputs.h"
+#include "render/scene_options.h"
+
+/* Options of this command, behind those of `velo render`, of which it has some. */
+enum {
+  DRAW_OUT = RENDER_OPTIONS,
+  DRAW_SIZE,
+  DRAW_FROM,
+  DRAW_ZOOM,
+  DRAW_POINT,
+  DRAW_PLANE,
+  DRAW_REACH,
+  DRAW_GRID,
+  DRAW_NEAR,
+  DRAW_FAR,
+  DRAW_PARTS,
+  DRAW_EMPTY,
+  DRAW_BLANK,
+  DRAW_OPTIONS
+};
+_Static_assert((int)DRAW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+
+enum { MOST_CAMERAS = 200, DEFAULT_POINTS = 2 };
+
+typedef struct State {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  Job job;
+  SceneOpening opening;
+  vlCamera *cameras;
+  uint32_t count;
+  Seen seen;
+  double points[3 * MAX_TEXTS];
+  vlDrawingDef def;
+  vlDrawing *drawing;
+  OutsideDef view;
+  Outside outside;
+} State;
+
+/* Reads `count` numbers separated by commas. */
+static bool parse_numbers(const char *text, int count, double *values) {
+  for (int i = 0; i < count; i++) {
+    char *end;
+    values[i] = strtod(text, &end);
+    if (end == text || !isfinite(values[i])) return false;
+    text = end;
+    if (i + 1 < count && *text++ != ',') return false;
+  }
+  return *text == 0;
+}
+
+static int parse_parts(const char *text, uint32_t *parts) {
+#define NAME(K, k) #k,
+  static const char *const names[] = {VL_DRAWING_PARTS(NAME)};
+#undef NAME
+  enum { PARTS = sizeof names / sizeof *names };
+  *parts = 0;
+  while (*text) {
+    size_t length = strcspn(text, ",");
+    int found = -1;
+    for (int i = 0; i < PARTS; i++)
+      if (strlen(names[i]) == length && strncmp(text, names[i], length) == 0) found = i;
+    if (found < 0) {
+      char word[32] = "";
+      memcpy(word, text, length < sizeof word - 1 ? length : sizeof word - 1);
+      return report_usage("--parts: \"%s\" is no part of the drawing%s", word, did_you_mean("", word, names, PARTS));
+    }
+    *parts |= 1u << found;
+    text += length + (text[length] == ',');
+  }
+  return -1;
+}
+
+/* ---- options ----------------------------------------------------------------------------------------------------- */
+
+static int read_options(State *s, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  bool eight_bit = false;
+  if (!v[DRAW_OUT].given) return report_usage("-o FILE is needed");
+  if (!output_suffix(v[DRAW_OUT].text, &eight_bit) || !eight_bit)
+    return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[DRAW_OUT].text);
+  s->view = (OutsideDef){.azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 64};
+  s->view.exposure = VL_UNSET;
+  s->view.scene = !v[DRAW_EMPTY].given;
+  s->view.own_image = s->view.scene && !v[DRAW_BLANK].given && !v[RENDER_TRAJECTORY].given;
+  if (v[DRAW_SIZE].given)
+    s->view.width = (uint32_t)v[DRAW_SIZE].integers[0], s->view.height = (uint32_t)v[DRAW_SIZE].integers[1];
+  double from[2];
+  if (v[DRAW_FROM].given) {
+    if (!parse_numbers(v[DRAW_FROM].text, 2, from) || fabs(from[0]) > 360 || fabs(from[1]) > 89)
+      return report_usage("--from \"%s\": azimuth and elevation in degrees, the elevation within 89",
+                          v[DRAW_FROM].text);
+    s->view.azimuth = from[0], s->view.elevation = from[1];
+  }
+  if (v[DRAW_ZOOM].given) s->view.zoom = v[DRAW_ZOOM].number;
+  if (v[RENDER_SPP].given) s->view.spp = (uint32_t)v[RENDER_SPP].integer;
+  if (v[RENDER_EXPOSURE].given && !parse_numbers(v[RENDER_EXPOSURE].text, 1, &s->view.exposure))
+    return report_usage("--exposure \"%s\": must be a number", v[RENDER_EXPOSURE].text);
+  s->def = vl_default_drawing_def();
+  if (v[DRAW_GRID].given) s->def.grid = (uint32_t)v[DRAW_GRID].integer;
+  if (v[DRAW_PARTS].given) {
+    int status = parse_parts(v[DRAW_PARTS].text, &s->def.parts);
+    if (status >= 0) return status;
+  }
+  for (int i = 0; i < arguments->text_count; i++)
+    if (!parse_numbers(arguments->texts[i], 3, s->points + 3 * i))
+      return report_usage("--point \"%s\": a point is x,y,z", arguments->texts[i]);
+  s->def.points = s->points;
+  s->def.point_count = (uint32_t)arguments->text_count;
+  if (v[DRAW_NEAR].given && v[DRAW_FAR].given && !(v[DRAW_NEAR].number < v[DRAW_FAR].number))
+    return report_usage("--near %g is not before --far %g", v[DRAW_NEAR].number, v[DRAW_FAR].number);
+  return -1;
+}
+
+/* ---- the cameras ------------------------------------------------------------------------------------------------- */
+
+/* The cameras of a trajectory; poses without a camera have the scene's. */
+static int load_trajectory(State *s, const char *path) {
+  vlTrajectory *trajectory = NULL;
+  vlError error = {0};
+  vlResult result = vl_trajectory_load(s->context, path, NULL, &trajectory, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  uint32_t frames = vl_trajectory_frames(trajectory), every = (frames + MOST_CAMERAS - 1) / MOST_CAMERAS;
+  s->cameras = calloc((frames + every - 1) / every, sizeof *s->cameras);
+  for (uint32_t i = 0; s->cameras && result == VL_OK && i < frames; i += every) {
+    vlTrajectoryFrame frame;
+    vlCamera base = s->job.camera;
+    result = vl_trajectory_frame(trajectory, i, &frame);
+    if (result == VL_OK && frame.camera != VL_NO_CAMERA)
+      result = vl_camera_make(&vl_trajectory_camera(trajectory, (uint32_t)frame.camera)->camera, &base, NULL, &error);
+    if (result == VL_OK) result = vl_camera_move(&base, frame.world_from_camera, &s->cameras[s->count++], &error);
+  }
+  if (!s->cameras) result = VL_ERROR_MEMORY;
+  vl_trajectory_destroy(trajectory);
+  return result == VL_OK ? -1 : report_error(&error, result, path);
+}
+
+static int load(State *s, const Arguments *arguments) {
+  const char *path = arguments->operands[0];
+  const OptionValue *v = arguments->values;
+  vlContextDef def = vl_default_context_def();
+  vlError error = {0};
+  def.log = report_log;
+  int status = context_open(&def, &s->context);
+  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
+  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
+  if (status >= 0) return status;
+  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  status = lens_autofocus(&s->job, s->scene, s->world);
+  if (status < 0 && v[RENDER_TRAJECTORY].given) return load_trajectory(s, v[RENDER_TRAJECTORY].text);
+  if (status >= 0) return status;
+  if (v[DRAW_NEAR].given) s->job.camera.near_plane = v[DRAW_NEAR].number;
+  if (v[DRAW_FAR].given) s->job.camera.far_plane = v[DRAW_FAR].number;
+  s->cameras = malloc(sizeof *s->cameras);
+  if (!s->cameras) return report_reason(VL_ERROR_MEMORY, path, "cameras");
+  s->cameras[s->count++] = s->job.camera;
+  return -1;
+}
+
+/* ---- what is drawn ----------------------------------------------------------------------------------------------- */
+
+/* Two of the seen points, above and below the middle of the image, and none far behind the others. */
+static void choose_points(State *s) {
+  static const double targets[DEFAULT_POINTS][2] = {{0.4, 0.36}, {0.62, 0.6}};
+  const Seen *seen = &s->seen;
+  for (int k = 0; k < DEFAULT_POINTS; k++) {
+    uint32_t best = 0;
+    double least = INFINITY;
+    for (uint32_t i = 0; i < seen->count; i++) {
+      double d = hypot(seen->pixels[2 * i] - targets[k][0], seen->pixels[2 * i + 1] - targets[k][1]);
+      d += 2 * fmax(0, seen->depths[i] / seen->middle - 1);
+      if (d < least) least = d, best = i;
+    }
+    if (!(least < INFINITY)) return;
+    memcpy(s->points + 3 * k, seen->points + 3 * (size_t)best, 3 * sizeof(double));
+    s->def.point_count = (uint32_t)k + 1;
+  }
+}
+
+/* Distances in the drawing: the lecture's d where the view plane then stands before what the camera sees; else less
+ * than half of the way. */
+static void choose_distances(State *s, const OptionValue *v) {
+  const Seen *seen = &s->seen;
+  const vlCamera *c = &s->cameras[0];
+  double nearest = seen->count ? seen->near : 1, d = s->job.defs->camera.view_distance;
+  double far = c->far_plane < 1e30 ? c->far_plane : INFINITY;
+  bool flat = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
+  s->def.plane = d > 0 && d < 0.8 * nearest ? d : 0.45 * fmin(flat || !seen->count ? nearest : seen->middle, far);
+  s->def.reach = seen->count ? fmin(1.02 * seen->far, 1.3 * seen->middle) : 2 * s->def.plane;
+  if (s->count > 1) { /* small cameras on their way */
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
+    for (uint32_t i = 0; i < s->count; i++)
+      for (int k = 0; k < 3; k++) {
+        low[k] = fmin(low[k], s->cameras[i].world_from_camera[4 * k + 3]);
+        high[k] = fmax(high[k], s->cameras[i].world_from_camera[4 * k + 3]);
+      }
+    for (int k = 0; k < 3; k++) size = hypot(size, high[k] - low[k]);
+    s->def.plane = size > 0 ? 0.07 * size : s->def.plane;
+  }
+  if (v[DRAW_PLANE].given) s->def.plane = v[DRAW_PLANE].number;
+  if (v[DRAW_REACH].given) s->def.reach = v[DRAW_REACH].number;
+}
+
+static int draw(State *s, const OptionValue *v) {
+  vlError error = {0};
+  vlResult result = draw_look(s->world, &s->cameras[0], &s->seen, &error);
+  if (result != VL_OK) return report_error(&error, result, s->job.path);
+  choose_distances(s, v);
+  if (s->def.point_count == 0 && s->count == 1) choose_points(s);
+  result = vl_camera_outline(s->context, s->cameras, s->count, &s->def, &s->drawing, &error);
+  if (result == VL_OK) result = draw_choose_view(&s->cameras[0], s->drawing, &s->seen, &s->view, &s->outside, &error);
+  if (result == VL_OK)
+    result = draw_render(s->context, s->world, s->job.defs, &s->view, &s->cameras[0], s->drawing, &s->outside, &error);
+  if (result != VL_OK) return report_error(&error, result, s->job.path);
+  Overlay overlay = {0};
+  result = VL_ERROR_MEMORY;
+  if (overlay_begin(&overlay, s->outside.image)) {
+    draw_paint(&overlay, &s->outside, s->drawing);
+    result = overlay_write(&overlay, s->context, v[DRAW_OUT].text, &error);
+  }
+  overlay_end(&overlay);
+  return result == VL_OK ? STATUS_OK : report_error(&error, result, v[DRAW_OUT].text);
+}
+
+static int run_draw(const Command *command, const Arguments *arguments) {
+  (void)command;
+  State s;
+  memset(&s, 0, sizeof s);
+  int status = read_options(&s, arguments);
+  if (status < 0) status = load(&s, arguments);
+  if (status < 0) status = draw(&s, arguments->values);
+  draw_close(&s.outside);
+  draw_forget(&s.seen);
+  vl_drawing_destroy(s.drawing);
+  free(s.cameras);
+  vl_world_destroy(s.world);
+  vl_scene_destroy(s.scene);
+  vl_context_destroy(s.context);
+  return status;
+}
+
+static const Option draw_options[] = {
+    {DRAW_OUT, 'o', "output", OPTION_TEXT, "FILE", "image file to write: .png .jpg .tga", 0, 0, NULL},
+    {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640", 16, 16384, NULL},
+    {DRAW_FROM, 0, "from", OPTION_TEXT, "AZIMUTH,ELEVATION",
+     "where the drawing is seen from, in degrees: to the right of the camera's view direction, above the horizon; "
+     "default 130,20",
+     0, 0, NULL},
+    {DRAW_ZOOM, 0, "zoom", OPTION_NUMBER, "X", "factor on the size of what is drawn; 1: it fills the image", 1e-3, 1e3,
+     NULL},
+    {DRAW_PARTS, 0, "parts", OPTION_TEXT, "LIST",
+     "parts that are drawn, separated by commas: eye, window, grid, volume, near, far, axes, distance, focus, "
+     "projector, film (behind the eye), path; default: all but film",
+     0, 0, NULL},
+    {DRAW_POINT, 0, "point", OPTION_TEXTS, "x,y,z",
+     "point whose projector is drawn; may be given several times. Default: two visible points", 0, 0, NULL},
+    {DRAW_PLANE, 0, "plane", OPTION_NUMBER, "D",
+     "distance of the view plane (of fisheyes and panoramas: of a sphere) from the eye; default: the camera's d, if "
+     "the "
+     "plane is then before what the camera sees",
+     1e-30, 1e30, NULL},
+    {DRAW_REACH, 0, "reach", OPTION_NUMBER, "D", "distance at which the view volume ends; default: behind what is seen",
+     1e-30, 1e30, NULL},
+    {DRAW_GRID, 0, "grid", OPTION_INTEGER, "N",
+     "largest number of lines between pixels in each direction; 0: none; default 16", 0, 65536, NULL},
+    {DRAW_NEAR, 0, "near", OPTION_NUMBER, "D", "near clipping plane; default: the camera's", 1e-30, 1e30, NULL},
+    {DRAW_FAR, 0, "far", OPTION_NUMBER, "D", "far clipping plane; default: the camera's", 1e-30, 1e30, NULL},
+    {DRAW_EMPTY, 0, "no-scene", OPTION_FLAG, NULL, "draw on a white sheet, without the scene", 0, 0, NULL},
+    {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL, "leave view plane and film empty, without the camera's image", 0, 0,
+     NULL},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the scene; default 64", 1, 1 << 24, NULL},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the scene in stops; default: metered", 0, 0, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size of the camera in pixels", 1, 65536, NULL},
+    {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
+     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at most 200 of them", 0, 0,
+     NULL},
+    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
+     "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+static const Section draw_sections[] = {
+    {DRAW_OUT, "the drawing"}, {DRAW_PARTS, "what is drawn"}, {RENDER_SPP, "scene and camera"}, {0, NULL}};
+
+const Command camera_draw_command = {
+    .name = "camera draw",
+    .usage = "SCENE -o FILE [options]",
+    .summary = "draw a camera from outside: eye, view plane, pyramid",
+    .text =
+        "Renders the scene small, from outside, and draws the scene's camera over it: the eye, the view plane\n"
+        "with its grid of pixels, the view volume with near and far planes, the axes u v w, projectors from\n"
+        "points to their images, the plane in focus. Fisheyes and distorted lenses show their true rays. Lines\n"
+        "behind the scene are faint and dashed (docs/draw.md).",
+    .examples =
+        "velo camera draw room.pbrt -o outside.png\n"
+        "velo camera draw room.pbrt --near 1 --far 6 --from 90,10 -o frustum.png",
+    .options = draw_options,
+    .sections = draw_sections,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_draw,
+};

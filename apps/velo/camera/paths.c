@@ -1,0 +1,190 @@
+/* camera/paths.c: `velo camera paths`: the samples of one pixel, traced again and printed vertex by vertex. */
+#include "camera/paths.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "image/image.h"
+#include "render/lens_options.h"
+#include "render/scene_options.h"
+
+/* Options of this command, behind those of `velo render`, of which it has some. */
+enum { PATHS_PIXEL = RENDER_OPTIONS, PATHS_SAMPLES, PATHS_FIRST, PATHS_SHOW, PATHS_SORT, PATHS_JSON, PATHS_OPTIONS };
+_Static_assert((int)PATHS_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+
+typedef struct State {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  vlPixelPaths *paths;
+  vlImage *channels, *ids;
+  uint32_t *order;
+  Job job;
+  SceneOpening opening;
+} State;
+
+/* Parses "x,y". */
+static bool parse_pixel(const char *text, uint32_t pixel[2]) {
+  for (int i = 0; i < 2; i++) {
+    char *end;
+    unsigned long n = strtoul(text, &end, 10);
+    if (end == text || *text < '0' || *text > '9' || n > 65535 || *end != (i ? 0 : ',')) return false;
+    pixel[i] = (uint32_t)n;
+    text = end + 1;
+  }
+  return true;
+}
+
+/* Loads the scene and builds the world as `velo render` does. */
+static int load(State *s, const Arguments *arguments) {
+  const char *path = arguments->operands[0];
+  vlContextDef def = vl_default_context_def();
+  vlError error = {0};
+  def.log = report_log;
+  int status = context_open(&def, &s->context);
+  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
+  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
+  if (status >= 0) return status;
+  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  return lens_autofocus(&s->job, s->scene, s->world);
+}
+
+static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
+  vlSceneDefs *defs = s->job.defs;
+  vlError error = {0};
+  uint32_t first = v[PATHS_FIRST].given ? (uint32_t)v[PATHS_FIRST].integer : 0;
+  uint32_t count = v[PATHS_SAMPLES].given ? (uint32_t)v[PATHS_SAMPLES].integer : 16;
+  vlTracer tracer = defs->render.tracer;
+  if (tracer != VL_TRACER_PATH && tracer != VL_TRACER_VOLPATH)
+    return report_usage("the scene's tracer is not recorded; give --tracer path or --tracer volpath");
+  if (pixel[0] >= defs->film.width || pixel[1] >= defs->film.height)
+    return report_usage("--pixel %u,%u: the image has only %u x %u pixels", pixel[0], pixel[1], defs->film.width,
+                        defs->film.height);
+  const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
+  memcpy(defs->film.crop, whole, sizeof whole);
+  vlResult result = vl_trace_paths(s->world, &s->job.camera, &defs->film, &defs->render, pixel[0], pixel[1], first,
+                                   count, &s->paths, &error);
+  vlChannelsDef channels = vl_default_channels_def(defs->film.width, defs->film.height);
+  channels.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
+                      VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE |
+                      VL_CHANNEL_ID_PRIMITIVE;
+  const uint32_t one[4] = {pixel[0], pixel[1], pixel[0] + 1, pixel[1] + 1};
+  memcpy(channels.crop, one, sizeof one);
+  if (result == VL_OK) result = vl_render_channels(s->world, &s->job.camera, &channels, &s->channels, &s->ids, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, s->job.path);
+}
+
+/* qsort has no argument for the paths. */
+static const vlPixelPaths *sorted;
+
+static int larger_first(const void *a, const void *b) {
+  uint32_t i = *(const uint32_t *)a, j = *(const uint32_t *)b;
+  double x = fabs(paths_share(&sorted->paths[i])), y = fabs(paths_share(&sorted->paths[j]));
+  if (!(x == y)) return !isfinite(x) || x > y ? -1 : 1;
+  return i < j ? -1 : i > j;
+}
+
+static int print(State *s, const OptionValue *v) {
+  uint32_t count = s->paths->count, most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
+  s->order = malloc(count * sizeof *s->order);
+  if (!s->order) return report_reason(VL_ERROR_MEMORY, s->job.path, "paths");
+  for (uint32_t i = 0; i < count; i++) s->order[i] = i;
+  sorted = s->paths;
+  if (!v[PATHS_SORT].given || v[PATHS_SORT].integer == 0) qsort(s->order, count, sizeof *s->order, larger_first);
+  const PathsReport report = {.file = s->job.path,
+                              .world = s->world,
+                              .paths = s->paths,
+                              .order = s->order,
+                              .shown = count < most ? count : most,
+                              .channels = s->channels,
+                              .ids = s->ids};
+  if (v[PATHS_JSON].given)
+    paths_print_json(&report);
+  else
+    paths_print_text(&report);
+  return image_finish_output(STATUS_OK);
+}
+
+static int run_paths(const Command *command, const Arguments *arguments) {
+  (void)command;
+  const OptionValue *v = arguments->values;
+  uint32_t pixel[2];
+  if (!v[PATHS_PIXEL].given) return report_usage("--pixel x,y is needed");
+  if (!parse_pixel(v[PATHS_PIXEL].text, pixel))
+    return report_usage("--pixel \"%s\": a pixel is x,y, counted from 0,0 at the top left", v[PATHS_PIXEL].text);
+  State s;
+  memset(&s, 0, sizeof s);
+  int status = load(&s, arguments);
+  if (status < 0) status = trace(&s, pixel, v);
+  if (status < 0) status = print(&s, v);
+  free(s.order);
+  vl_image_destroy(s.channels);
+  vl_image_destroy(s.ids);
+  vl_pixel_paths_destroy(s.paths);
+  vl_world_destroy(s.world);
+  vl_scene_destroy(s.scene);
+  vl_context_destroy(s.context);
+  return status;
+}
+
+static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
+
+static const Option paths_options[] = {
+    {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left", 0, 0, NULL},
+    {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N", "number of samples that are traced; default 16", 1, 1 << 20,
+     NULL},
+    {PATHS_FIRST, 0, "first", OPTION_INTEGER, "I", "index of the first sample; default 0", 0, 1 << 24, NULL},
+    {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16", 0, 1 << 20, NULL},
+    {PATHS_SORT, 0, "sort", OPTION_CHOICE, "NAME",
+     "order of the paths: the largest share of the pixel first, or by "
+     "sample:",
+     0, 0, sort_choices},
+    {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image", 1, 1 << 24, NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels", 1, 65536, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "tracer; path and volpath are recorded:", 0, 0, tracers},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
+    {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers", 0, 4294967295.0, NULL},
+    {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1, 1 << 24, NULL},
+    {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
+    {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
+     "method that chooses one light for a shading point:", 0, 0, light_sampler_choices},
+    {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization of the materials:", 0, 0,
+     regularize_choices},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
+     color_choices},
+    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
+     "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+static const Section paths_sections[] = {
+    {PATHS_PIXEL, "what is printed"}, {RENDER_SPP, "the image, as in `velo render`"}, {0, NULL}};
+
+const Command camera_paths_command = {
+    .name = "camera paths",
+    .usage = "SCENE --pixel x,y [options]",
+    .summary = "print the paths of a pixel, vertex by vertex",
+    .text =
+        "Traces the samples of one pixel again, with the random numbers of `velo render`, and prints each path:\n"
+        "what it met, the sampled lobes with their densities, the lights with their weights, and what each\n"
+        "adds. The path with the largest share of the pixel comes first: so a firefly shows where it is from.\n"
+        "The options of the image must be those of the render (docs/tracers.md).",
+    .examples =
+        "velo camera paths room.pbrt --pixel 320,200\n"
+        "velo camera paths room.pbrt --pixel 320,200 --samples 4096 --show 1 --json",
+    .options = paths_options,
+    .sections = paths_sections,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_paths,
+};

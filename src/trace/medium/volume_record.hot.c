@@ -1,0 +1,85 @@
+/* trace/medium/volume_record.hot.c: records paths through media for vl_trace_paths (tracer/record.h). It computes again
+ * what the tracer added. */
+#include "trace/medium/volume.h"
+#include "trace/tracer/record.h"
+
+static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
+  const vlPaths *p = &t->s->a;
+  float inv = vl_volume_inverse_density(t, i, met->pdf);
+  vlPathContribution c = {.event = event,
+                          .light_pdf = met->pdf,
+                          .bsdf_pdf = p->pdf[i],
+                          .weight = inv / vl_volume_inverse_density(t, i, 0.0f),
+                          .target = {p->dx[i], p->dy[i], p->dz[i]}};
+  if (event == VL_PATH_LIGHT_HIT) c.target[0] = met->at.p.x, c.target[1] = met->at.p.y, c.target[2] = met->at.p.z;
+  vl_record_name_light(t->world, met->light, &c);
+  for (int k = 0; k < 4; k++) c.radiance[k] = p->beta[k][i] * met->radiance[k] * inv;
+  vl_record_light(t, p->lane[i], &c);
+}
+
+static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
+  const vlPaths *p = &t->s->a;
+  const vlVolumeScratch *s = &t->s->volume;
+  vlPathVertex *v = vl_record_arrival(t, i, depth);
+  if (!v) return;
+  float inv = vl_volume_inverse_density(t, i, 0.0f);
+  for (int c = 0; c < 4; c++) v->throughput[c] *= inv;
+  if (s->event[i] == VL_ON_SURFACE) vl_record_surface(t, i, v);
+  if (s->event[i] != VL_IN_MEDIUM && s->event[i] != VL_AT_END) return;
+  v->event = VL_PATH_MEDIUM;
+  v->fate = VL_PATH_ABSORBED;
+  v->medium = s->a.medium[i] == VL_NONE ? 0 : s->a.medium[i] + 1;
+  v->distance = s->t[i];
+  v->position[0] = p->ox[i] + s->t[i] * p->dx[i];
+  v->position[1] = p->oy[i] + s->t[i] * p->dy[i];
+  v->position[2] = p->oz[i] + s->t[i] * p->dz[i];
+}
+
+void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlPaths *p = &t->s->a;
+  const vlHits *h = &t->s->hits_a;
+  const vlVolumeScratch *v = &t->s->volume;
+  for (uint32_t i = 0; i < n; i++) {
+    record_arrival(t, i, depth);
+    vlPathContribution from_medium = {.event = VL_PATH_LIGHT_MEDIUM, .type = "medium", .weight = 1.0f};
+    float sum = 0.0f;
+    for (int c = 0; c < 4; c++) sum += from_medium.radiance[c] = v->given[c][i];
+    if (sum != 0.0f) vl_record_light(t, p->lane[i], &from_medium);
+    vlHitLight met;
+    if (v->event[i] == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE &&
+        vl_hit_emission(t->world, p, h, i, &met))
+      record_met(t, i, VL_PATH_LIGHT_HIT, &met);
+    for (size_t k = 0; v->event[i] == VL_IN_SKY && k < t->world->infinite_lights.count; k++) {
+      vlSkyHits sky;
+      vl_hit_sky(t->world, p, &i, 1, k, &sky);
+      met = (vlHitLight){.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[0]};
+      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][0];
+      record_met(t, i, VL_PATH_LIGHT_SKY, &met);
+    }
+  }
+  if (depth >= t->def->max_depth) vl_record_depth(t, n);
+}
+
+void vl_volume_record_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
+                              uint32_t depth) {
+  const vlShadowRays *q = &t->s->shadow;
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlLightSamples *l = &t->s->light;
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = v->from[k];
+    vlPathContribution c = {.event = VL_PATH_LIGHT_SAMPLED,
+                            .occluded = q->occluded[k],
+                            .light_pdf = v->light_pdf[k],
+                            .bsdf_pdf = v->pdf[k],
+                            .target = {l->tx[i], l->ty[i], l->tz[i]}};
+    vl_record_name_light(t->world, l->light[i], &c);
+    c.distant = l->distant[i];
+    if (c.distant) c.target[0] = l->wx[i], c.target[1] = l->wy[i], c.target[2] = l->wz[i];
+    vlFlight f = {.channels = vl_volume_rgb(t) ? 3 : 4, .u = {1, 1, 1, 1}, .l = {1, 1, 1, 1}};
+    if (!q->occluded[k]) f = vl_volume_shadow_flight(t, p, rows, k, depth);
+    float inv = 1.0f / vl_volume_shadow_density(v, &f, k, v->pdf[k]);
+    c.weight = vl_volume_shadow_density(v, &f, k, 0.0f) * inv;
+    for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * f.beta[m] * inv;
+    vl_record_light(t, q->lane[k], &c);
+  }
+}

@@ -1,0 +1,308 @@
+/* trace/tracer/record.hot.c: see record.h. */
+#include "trace/tracer/record.h"
+
+static vlPathRecorder *recorder(const vlTracing *t) {
+  return t->batch->recorder;
+}
+
+/* The last vertex of a lane's path; null if none. */
+static vlPathVertex *last_vertex(const vlTracing *t, uint32_t lane) {
+  vlPathRecorder *r = recorder(t);
+  uint32_t count = r->paths[lane].vertex_count;
+  return count ? &r->vertices[(size_t)lane * r->most_vertices + count - 1] : NULL;
+}
+
+/* A new vertex, all zero; null if there is no room. */
+static vlPathVertex *new_vertex(const vlTracing *t, uint32_t lane) {
+  vlPathRecorder *r = recorder(t);
+  if (r->paths[lane].vertex_count == r->most_vertices) {
+    r->lost++;
+    return NULL;
+  }
+  r->paths[lane].vertex_count++;
+  vlPathVertex *v = last_vertex(t, lane);
+  *v = (vlPathVertex){.fate = VL_PATH_ABSORBED, .survival = 1.0f};
+  return v;
+}
+
+static void put3(float *to, vlVec3 v) {
+  to[0] = v.x, to[1] = v.y, to[2] = v.z;
+}
+
+static void put_ids(const vlHits *h, uint32_t i, vlPathVertex *v) {
+  v->object = h->shape[i] + 1;
+  v->material = h->material[i] + 1;
+  v->instance = h->instance[i] == VL_NONE ? 0 : h->instance[i] + 1;
+  v->primitive = h->prim[i] + 1;
+}
+
+/* ---- arrivals ---------------------------------------------------------------------------------------------------- */
+
+vlPathVertex *vl_record_arrival(vlTracing *t, uint32_t i, uint32_t bounce) {
+  const vlPaths *p = &t->s->a;
+  vlPathVertex *v = new_vertex(t, p->lane[i]);
+  if (!v) return NULL;
+  v->event = VL_PATH_NOTHING;
+  v->fate = VL_PATH_LEFT;
+  v->distance = VL_INFINITY;
+  v->bounce = bounce;
+  put3(v->arrival, vl_lane3(p->dx, p->dy, p->dz, i));
+  for (int c = 0; c < 4; c++) v->throughput[c] = p->beta[c][i];
+  return v;
+}
+
+void vl_record_surface(vlTracing *t, uint32_t i, vlPathVertex *v) {
+  const vlPaths *p = &t->s->a;
+  const vlHits *h = &t->s->hits_a;
+  vlPoint at = vl_hit_point(t->world, p, h, i);
+  v->event = VL_PATH_SURFACE;
+  v->fate = VL_PATH_ABSORBED;
+  put_ids(h, i, v);
+  put3(v->position, at.p);
+  put3(v->normal, at.g);
+  v->uv[0] = at.u, v->uv[1] = at.v;
+  v->distance = vl_length(vl_sub(at.p, vl_lane3(p->ox, p->oy, p->oz, i)));
+}
+
+void vl_record_arrivals(vlTracing *t, uint32_t n, uint32_t bounce) {
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = vl_record_arrival(t, i, bounce);
+    if (v && t->s->hits_a.shape[i] != VL_NONE) vl_record_surface(t, i, v);
+  }
+}
+
+void vl_record_depth(vlTracing *t, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, t->s->a.lane[i]);
+    if (v && v->event != VL_PATH_NOTHING) v->fate = VL_PATH_DEPTH;
+  }
+}
+
+/* ---- light ------------------------------------------------------------------------------------------------------- */
+
+void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to) {
+#define NAME(K, k) [VL_WL_##K] = #k,
+  static const char *const names[] = {VL_WORLD_LIGHT_KINDS(NAME)};
+#undef NAME
+  const vlWorldLight *l = &world->lights.items[light];
+  to->light = light + 1;
+  to->type = names[l->kind];
+  to->object = l->shape == VL_NONE ? 0 : l->shape + 1;
+  to->distant = l->far;
+}
+
+void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *light) {
+  vlPathRecorder *r = recorder(t);
+  vlPath *path = &r->paths[lane];
+  if (path->contribution_count == r->most_contributions || path->vertex_count == 0) {
+    r->lost++;
+    return;
+  }
+  vlPathContribution *to = &r->contributions[(size_t)lane * r->most_contributions + path->contribution_count++];
+  *to = *light;
+  to->vertex = path->vertex_count - 1;
+}
+
+static void record_hit(vlTracing *t, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
+  const vlPaths *p = &t->s->a;
+  float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
+  vlPathContribution c = {.event = event, .light_pdf = met->pdf, .bsdf_pdf = p->pdf[i], .weight = weight};
+  vl_record_name_light(t->world, met->light, &c);
+  put3(c.target, event == VL_PATH_LIGHT_HIT ? met->at.p : vl_lane3(p->dx, p->dy, p->dz, i));
+  for (int k = 0; k < 4; k++) c.radiance[k] = p->beta[k][i] * met->radiance[k] * weight;
+  vl_record_light(t, p->lane[i], &c);
+}
+
+void vl_record_emission(vlTracing *t, uint32_t n) {
+  const vlPaths *p = &t->s->a;
+  const vlHits *h = &t->s->hits_a;
+  for (uint32_t i = 0; i < n; i++) {
+    vlHitLight met;
+    if (h->shape[i] != VL_NONE) {
+      if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE && vl_hit_emission(t->world, p, h, i, &met))
+        record_hit(t, i, VL_PATH_LIGHT_HIT, &met);
+      continue;
+    }
+    for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
+      vlSkyHits sky;
+      vl_hit_sky(t->world, p, &i, 1, k, &sky);
+      met = (vlHitLight){.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[0]};
+      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][0];
+      record_hit(t, i, VL_PATH_LIGHT_SKY, &met);
+    }
+  }
+}
+
+void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count) {
+  const vlTraceScratch *s = t->s;
+  const vlShadowRays *q = &s->shadow;
+  const vlLightSamples *l = &s->light;
+  for (uint32_t k = 0, i = 0; k < count; k++, i++) {
+    while (i < n && s->b.lane[i] != q->lane[k]) i++; /* the rays are in the order of the lanes */
+    if (i == n) return;
+    vlPathContribution c = {.event = VL_PATH_LIGHT_SAMPLED,
+                            .occluded = q->occluded[k],
+                            .light_pdf = l->pdf[i],
+                            .bsdf_pdf = l->delta[i] ? 0.0f : s->shade.pdf[i],
+                            .weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], s->shade.pdf[i])};
+    vl_record_name_light(t->world, l->light[i], &c);
+    c.distant = l->distant[i];
+    put3(c.target, c.distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
+    for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k];
+    vl_record_light(t, q->lane[k], &c);
+  }
+}
+
+/* ---- scattering -------------------------------------------------------------------------------------------------- */
+
+/* The first image of a texture node and its inputs; null if none. */
+static const char *image_of(const vlWorld *world, int32_t node) {
+  for (int32_t k = node; k >= 0;) {
+    const vlTextureNode *n = &world->nodes.items[k];
+    if (n->kind == VL_NODE_IMAGE) return world->images.items[n->image].path;
+    const char *first = image_of(world, n->a);
+    if (first) return first;
+    k = n->b;
+  }
+  return NULL;
+}
+
+static void put_texture(const vlWorld *world, int32_t node, vlPathVertex *v) {
+#define NAME(K, k) [VL_NODE_##K] = #k,
+  static const char *const names[] = {VL_TEXTURE_KINDS(NAME)};
+#undef NAME
+  if (node < 0) return;
+  vlNodeKind kind = world->nodes.items[node].kind;
+  if (kind == VL_NODE_SPECTRUM || kind == VL_NODE_FLOAT) return;
+  v->texture = names[kind];
+  v->image = image_of(world, node);
+}
+
+void vl_record_shaded(vlTracing *t, uint32_t n) {
+#define NAME(K, k) [VL_BSDF_##K] = #k,
+  static const char *const names[] = {VL_BSDF_KINDS(NAME)};
+#undef NAME
+  const vlTraceScratch *s = t->s;
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, s->b.lane[i]);
+    if (!v) continue;
+    const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[i]];
+    v->bsdf = names[m->bsdf];
+    put3(v->shading, vl_lane3(s->surface.nx, s->surface.ny, s->surface.nz, i));
+    put_texture(t->world, m->reflectance, v);
+    for (int c = 0; c < 4; c++) {
+      v->throughput[c] = s->b.beta[c][i];
+      v->reflectance[c] = m->reflectance >= 0 ? s->shade.reflectance[c][i] : 0.0f;
+    }
+  }
+}
+
+/* The probability that Russian roulette keeps a path: as in vl_stage_scatter and vl_volume_phase_scatter. */
+static float survival_of(const vlPathVertex *v, float eta_scale, uint32_t depth) {
+  float most = 0.0f;
+  for (int c = 0; c < 4; c++) most = vl_max(most, v->throughput[c] * v->factor[c]);
+  float carried = most * eta_scale;
+  return depth > 1 && carried < 1.0f ? carried : 1.0f;
+}
+
+static bool carries(const vlPathVertex *v) {
+  float most = 0.0f;
+  for (int c = 0; c < 4; c++) most = vl_max(most, v->throughput[c] * v->factor[c]);
+  return most > 0.0f;
+}
+
+void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t count, uint32_t depth) {
+  const vlTraceScratch *s = t->s;
+  const vlShade *sh = &s->shade;
+  const vlPaths *p = &s->b;
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v) continue;
+    bool none = sh->flags[i] & VL_SAMPLED_NONE;
+    v->lobe = sh->flags[i] & (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
+    v->pdf = none ? 0.0f : sh->pdf[i];
+    for (int c = 0; c < 4; c++) v->factor[c] = none ? 0.0f : sh->value[c][i];
+    v->survival = survival_of(v, p->eta_scale[i], depth);
+    v->fate = none || !carries(v) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
+  }
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = s->order[k];
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v) continue;
+    v->fate = VL_PATH_ON;
+    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+  }
+}
+
+/* ---- media and subsurface materials ------------------------------------------------------------------------------ */
+
+void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n) {
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v) continue;
+    v->bsdf = "henyey_greenstein";
+    for (int c = 0; c < 4; c++) v->throughput[c] = p->beta[c][i], v->factor[c] = 1.0f;
+  }
+}
+
+void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count, uint32_t depth) {
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v) continue;
+    v->survival = survival_of(v, p->eta_scale[i], depth);
+    v->fate = carries(v) ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
+  }
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = t->s->order[k];
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v) continue;
+    v->fate = VL_PATH_ON;
+    v->pdf = p->pdf[i];
+    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+  }
+}
+
+void vl_record_probes(vlTracing *t, uint32_t n) {
+  for (uint32_t j = 0; j < n; j++) {
+    vlPathVertex *v = last_vertex(t, t->s->b.lane[j]);
+    if (v && !t->s->subsurface.found[j]) v->fate = VL_PATH_ABSORBED;
+  }
+}
+
+void vl_record_exits(vlTracing *t, uint32_t n) {
+  const vlTraceScratch *s = t->s;
+  const vlSurface *f = &s->surface;
+  for (uint32_t i = 0; i < n; i++) {
+    const vlPathVertex *entry = last_vertex(t, s->a.lane[i]);
+    if (!entry) continue;
+    const vlPathVertex before = *entry;
+    vlPathVertex *v = new_vertex(t, s->a.lane[i]);
+    if (!v) continue;
+    vlVec3 from = vl_vec3(before.position[0], before.position[1], before.position[2]);
+    vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), way = vl_sub(at, from);
+    v->event = VL_PATH_EXIT;
+    v->bounce = before.bounce;
+    v->bsdf = "subsurface";
+    put_ids(&s->hits_b, i, v);
+    put3(v->position, at);
+    v->distance = vl_length(way);
+    if (v->distance > 0.0f) put3(v->arrival, vl_mul(way, 1.0f / v->distance));
+    put3(v->normal, vl_lane3(f->gx, f->gy, f->gz, i));
+    put3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
+    v->uv[0] = f->u[i], v->uv[1] = f->v[i];
+    for (int c = 0; c < 4; c++) v->throughput[c] = s->a.beta[c][i];
+  }
+}
+
+void vl_record_left(vlTracing *t, uint32_t n) {
+  const vlSubsurfaceScratch *x = &t->s->subsurface;
+  const vlPaths *p = &t->s->a;
+  for (uint32_t i = 0; i < n; i++) {
+    vlPathVertex *v = last_vertex(t, p->lane[i]);
+    if (!v || !x->alive[x->place[x->entry[i]]]) continue;
+    v->fate = VL_PATH_ON;
+    v->pdf = p->pdf[i];
+    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+    for (int c = 0; c < 4; c++) v->factor[c] = v->throughput[c] > 0.0f ? p->beta[c][i] / v->throughput[c] : 0.0f;
+  }
+}

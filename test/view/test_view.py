@@ -13,6 +13,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from types import SimpleNamespace
+from urllib.parse import urlsplit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from live import Frame, Page, Refused, View  # noqa: E402
@@ -356,6 +358,30 @@ def test_watch(folder):
     check("watch_ends", view.end()[0] == 0)
 
 
+def test_serve(folder):
+    """velo render --serve: the same page, which only looks on."""
+    run = subprocess.Popen([VELO, "render", SCENE, "--resolution", "160x120", "--time", "6", "--serve", "-o", "served.png"],
+                           cwd=folder, stderr=subprocess.PIPE, text=True)
+    line = ""
+    while "http://" not in line:
+        line = run.stderr.readline()
+        if not line:
+            break
+    address = urlsplit(line[line.find("http://"):].strip())
+    view = SimpleNamespace(host=address.hostname, port=address.port, path=address.path)
+    page = Page(view)
+    role = page.wait_text("role")
+    check("serve_looks", not role["steers"] and not role["steering"], role)
+    frame = page.wait_frame()
+    check("serve_frame", (frame.columns, frame.rows) == (160, 120) and frame.spp > 0, vars(frame))
+    check("serve_refuses", edit(page, fov=20)["type"] == "refused")
+    more = page.wait_frame(lambda f: f.spp > frame.spp)
+    check("serve_goes_on", more.serial > frame.serial)
+    page.close()
+    check("serve_ends", run.wait(60) == 0 and os.path.exists(os.path.join(folder, "served.png")))
+    run.stderr.close()
+
+
 def main():
     missing = subprocess.run([VELO, "view", "missing.pbrt"], capture_output=True, text=True, timeout=60)
     if "without libwebsockets" in missing.stderr:
@@ -388,6 +414,7 @@ def main():
     check("ends", code == 0, code, errors)
     check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
     test_watch(folder)
+    test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
     check("film", info.returncode == 0, info.stderr)
     shutil.rmtree(folder)

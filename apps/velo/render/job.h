@@ -92,6 +92,7 @@ enum {
   RENDER_SHARD_BY,
   RENDER_TILES,
   RENDER_SKIP_EXISTING,
+  RENDER_SERVE,
   RENDER_LENS /* the first of lens_options.h */
 };
 

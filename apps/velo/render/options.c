@@ -31,6 +31,11 @@ const Option render_options[] = {
      "time limit of the command, including loading and writing (with --trajectory: of each image): 30, 30s, 5m, 1h30m. "
      "Without --spp, as many samples are taken as fit into it",
      0, 0, NULL},
+    {RENDER_SERVE, 0, "serve", OPTION_FLAG, NULL,
+     "show the image in the browser while it renders: prints the address of the page of velo view, which then only "
+     "looks "
+     "on",
+     0, 0, NULL},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size in pixels; the field of view across the smaller side is kept", 1, 65536, NULL},
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1",

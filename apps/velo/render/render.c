@@ -234,6 +234,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = shard_apply(arguments, &render->job.defs->film, &render->job.defs->render);
   if (status >= 0) return status;
   render->many = frames_wanted(arguments, &render->job);
+  if (render->many && arguments->values[RENDER_SERVE].given) return report_usage("--serve goes with one image");
   if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
   if (render->many) {
     render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
@@ -317,6 +318,7 @@ static int render_once(const Command *command, const Arguments *arguments, float
   if (status < 0 && render.many)
     status = frames_render(&render.frames, render.context, render.world, &render.outputs, &render.channels);
   if (status < 0) status = run_image(&render);
+  serve_stop(render.serve);
   frames_free(&render.frames);
   channels_free(&render.channels);
   film_keeper_free(&render.keeper);

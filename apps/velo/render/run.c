@@ -121,6 +121,7 @@ static bool on_progress(void *user, const vlProgress *now) {
   if (now->pass_done && !signals_pending()) {
     if (!(render->first_pass > 0)) render->first_pass = now->elapsed;
     write_checkpoint(render, now);
+    if (render->serve) serve_film(render->serve, render->film, now);
     write_progress_image(render, now);
     limit_time(render);
   }
@@ -254,6 +255,9 @@ int run_image(Render *render) {
   vlError error = {0};
   vlRenderStats stats = {0};
   int opened = open_film(render);
+  if (opened >= 0) return opened;
+  if (render->receipt.arguments->values[RENDER_SERVE].given)
+    opened = serve_start(job, render->world, render->outputs.view, render->outputs.exposure, &render->serve);
   if (opened >= 0) return opened;
   render->time_limit = job->defs->render.time_limit;
   render->begun_spp = vl_film_spp(render->film);

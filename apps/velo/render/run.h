@@ -13,6 +13,7 @@
 #include "render/outputs.h"
 #include "render/progress.h"
 #include "render/scene_options.h"
+#include "view/serve.h"
 
 typedef struct Render {
   vlContext *context;
@@ -41,6 +42,7 @@ typedef struct Render {
   FilmKeeper keeper;
   FilmPlan film_plan;
   ReceiptPlan receipt;
+  Serve *serve; /* the page of --serve; null: none */
 } Render;
 
 /* Whether an output holds ground truth. */

@@ -6,31 +6,21 @@
 
 #include "view/engine_status.h"
 
-char *engine_state(const Engine *e) {
-  JsonText text;
-  if (!json_text_begin(&text, "state")) return NULL;
-  Json *json = &text.json;
+static char *engine_state(const Engine *e) {
   const Wanted *w = &e->wanted;
-  json_text(json, "scene", e->def.path);
-  json_integer(json, "change", w->change);
-  json_integer(json, "spp", w->spp);
-  json_bool(json, "paused", w->paused);
-  json_integer(json, "channel", w->channel);
-  json_bool(json, "can_undo", e->history.at > 0);
-  json_bool(json, "can_redo", e->history.at + 1 < e->history.count);
-  json_begin(json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(json, NULL, w->crop[i]);
-  json_end(json, ']');
-  json_number(json, "exposure", (double)e->model.exposure);
-  json_integer(json, "view", e->def.arguments->values[RENDER_VIEW].integer);
-  json_begin(json, "bounds", '[');
-  for (int i = 0; i < 6; i++)
-    json_number(json, NULL, (double)(i < 3 ? e->model.info.bounds_min[i] : e->model.info.bounds_max[i - 3]));
-  json_end(json, ']');
-  json_begin(json, "camera", '{');
-  camera_spellings(json, &w->camera);
-  json_end(json, '}');
-  return json_text_end(&text);
+  const ViewState state = {.scene = e->def.path,
+                           .change = w->change,
+                           .spp = w->spp,
+                           .channel = w->channel,
+                           .paused = w->paused,
+                           .can_undo = e->history.at > 0,
+                           .can_redo = e->history.at + 1 < e->history.count,
+                           .crop = w->crop,
+                           .exposure = (double)e->model.exposure,
+                           .view = (int)e->def.arguments->values[RENDER_VIEW].integer,
+                           .info = &e->model.info,
+                           .camera = &w->camera};
+  return state_text(&state);
 }
 
 void engine_post_state(Engine *e, uint32_t client) {
@@ -39,27 +29,11 @@ void engine_post_state(Engine *e, uint32_t client) {
   free(text);
 }
 
-/* What the page can choose from: dialects, projections, channels. */
-static void post_lists(Engine *e, uint32_t client) {
-  JsonText text;
-  if (!json_text_begin(&text, "lists")) return;
-  Json *json = &text.json;
-  json_begin(json, "dialects", '[');
-  for (int i = VL_CAMERA_DIALECT_AUTO + 1; i < VL_CAMERA_DIALECT_COUNT; i++)
-    if (i != VL_CAMERA_DIALECT_EXR) json_text(json, NULL, vl_camera_dialect_name((vlCameraDialect)i));
-  json_end(json, ']');
-  json_begin(json, "projections", '[');
-  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) json_text(json, NULL, vl_projection_name((vlProjection)i));
-  json_end(json, ']');
-  json_begin(json, "channels", '[');
-  for (uint32_t i = 0; i <= 14; i++) json_text(json, NULL, vl_channel_name(i));
-  json_end(json, ']');
-  json_text_post(&text, e->server, client);
-}
-
 void engine_greet(void *user, uint32_t client) {
   Engine *e = user;
-  post_lists(e, client);
+  char *lists = state_lists();
+  if (lists) server_post(e->server, client, lists);
+  free(lists);
   pthread_mutex_lock(&e->lock);
   engine_post_state(e, client);
   if (e->last_status) server_post(e->server, client, e->last_status);

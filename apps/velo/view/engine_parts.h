@@ -77,8 +77,6 @@ int engine_take_model(Engine *engine);
 bool engine_interrupted(Engine *engine);
 /* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per pixel of the frame. */
 void engine_publish(Engine *engine, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale);
-/* The state of camera and settings as JSON text; the caller holds the lock and frees the text. */
-char *engine_state(const Engine *engine);
 /* Posts the state to a page, or to all (0); the caller holds the lock. */
 void engine_post_state(Engine *engine, uint32_t client);
 /* Makes the camera the present one of the history; the caller holds the lock. gesture: edits of one gesture are one

@@ -36,27 +36,9 @@ bool engine_interrupted(Engine *engine) {
 
 /* ---- frames ------------------------------------------------------------------------------------------------------ */
 
-/* Converts to linear Rec. 709, which the page shows. Null: the film has that space. */
-static const float *to_rec709(vlColorSpace space) {
-  /* The primaries of the spaces; the white of ACES is not adapted, as in image/display.c. */
-  static const float p3[9] = {1.2249402f, -0.2249404f, 0,           -0.0420569f, 1.0420571f,
-                              0,          -0.0196376f, -0.0786361f, 1.0982735f};
-  static const float rec2020[9] = {1.6604910f,  -0.5876411f, -0.0728499f, -0.1245505f, 1.1328999f,
-                                   -0.0083494f, -0.0181508f, -0.1005789f, 1.1187297f};
-  static const float aces[9] = {2.5589994f,  -1.1194568f, -0.3959560f, -0.2769877f, 1.3706185f,
-                                -0.0936305f, -0.0171289f, -0.1485457f, 1.0813307f};
-  switch (space) {
-    case VL_SPACE_SRGB: return NULL;
-    case VL_SPACE_DCI_P3: return p3;
-    case VL_SPACE_REC2020: return rec2020;
-    case VL_SPACE_ACES2065_1: return aces;
-  }
-  return NULL;
-}
-
 void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_t channels, uint32_t scale) {
   double start = engine_clock();
-  const float *matrix = format == FRAME_HALF ? to_rec709(e->model.job.defs->film.space) : NULL;
+  const float *matrix = format == FRAME_HALF ? frame_to_rec709(e->model.job.defs->film.space) : NULL;
   ViewFrame *frame = frame_make(image, format, channels, matrix);
   if (!frame) return;
   frame->serial = ++e->serial;

@@ -6,20 +6,6 @@
 
 #include "render/job.h"
 
-bool json_text_begin(JsonText *json, const char *type) {
-  *json = (JsonText){.text = NULL};
-  json->json.out = open_memstream(&json->text, &json->size);
-  if (!json->json.out) return false;
-  json_begin(&json->json, NULL, '{');
-  json_text(&json->json, "type", type);
-  return true;
-}
-
-char *json_text_end(JsonText *json) {
-  json_end(&json->json, '}');
-  return fclose(json->json.out) == 0 ? json->text : NULL;
-}
-
 void json_text_post(JsonText *json, Server *server, uint32_t client) {
   char *text = json_text_end(json);
   if (text) server_post(server, client, text);

@@ -3,19 +3,12 @@
 #define APP_VIEW_ENGINE_STATUS_H
 
 #include "view/engine_parts.h"
+#include "view/state.h"
 
 /* Samples, speed, estimated error. estimate: the error is estimated anew now. */
 void status_tell(Engine *engine, bool estimate);
 /* An error, with its place if there is one. */
 void status_error(Engine *engine, const vlError *error, vlResult result);
-/* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to free; null: no memory. */
-typedef struct JsonText {
-  Json json;
-  char *text;
-  size_t size;
-} JsonText;
-bool json_text_begin(JsonText *json, const char *type);
-char *json_text_end(JsonText *json);
 /* Ends the text, posts it to a page or to all (0), and frees it. */
 void json_text_post(JsonText *json, Server *server, uint32_t client);
 

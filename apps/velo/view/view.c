@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "view/serve.h"
 
 static int run_view(const Command *command, const Arguments *arguments) {
   (void)command;
@@ -15,6 +16,19 @@ static int run_view(const Command *command, const Arguments *arguments) {
   return report_failure(STATUS_OTHER, "velo view: this velo was built without libwebsockets, which the command needs");
 #endif
 }
+
+#ifndef VELO_HAS_VIEW
+int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure, Serve **serve) {
+  (void)job, (void)world, (void)view, (void)exposure, (void)serve;
+  return report_failure(STATUS_OTHER, "--serve: this velo was built without libwebsockets, which the option needs");
+}
+void serve_film(Serve *serve, const vlFilm *film, const vlProgress *progress) {
+  (void)serve, (void)film, (void)progress;
+}
+void serve_stop(Serve *serve) {
+  (void)serve;
+}
+#endif
 
 /* Families of velo/schema.h. */
 static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};

@@ -1,0 +1,114 @@
+/* view/serve.c: see serve.h. */
+#include "view/serve.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "cli/report.h"
+#include "render/progress.h"
+#include "view/server.h"
+#include "view/state.h"
+
+/* Frames take at most this share of the time, and come at most so often (seconds). */
+static const double most_share = 0.03, least_pause = 0.2;
+
+struct Serve {
+  const Job *job;
+  Server *server;
+  vlWorldInfo info;
+  ViewCamera camera;
+  vlView view;
+  float exposure;
+  uint32_t serial;
+  atomic_uint clients;
+  atomic_bool fresh; /* a page came and has no frame yet */
+  double shown, cost;
+};
+
+static void post_and_free(Server *server, uint32_t client, char *text) {
+  if (text) server_post(server, client, text);
+  free(text);
+}
+
+static void greet(void *user, uint32_t client) {
+  Serve *s = user;
+  const ViewState state = {.scene = s->job->path,
+                           .spp = s->job->defs->render.spp,
+                           .crop = s->job->defs->film.crop,
+                           .exposure = (double)s->exposure,
+                           .view = (int)s->view,
+                           .info = &s->info,
+                           .camera = &s->camera};
+  post_and_free(s->server, client, state_lists());
+  post_and_free(s->server, client, state_text(&state));
+  s->fresh = true;
+}
+
+static void refuse(void *user, uint32_t client, bool steers, const ViewMessage *message) {
+  Serve *s = user;
+  JsonText text;
+  (void)steers;
+  if (!json_text_begin(&text, "refused")) return;
+  json_integer(&text.json, "id", message->id);
+  json_integer(&text.json, "change", message->change);
+  json_text(&text.json, "message", "this page looks on: velo render --serve");
+  post_and_free(s->server, client, json_text_end(&text));
+}
+
+static void count(void *user, uint32_t clients) {
+  ((Serve *)user)->clients = clients;
+}
+
+int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure, Serve **result) {
+  Serve *s = calloc(1, sizeof *s);
+  *result = s;
+  if (!s) return report_failure(STATUS_OTHER, "out of memory");
+  s->job = job;
+  s->view = view;
+  s->exposure = exposure;
+  s->camera = (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
+  vl_world_info(world, &s->info);
+  const ServerDef def = {.calls = {.user = s, .greet = greet, .message = refuse, .clients = count}};
+  int status = server_start(&def, &s->server);
+  if (status < 0) report_note("the image while it renders: %s", server_address(s->server));
+  return status;
+}
+
+static void post_status(Serve *s, const vlFilm *film, const vlProgress *p) {
+  JsonText text;
+  if (!json_text_begin(&text, "status")) return;
+  json_integer(&text.json, "spp", vl_film_spp(film));
+  json_integer(&text.json, "target", p->spp_total);
+  json_number(&text.json, "paths_per_second", p->elapsed > 0 ? (double)p->paths / p->elapsed : NAN);
+  json_number(&text.json, "seconds", p->elapsed);
+  json_number(&text.json, "error", NAN);
+  json_bool(&text.json, "paused", false);
+  post_and_free(s->server, 0, json_text_end(&text));
+}
+
+void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
+  double start = monotonic_seconds(), pause = fmax(least_pause, s->cost / most_share);
+  if (!s->clients || (!s->fresh && start - s->shown < pause && progress->spp_done < progress->spp_total)) return;
+  s->fresh = false;
+  vlImage *image = NULL;
+  const vlFilmDef *def = &s->job->defs->film;
+  if (vl_film_develop(film, &s->job->defs->develop, &image) != VL_OK) return;
+  ViewFrame *frame = frame_make(image, FRAME_HALF, 3, frame_to_rec709(def->space));
+  vl_image_destroy(image);
+  if (!frame) return;
+  frame->serial = ++s->serial;
+  frame->width = def->width, frame->height = def->height;
+  frame->x0 = def->crop[0], frame->y0 = def->crop[1];
+  frame->spp = vl_film_spp(film);
+  server_show(s->server, frame);
+  frame_drop(frame);
+  post_status(s, film, progress);
+  s->shown = monotonic_seconds();
+  s->cost = s->shown - start;
+}
+
+void serve_stop(Serve *s) {
+  if (!s) return;
+  server_stop(s->server);
+  free(s);
+}

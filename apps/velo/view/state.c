@@ -1,0 +1,59 @@
+/* view/state.c: see state.h. */
+#include "view/state.h"
+
+bool json_text_begin(JsonText *json, const char *type) {
+  *json = (JsonText){.text = NULL};
+  json->json.out = open_memstream(&json->text, &json->size);
+  if (!json->json.out) return false;
+  json_begin(&json->json, NULL, '{');
+  json_text(&json->json, "type", type);
+  return true;
+}
+
+char *json_text_end(JsonText *json) {
+  json_end(&json->json, '}');
+  return fclose(json->json.out) == 0 ? json->text : NULL;
+}
+
+char *state_text(const ViewState *s) {
+  JsonText text;
+  if (!json_text_begin(&text, "state")) return NULL;
+  Json *json = &text.json;
+  json_text(json, "scene", s->scene);
+  json_integer(json, "change", s->change);
+  json_integer(json, "spp", s->spp);
+  json_bool(json, "paused", s->paused);
+  json_integer(json, "channel", s->channel);
+  json_bool(json, "can_undo", s->can_undo);
+  json_bool(json, "can_redo", s->can_redo);
+  json_begin(json, "crop", '[');
+  for (int i = 0; i < 4; i++) json_integer(json, NULL, s->crop[i]);
+  json_end(json, ']');
+  json_number(json, "exposure", s->exposure);
+  json_integer(json, "view", s->view);
+  json_begin(json, "bounds", '[');
+  for (int i = 0; i < 6; i++)
+    json_number(json, NULL, (double)(i < 3 ? s->info->bounds_min[i] : s->info->bounds_max[i - 3]));
+  json_end(json, ']');
+  json_begin(json, "camera", '{');
+  camera_spellings(json, s->camera);
+  json_end(json, '}');
+  return json_text_end(&text);
+}
+
+char *state_lists(void) {
+  JsonText text;
+  if (!json_text_begin(&text, "lists")) return NULL;
+  Json *json = &text.json;
+  json_begin(json, "dialects", '[');
+  for (int i = VL_CAMERA_DIALECT_AUTO + 1; i < VL_CAMERA_DIALECT_COUNT; i++)
+    if (i != VL_CAMERA_DIALECT_EXR) json_text(json, NULL, vl_camera_dialect_name((vlCameraDialect)i));
+  json_end(json, ']');
+  json_begin(json, "projections", '[');
+  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) json_text(json, NULL, vl_projection_name((vlProjection)i));
+  json_end(json, ']');
+  json_begin(json, "channels", '[');
+  for (uint32_t i = 0; i <= 14; i++) json_text(json, NULL, vl_channel_name(i));
+  json_end(json, ']');
+  return json_text_end(&text);
+}

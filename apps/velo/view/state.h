@@ -1,0 +1,32 @@
+/* view/state.h: what a page must know, as JSON: scene, settings, camera, and what can be chosen. */
+#ifndef APP_VIEW_STATE_H
+#define APP_VIEW_STATE_H
+
+#include "view/camera_edit.h"
+
+typedef struct ViewState {
+  const char *scene; /* path */
+  uint32_t change, spp, channel;
+  bool paused, can_undo, can_redo;
+  const uint32_t *crop; /* x0, y0, x1, y1 */
+  double exposure;      /* EV of the first view */
+  int view;             /* vlView of the first view */
+  const vlWorldInfo *info;
+  const ViewCamera *camera;
+} ViewState;
+
+/* A JSON text in memory: begin, json_*(...), end, which returns the text for the caller to free; null: no memory. */
+typedef struct JsonText {
+  Json json;
+  char *text;
+  size_t size;
+} JsonText;
+bool json_text_begin(JsonText *json, const char *type);
+char *json_text_end(JsonText *json);
+
+/* Both texts are for the caller to free; null: no memory. */
+char *state_text(const ViewState *state);
+/* Dialects, projections, channels. */
+char *state_lists(void);
+
+#endif

@@ -336,32 +336,43 @@ static void draco(void **state) {
   end_load(&l);
 }
 
-/* Points are sized by all that is drawn, whatever the size of their own mesh and the scale of its node. */
+/* Points are sized by all that is drawn, whatever the size of their own mesh and the scale of its node; or by the
+ * file's camera. */
 static void points_by_the_image(void **state) {
   (void)state;
-  double extents[2];
-  for (int scaled = 0; scaled < 2; scaled++) {
+  static const char *const cameras[] = {
+      "", "", "{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.9,\"znear\":1}}",
+      "{\"type\":\"orthographic\",\"orthographic\":{\"xmag\":9,\"ymag\":9,\"znear\":1,"
+      "\"zfar\":200}}"};
+  double extents[4];
+  for (int k = 0; k < 4; k++) {
+    bool scaled = k == 1;
     Gltf *g = calloc(1, sizeof *g);
     const float p[3] = {0, 0, 0}, q[6] = {-50, 0, 0, 50, 0, 0};
     gltf_accessor(g, gltf_view(g, p, sizeof p, 0), 5126, 1, "VEC3", ",\"min\":[0,0,0],\"max\":[0,0,0]");
     gltf_accessor(g, gltf_view(g, q, sizeof q, 0), 5126, 2, "VEC3", ",\"min\":[-50,0,0],\"max\":[50,0,0]");
     Loaded l;
-    char rest[600];
+    char rest[900];
     snprintf(rest, sizeof rest,
-             "\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1}],"
+             "\"scene\":0,\"scenes\":[{\"nodes\":[0,1%s]}],\"nodes\":[{\"mesh\":0,\"scale\":[%g,%g,%g]},{\"mesh\":1}"
+             "%s],%s%s%s"
              "\"meshes\":[{\"primitives\":[{\"mode\":0,"
              "\"attributes\":{\"POSITION\":0}}]},{\"primitives\":[{\"mode\":1,\"attributes\":{\"POSITION\":1}}]}]",
-             scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0);
+             *cameras[k] ? ",2" : "", scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0, scaled ? 4.0 : 1.0,
+             *cameras[k] ? ",{\"camera\":0,\"translation\":[0,0,100]}" : "", *cameras[k] ? "\"cameras\":[" : "",
+             cameras[k], *cameras[k] ? "]," : "");
     load(&l, g, rest, NULL);
     if (l.result != VL_OK) fail_msg("%s", l.error.message);
     double low[3], high[3];
     l.scene->shapes.count = 1; /* the points alone */
     vl_scene_bounds(l.scene, low, high);
-    extents[scaled] = high[0] - low[0];
+    extents[k] = high[0] - low[0];
     end_load(&l);
     free(g);
   }
   assert_true(fabs(extents[0] - 0.3) < 0.02 && fabs(extents[1] - extents[0]) < 1e-3);
+  is_near(extents[2], 2 * 200 * tan(0.45) / 720, 0.02);
+  is_near(extents[3], 2 * 18.0 / 720, 0.004);
 }
 
 /* A buffer without uri is legal where nothing reads it. */

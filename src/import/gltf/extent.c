@@ -1,8 +1,12 @@
-/* import/gltf/extent.c: how large everything that is drawn is together, from the bounds that accessors of positions
- * have. */
+/* import/gltf/extent.c: the size of points and lines, from the file's camera or from the extent of everything that is
+ * drawn. The bounds are those that accessors of positions have. */
 #include <math.h>
 
 #include "import/gltf/gltf.h"
+#include "math/elementary.h"
+
+/* Rows of the image for which the size is chosen. */
+enum { POINT_ROWS = 720 };
 
 static bool bounds(const json_t *accessor, double low[3], double high[3]) {
   const json_t *min = json_object_get(accessor, "min"), *max = json_object_get(accessor, "max");
@@ -23,7 +27,23 @@ static void grow(const vlMat4 *world, const double low[3], const double high[3],
   }
 }
 
-double vl_gltf_diagonal(const vlGltf *g, const uint32_t *order, size_t count) {
+/* Height of an image row, in the world, at the centre of the box, for the file's camera. 0: the file has none. */
+static double row_height(const vlGltf *g, const double box[6], double diagonal) {
+  const vlSceneDefs *s = vl_scene_defs(g->scene);
+  const vlCameraDef *c = &s->camera;
+  if (s->camera_missing) return 0;
+  if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) return (c->screen_max_y - c->screen_min_y) / POINT_ROWS;
+  double distance2 = 0;
+  for (int i = 0; i < 3; i++) {
+    double d = 0.5 * (box[i] + box[3 + i]) - c->world_from_camera[4 * i + 3];
+    distance2 += d * d;
+  }
+  /* A camera inside sees most things at a distance of this order. */
+  double distance = fmax(sqrt(distance2), 0.25 * diagonal);
+  return 2 * distance * vl_precise_tan(0.5 * c->fov) / POINT_ROWS;
+}
+
+double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count) {
   double box[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY}, sum = 0;
   for (size_t k = 0; k < count; k++) {
     const vlGltfNode *node = &g->nodes[order[k]];
@@ -42,5 +62,7 @@ double vl_gltf_diagonal(const vlGltf *g, const uint32_t *order, size_t count) {
     }
   }
   for (int i = 0; i < 3; i++) sum += (box[3 + i] - box[i]) * (box[3 + i] - box[i]);
-  return box[0] <= box[3] && isfinite(sum) ? sqrt(sum) : 0;
+  if (!(box[0] <= box[3]) || !isfinite(sum)) return 0;
+  double row = row_height(g, box, sqrt(sum));
+  return row > 0 ? row : 0.0015 * sqrt(sum);
 }

@@ -118,7 +118,7 @@ typedef struct vlGltf {
       skin_count, camera_count, light_count, sampler_count, animation_count, scene_count;
   const json_t *lights;         /* array of KHR_lights_punctual */
   uint64_t total;               /* size of all buffers in bytes */
-  double diagonal;              /* of all that is drawn, in the world; 0: not known. For the size of points and lines */
+  double point_radius;          /* of points and lines, in the world; 0: not known */
   double scale;                 /* of the node that is drawn */
   uint64_t spent;               /* bytes of geometry made so far; see vl_gltf_spend */
   int64_t variant;              /* index of the material variant; -1: none */
@@ -279,8 +279,10 @@ typedef struct vlGltfPrimitive {
 } vlGltfPrimitive;
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p);
 
-/* The diagonal of the box around the meshes of these nodes, at their poses; 0: no accessor has bounds. */
-double vl_gltf_diagonal(const vlGltf *g, const uint32_t *order, size_t count);
+/* The radius of points and lines: one pixel of an image of 720 rows, at the centre of the box around the meshes of
+ * these nodes. Without a camera in the file, 0.15 % of the box's diagonal, which is about a pixel of an image that
+ * shows the whole box. 0: no accessor has bounds. The camera must be chosen. */
+double vl_gltf_point_radius(const vlGltf *g, const uint32_t *order, size_t count);
 
 /* Adds mesh `index` for a node. A null node, with node_index SIZE_MAX, adds the mesh to a group, in the mesh's own
  * space. */

@@ -347,8 +347,8 @@ bool vl_gltf_draw(vlGltf *g) {
   }
   uint32_t *order = vl_alloc_array(g->context, g->node_count + 1, sizeof *order);
   bool ok = order || vl_gltf_fail_memory(g);
-  ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count);
-  if (ok) g->diagonal = vl_gltf_diagonal(g, order, count);
+  ok = ok && collect(g, roots, at, order, &count) && count_uses(g, order, count) && vl_gltf_choose_camera(g);
+  if (ok) g->point_radius = vl_gltf_point_radius(g, order, count);
   for (size_t k = 0; ok && k < count; k++)
     ok = !vl_scene_stopped(g->scene, (double)k / (double)count) && draw_node(g, order[k]);
   ok = ok && vl_gltf_image_light(g, scene, at);

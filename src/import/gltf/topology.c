@@ -116,10 +116,9 @@ static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32
   }
 }
 
-/* About a pixel of an image of 720 rows that shows everything. Where the file does not give its size, a share of the
- * mesh's. */
+/* See vl_gltf_point_radius. Where the file does not give its size, a share of the mesh's. */
 static float point_radius(const vlGltf *g, const vlGltfPrimitive *p) {
-  double radius = g->scale > 0 ? 0.0015 * g->diagonal / g->scale : 0;
+  double radius = g->scale > 0 ? g->point_radius / g->scale : 0;
   if (radius > 1e-30 && radius < 1e30) return (float)radius;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, d = 0;
   for (size_t i = 0; i < 3 * p->vertices; i++) {

@@ -129,7 +129,8 @@ typedef struct vlAllocator {
  * number of threads - 1. */
 typedef void vlParallelFn(void *loop_user, uint32_t index, uint32_t worker);
 /** A parallel loop: calls body(loop_user, index, worker) once for each index in [0, count) and returns when all are
- * done. No two calls with the same worker run at once. */
+ * done. No two calls of a loop's body with the same worker run at once. Several threads may each run a loop at
+ * the same time; the workers of each are numbered from 0. */
 typedef void vlParallelForFn(void *user, uint32_t count, vlParallelFn *body, void *loop_user);
 
 /** Instruction sets of the hot loops. All of them give bitwise equal results. AUTO: the widest set that the machine

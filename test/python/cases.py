@@ -26,6 +26,11 @@ def skip_all(why):
 if not any(name.startswith("_velo.") for name in
            (os.listdir(os.path.join(MODULES, "velo")) if os.path.isdir(os.path.join(MODULES, "velo")) else [])):
     skip_all("the Python module is not built")
+for sanitizer in ("libasan", "libtsan"):
+    # A program that is not built with a sanitizer can load such a module only with the sanitizer's library preloaded.
+    with open(os.path.join(MODULES, "velo/_velo.abi3.so"), "rb") as module:
+        if sanitizer.encode() in module.read() and sanitizer not in os.environ.get("LD_PRELOAD", ""):
+            skip_all("the module needs LD_PRELOAD=%s.so" % sanitizer)
 sys.path.insert(0, MODULES)
 os.environ["PYTHONPATH"] = MODULES
 

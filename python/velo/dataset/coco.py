@@ -30,13 +30,14 @@ def run_lengths(mask: Any) -> dict[str, Any]:
 def outlines(mask: Any) -> tuple[list[list[float]], bool]:
     """The outer edges of a mask's parts as polygons x0, y0, x1, y1, ...; and whether a part has holes. Pixels that touch at a
     corner only are separate parts."""
-    padded = numpy.pad(numpy.asarray(mask, dtype=bool), 1)
+    x0, y0, width, height = box_of(mask, (0, 0, 0, 0))
+    padded = numpy.pad(numpy.asarray(mask, dtype=bool)[y0:y0 + height, x0:x0 + width], 1)
     # Directed edges around set pixels, with the mask on the right (y points down): from corner to corner.
     following: dict[tuple[int, int], list[tuple[int, int]]] = {}
 
     def add(edges: Any, start: tuple[int, int], end: tuple[int, int]) -> None:
-        for y, x in zip(*numpy.nonzero(edges)):
-            following.setdefault((x + start[0], y + start[1]), []).append((x + end[0], y + end[1]))
+        for y, x in numpy.argwhere(edges).tolist():
+            following.setdefault((x + start[0] + x0, y + start[1] + y0), []).append((x + end[0] + x0, y + end[1] + y0))
 
     inner = padded[1:-1, 1:-1]
     add(inner & ~padded[:-2, 1:-1], (0, 0), (1, 0))  # upper edges, to the right

@@ -30,7 +30,7 @@ def write_bytes(path: str, data: bytes) -> None:
 
 def write_json(path: str, data: Any) -> None:
     """Writes JSON. Numbers have as many digits as it takes to read the same bits."""
-    write_bytes(path, (json.dumps(data, indent=1, allow_nan=False) + "\n").encode())
+    write_bytes(path, (json.dumps(data, allow_nan=False) + "\n").encode())
 
 
 def read_json(path: str, default: Any) -> Any:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 from velo._errors import UsageError
@@ -10,7 +11,7 @@ from velo.dataset.coco import CocoWriter
 from velo.dataset.exr import ExrWriter
 from velo.dataset.nerfstudio import NerfstudioWriter
 from velo.dataset.recipe import Recipe
-from velo.dataset.stage import Stage
+from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer
 
 WRITERS: dict[str, Any] = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": NerfstudioWriter, "exr": ExrWriter}
@@ -35,11 +36,27 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
     tables over all frames are written anew by each, from what is there. progress: called with each finished frame."""
     stage = Stage(recipe, context=context)
     made = make_writers(stage, os.fspath(folder), writers)
-    for number in range(recipe.frames) if frames is None else frames:
-        for scene, frame in enumerate(stage.render(number)):
+
+    def write(images: list[Frame]) -> None:
+        for scene, frame in enumerate(images):
             for writer in made:
                 writer.write(frame, scene)
-        if progress:
-            progress(number)
+
+    # A frame is written while the next one renders.
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        pending: Optional[tuple[int, Future[None]]] = None
+        for number in range(recipe.frames) if frames is None else frames:
+            images = stage.render(number)
+            _finish(pending, progress)
+            pending = number, pool.submit(write, images)
+        _finish(pending, progress)
     for writer in made:
         writer.finish()
+
+
+def _finish(pending: Optional[tuple[int, Future[None]]], progress: Optional[Callable[[int], None]]) -> None:
+    """Waits until a frame is written."""
+    if pending:
+        pending[1].result()
+        if progress:
+            progress(pending[0])

@@ -75,6 +75,7 @@ class Box:
     def __init__(self, low: Vector3, high: Vector3, pose: Matrix) -> None:
         self.center = transform(pose, [(a + b) / 2 for a, b in zip(low, high)])
         self.axes = [[pose[i][k] * (high[k] - low[k]) / 2 for i in range(3)] for k in range(3)]
+        self.radius = math.sqrt(sum(dot(axis, axis) for axis in self.axes))
 
     def extent(self, direction: Vector3) -> float:
         """Half of the box's extent along a direction."""
@@ -83,6 +84,8 @@ class Box:
     def meets(self, other: "Box", gap: float = 0.0) -> bool:
         """Whether two boxes overlap or are closer than the gap along every axis of separation (Gottschalk 1996)."""
         offset = subtract(other.center, self.center)
+        if dot(offset, offset) > (self.radius + other.radius + gap) ** 2:
+            return False
         axes = self.axes + other.axes + [cross(a, b) for a in self.axes for b in other.axes]
         for axis in axes:
             length = dot(axis, axis)

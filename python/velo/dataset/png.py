@@ -9,7 +9,7 @@ import numpy
 
 
 def png(pixels: Any) -> bytes:
-    """A PNG of an array of height x width (grey) or height x width x 3, uint8 or uint16."""
+    """A PNG of an array of height x width (grey; bool: 0 and 255) or height x width x 3, uint8 or uint16."""
     array = numpy.asarray(pixels)
     if array.dtype == bool:
         array = array.astype("uint8") * 255
@@ -24,4 +24,4 @@ def png(pixels: Any) -> bytes:
     # Filter 0 (none) in front of every row.
     lines = b"".join(b"\0" + rows[y * stride:(y + 1) * stride] for y in range(height))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, 0))
-            + chunk(b"IDAT", zlib.compress(lines, 6)) + chunk(b"IEND", b""))
+            + chunk(b"IDAT", zlib.compress(lines, 3)) + chunk(b"IEND", b""))

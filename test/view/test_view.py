@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """velo view, through a WebSocket client: frames, edits of the camera, refusals, files, copied commands, who may come in,
 malformed messages, pages that come and go."""
+import base64
 import json
 import os
 import random
@@ -164,6 +165,13 @@ def test_tasks(page):
     check("pick_outside", answer(page, "picked", type="pick", x=60000, y=1)["type"] == "refused")
     overlay = answer(page, "overlay", type="overlay", boxes=True)
     check("overlay", len(overlay["vanishing"]) == 3 and len(overlay["boxes"]) > 0, overlay)
+    outline = answer(page, "outline", type="outline", set={"point": picked["P"]})
+    parts = {line[0] for line in outline["lines"]}
+    check("outline", {"window", "volume", "eye", "projector"} <= parts and outline["plane"] > 0, parts)
+    picture = answer(page, "picture", type="picture", size=[64, 40], exposure=0,
+                     set={"eye": [900, 500, 0], "lookat": [0, 0, 0], "up": [0, 1, 0]})
+    check("picture", base64.b64decode(picture["data"])[:2] == b"\xff\xd8", picture)
+    check("picture_refused", answer(page, "picture", type="picture", set={"eye": [0, 0, 0], "lookat": [0, 0, 0]})["type"] == "refused")
     for channel in ("Z", "N", "P", "uv", "albedo", "id.object"):
         state_after(page, type="settings", channel=channel)
         frame = page.wait_frame(lambda f: f.channel > 0)

@@ -193,7 +193,7 @@ def test_panels(b, folder):
 def test_outside(b):
     """The second pane: its handles move e and d."""
     b.click_on("#outside-toggle")
-    b.wait("velo.outside.drawing && velo.outside.drawing.lines.length > 10 && velo.outside.image", 60)
+    b.wait("velo.outside.drawing && velo.outside.drawing.lines.length > 10 && velo.outside.image !== undefined", 60)
     handle = lambda name: b.run(f"(() => {{ const o = velo.outside, r = o.canvas.getBoundingClientRect(), p = o.project(o.handles.{name});"
                                 " return [r.x + p[0], r.y + p[1]]; })()")
     eye, d = camera(b, "eye"), camera(b, "d")

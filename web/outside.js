@@ -25,7 +25,7 @@ export class Outside {
   toggle() {
     this.box.hidden = !this.box.hidden;
     this.button.setAttribute("aria-pressed", String(!this.box.hidden));
-    if (!this.box.hidden) { this.pose ??= this.start(); this.outline(); this.picture(); }
+    if (!this.box.hidden) { this.pose ??= this.start(); this.outline(); this.render(); }
   }
 
   // From the side, a little above and behind, so that eye and scene are both seen.
@@ -39,7 +39,7 @@ export class Outside {
   // The camera changed: its lines are drawn anew.
   state() { if (!this.box.hidden) this.outline(); }
   // The scene was loaded again.
-  loaded() { if (!this.box.hidden) this.picture(); }
+  loaded() { if (!this.box.hidden) this.render(); }
 
   outline() {
     if (this.asked) { this.again = true; return; }
@@ -52,18 +52,18 @@ export class Outside {
     });
   }
 
-  picture() {
+  render() {
     if (this.rendering) { this.newer = true; return; }
     this.rendering = true;
     const { eye, lookat, up } = this.pose, size = this.size().map(v => Math.round(0.6 * v)), exposure = this.app.display.ev;
-    this.app.ask({ type: "picture", set: { eye, lookat, up }, size, exposure }, answer => {
+    this.app.ask({ type: "outside", set: { eye, lookat, up }, size, exposure }, answer => {
       this.rendering = false;
-      if (answer.type === "picture") {
+      if (answer.type === "outside") {
         const image = new Image();
         image.onload = () => { this.image = image; this.draw(); };
         image.src = `data:image/jpeg;base64,${answer.data}`;
       }
-      if (this.newer) { this.newer = false; this.picture(); }
+      if (this.newer) { this.newer = false; this.render(); }
     });
   }
 
@@ -145,7 +145,7 @@ export class Outside {
       Object.assign(this.pose, orbit(this.pose, dx * 0.01, dy * 0.01));
       this.image = null;
       this.draw();
-      return this.picture();
+      return this.render();
     }
     if (this.grip === "eye") {
       const k = this.project(c.eye)[2] / f;
@@ -166,6 +166,6 @@ export class Outside {
     this.pose.eye = add(this.pose.lookat, scale(arm, Math.exp(0.001 * event.deltaY)));
     this.image = null;
     this.draw();
-    this.picture();
+    this.render();
   }
 }

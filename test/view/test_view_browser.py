@@ -17,7 +17,7 @@ from live import View  # noqa: E402
 
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
-SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the pictures of the page are written
+SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
 THINGS = 'Material "diffuse" "rgb reflectance" [%s]\nShape "sphere" "float radius" 0.8\n'
 SCENE = '''LookAt 0 1 5 0 0 0 0 1 0
 Camera "perspective" "float fov" 40

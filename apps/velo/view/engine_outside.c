@@ -7,9 +7,9 @@
 #include "image/display.h"
 #include "view/engine_status.h"
 
-enum { LARGEST_SIDE = 800, PICTURE_SPP = 2 };
+enum { LARGEST_SIDE = 800, OUTSIDE_SPP = 2 };
 
-static const double picture_fov = 40 * 3.14159265358979323846 / 180; /* vertical; web/outside.js has the same */
+static const double outside_fov = 40 * 3.14159265358979323846 / 180; /* vertical; web/outside.js has the same */
 
 static const MessageField *find_field(const ViewMessage *m, const char *name, uint32_t count) {
   for (uint32_t i = 0; i < m->field_count; i++)
@@ -108,16 +108,16 @@ static vlResult make_camera(const ViewMessage *m, vlCamera *camera, vlError *err
     const MessageField *field = find_field(m, names[i], 3);
     if (field) memcpy(values[i], field->numbers, 3 * sizeof(double));
   }
-  def.fov = picture_fov, def.fov_axis = VL_FOV_VERTICAL;
+  def.fov = outside_fov, def.fov_axis = VL_FOV_VERTICAL;
   return vl_camera_make(&def, camera, NULL, error);
 }
 
-static vlResult render_picture(const Engine *e, const vlCamera *camera, vlImage **image, vlError *error) {
+static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage **image, vlError *error) {
   vlRenderDef render = e->model.job.defs->render;
   vlFilmDef def = vl_default_film_def(camera->width, camera->height);
   vlFilm *film = NULL;
   def.max_component = 10;
-  render.spp = PICTURE_SPP, render.sequence = 0, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
+  render.spp = OUTSIDE_SPP, render.sequence = 0, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
   if (render.max_depth > 3) render.max_depth = 3;
   render.cancel = e->end, render.priority = 1;
   vlResult result = vl_film_create(e->def.context, &def, &film);
@@ -127,7 +127,7 @@ static vlResult render_picture(const Engine *e, const vlCamera *camera, vlImage 
   return result;
 }
 
-void engine_picture(Engine *e, const Task *task) {
+void engine_outside(Engine *e, const Task *task) {
   vlCamera camera;
   vlImage *image = NULL, *shown = NULL;
   void *data = NULL;
@@ -137,12 +137,12 @@ void engine_picture(Engine *e, const Task *task) {
   vlWriteDef write = vl_default_write_def();
   write.quality = 85;
   vlResult result = make_camera(&task->message, &camera, &error);
-  if (result == VL_OK) result = render_picture(e, &camera, &image, &error);
+  if (result == VL_OK) result = render_outside(e, &camera, &image, &error);
   if (result == VL_OK)
     result = display_image(e->def.context, image, VL_VIEW_STANDARD, (float)task->message.exposure, false, &shown);
   if (result == VL_OK) result = vl_image_write_memory(shown, ".jpg", &write, &data, &size, &error);
   char *bytes = result == VL_OK ? to_base64(data, size) : NULL;
-  if (result != VL_CANCELLED && json_text_begin(&text, bytes ? "picture" : "refused")) {
+  if (result != VL_CANCELLED && json_text_begin(&text, bytes ? "outside" : "refused")) {
     json_integer(&text.json, "id", task->message.id);
     json_text(&text.json, bytes ? "data" : "message", bytes ? bytes : error.message);
     json_text_post(&text, e->server, task->client);

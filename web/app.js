@@ -10,6 +10,7 @@ import { Inspector } from "./inspect.js";
 import { Overlay } from "./overlay.js";
 import { Compare } from "./compare.js";
 import { Save } from "./save.js";
+import { Outside } from "./outside.js";
 import { byId, make, metric } from "./dom.js";
 import { addHelp } from "./help.js";
 
@@ -49,6 +50,7 @@ const app = {
   settings: message => app.connection.send({ type: "settings", ...message }),
   wholeImage: () => { screen.zoom = 1; screen.centre = [0.5, 0.5]; screen.draw(); screen.onplace?.(); },
   crop: rectangle => app.settings({ crop: rectangle, change: ++app.change }),
+  seeOutside: () => outside.toggle(),
   escape: () => { byId("notice").hidden = true; if (app.cropped) app.crop(null); },
   expose: step => display.expose(step),
   keyGesture() {
@@ -68,6 +70,8 @@ const app = {
     app.ask({ type: "pick", x, y }, answer => {
       if (answer.type !== "picked") return;
       inspector.picked(answer);
+      outside.point = answer.object.id ? answer.P : null;
+      outside.state();
       if (kind === "turn" && answer.object.id) app.edit(pivot(app.local, answer.P));
     });
   },
@@ -89,6 +93,7 @@ const display = app.display = new Display(byId("display"), app);
 const overlay = new Overlay(byId("overlays"), app);
 const compare = new Compare(byId("compare"), app);
 new Save(byId("save"), app);
+const outside = app.outside = new Outside(app);
 screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);
 new Pointer(byId("stage"), app);
@@ -111,6 +116,7 @@ function showState(state) {
   const c = state.crop;
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
   overlay.state(state);
+  outside.state();
 }
 
 function showStatus(s) {
@@ -135,7 +141,7 @@ const handlers = {
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
   loading: () => { byId("status").textContent = "a file changed: loading"; },
-  loaded: () => app.notice("The scene was loaded again.", true),
+  loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); },
   warning: message => app.notice(message.message, true),
   note: message => app.notice(message.message, true),
   error(message) {

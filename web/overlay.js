@@ -63,9 +63,9 @@ export class Overlay {
     const [x1, y1] = this.app.screen.toPage(...a), [x2, y2] = this.app.screen.toPage(...b);
     this.svg.append(element("line", { x1, y1, x2, y2, "stroke-width": 1.5, ...style }));
   }
-  label(at, text, colour) {
+  label(at, text) {
     const [x, y] = this.app.screen.toPage(...at);
-    for (const style of [{ stroke: "#000b", "stroke-width": 3, fill: "none" }, { fill: colour }])
+    for (const style of [{ stroke: "#000b", "stroke-width": 4, fill: "none" }, { fill: "#fff" }])
       this.svg.append(element("text", { x: x + 5, y: y - 4, "font-size": 12, "font-family": "system-ui", ...style }, text));
   }
 

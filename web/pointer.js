@@ -121,7 +121,7 @@ export class Pointer {
 export const keys = [
   ["Arrows", "orbit; with Shift: look round"], ["W A S D", "fly forward, left, back, right"], ["Q E", "fly down, up"],
   ["+ −", "nearer, farther"], [", .", "roll"], ["Z, Shift+Z", "undo, redo"], ["Home", "the scene's camera"],
-  ["P", "pause"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
+  ["P", "pause"], ["O", "the camera from outside"], ["1 … 6", "tools"], ["0", "the whole image"], ["[ ]", "exposure"], ["Esc", "no rectangle, no message"],
 ];
 
 // What a key does on the stage; null: nothing.
@@ -137,7 +137,7 @@ export function keyAction(event, app) {
     ",": () => steer.roll(c, -2), ".": () => steer.roll(c, 2),
   };
   const commands = {
-    z: app.undo, Z: app.redo, Home: app.reset, p: app.pause, 0: app.wholeImage, Escape: app.escape,
+    o: app.seeOutside, z: app.undo, Z: app.redo, Home: app.reset, p: app.pause, 0: app.wholeImage, Escape: app.escape,
     "[": () => app.expose(-0.25), "]": () => app.expose(0.25),
   };
   if (event.ctrlKey || event.metaKey || event.altKey) return null;

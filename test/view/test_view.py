@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """velo view, through a WebSocket client: frames, edits of the camera, refusals, files, copied commands, who may come in,
 malformed messages, pages that come and go."""
+import base64
 import json
 import os
 import random
@@ -164,6 +165,13 @@ def test_tasks(page):
     check("pick_outside", answer(page, "picked", type="pick", x=60000, y=1)["type"] == "refused")
     overlay = answer(page, "overlay", type="overlay", boxes=True)
     check("overlay", len(overlay["vanishing"]) == 3 and len(overlay["boxes"]) > 0, overlay)
+    outline = answer(page, "outline", type="outline", set={"point": picked["P"]})
+    parts = {line[0] for line in outline["lines"]}
+    check("outline", {"window", "volume", "eye", "projector"} <= parts and outline["plane"] > 0, parts)
+    image = answer(page, "outside", type="outside", size=[64, 40], exposure=0,
+                     set={"eye": [900, 500, 0], "lookat": [0, 0, 0], "up": [0, 1, 0]})
+    check("outside", base64.b64decode(image["data"])[:2] == b"\xff\xd8", image)
+    check("outside_refused", answer(page, "outside", type="outside", set={"eye": [0, 0, 0], "lookat": [0, 0, 0]})["type"] == "refused")
     for channel in ("Z", "N", "P", "uv", "albedo", "id.object"):
         state_after(page, type="settings", channel=channel)
         frame = page.wait_frame(lambda f: f.channel > 0)
@@ -187,15 +195,15 @@ def test_files(page, folder):
     state_after(page, type="settings", spp=3)
     edit(page, eye=[300, 200, 470], zoom=1.25)
     wait_done(page)
-    picture = dict(exposure=0.5, view="agx")
+    look = dict(exposure=0.5, view="agx")
     for suffix in ("png", "exr", "pfm", "hdr", "jpg", "tga"):
-        saved = answer(page, "saved", type="save", what="image", name=f"shown.{suffix}", **picture)
+        saved = answer(page, "saved", type="save", what="image", name=f"shown.{suffix}", **look)
         check("save_" + suffix, saved["type"] == "saved" and os.path.exists(os.path.join(folder, f"shown.{suffix}")), saved)
-    again = answer(page, "saved", type="save", what="image", name="shown.png", **picture)
+    again = answer(page, "saved", type="save", what="image", name="shown.png", **look)
     check("save_keeps_files", again.get("file") == "shown-2.png", again)
     for name in ("../up.png", "/tmp/up.png", ".hidden.png", "-o.png", "a.gif", ""):
-        check("refused_name", answer(page, "saved", type="save", what="image", name=name, **picture)["type"] == "refused", name)
-    command = answer(page, "command", type="command", **picture)
+        check("refused_name", answer(page, "saved", type="save", what="image", name=name, **look)["type"] == "refused", name)
+    command = answer(page, "command", type="command", **look)
     words = shlex.split(command["command"])
     check("command", words[:2] == ["velo", "render"] and "--camera" in words, command)
     run = subprocess.run([VELO] + words[1:], cwd=folder, capture_output=True, text=True)

@@ -17,7 +17,7 @@ from live import View  # noqa: E402
 
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
-SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the pictures of the page are written
+SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
 THINGS = 'Material "diffuse" "rgb reflectance" [%s]\nShape "sphere" "float radius" 0.8\n'
 SCENE = '''LookAt 0 1 5 0 0 0 0 1 0
 Camera "perspective" "float fov" 40
@@ -190,6 +190,32 @@ def test_panels(b, folder):
     b.wait("velo.screen.frame.channel === 0")
 
 
+def test_outside(b):
+    """The second pane: its handles move e and d."""
+    b.click_on("#outside-toggle")
+    b.wait("velo.outside.drawing && velo.outside.drawing.lines.length > 10 && velo.outside.image !== undefined", 60)
+    handle = lambda name: b.run(f"(() => {{ const o = velo.outside, r = o.canvas.getBoundingClientRect(), p = o.project(o.handles.{name});"
+                                " return [r.x + p[0], r.y + p[1]]; })()")
+    eye, d = camera(b, "eye"), camera(b, "d")
+    x, y = handle("eye")
+    b.drag(x, y, x + 25, y - 15)
+    b.wait(f"Math.hypot(velo.state.camera.eye[0] - {eye[0]}, velo.state.camera.eye[1] - {eye[1]}) > 0.05")
+    check("drag_eye_outside", True)
+    b.click_on("#undo")
+    b.wait(f"Math.abs(velo.state.camera.eye[1] - {eye[1]}) < 1e-9")
+    b.wait("velo.outside.drawing && !velo.outside.asked")
+    x, y = handle("plane")
+    towards = b.run("(() => { const o = velo.outside, c = velo.camera(), p = o.project(o.handles.plane), q = o.project(c.lookat);"
+                    " const n = Math.hypot(q[0] - p[0], q[1] - p[1]); return [(q[0] - p[0]) / n, (q[1] - p[1]) / n]; })()")
+    b.drag(x, y, x + 20 * towards[0], y + 20 * towards[1])
+    b.wait(f"velo.state.camera.d > {1.05 * d}")
+    check("drag_plane_outside", True)
+    shot(b, "outside")
+    b.click_on("#undo")
+    b.wait(f"Math.abs(velo.state.camera.d - {d}) < 1e-6")
+    b.click_on("#outside-toggle")
+
+
 def test_crop(b, x, y):
     b.click_on("#tools [data-tool=crop]")
     b.drag(x - 80, y - 60, x + 60, y + 50)
@@ -261,6 +287,7 @@ def main():
             test_pixel(b, x, y)
             test_views(b, folder)
             test_panels(b, folder)
+            test_outside(b)
             test_crop(b, x, y)
             test_file(b, folder)
             check("no_errors", not b.problems(), b.problems())

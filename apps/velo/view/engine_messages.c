@@ -171,7 +171,7 @@ static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tas
 
 /* Messages that change nothing that others see. */
 static bool is_harmless(MessageKind kind) {
-  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY;
+  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE || kind == MESSAGE_OUTSIDE;
 }
 
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
@@ -190,6 +190,8 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
       case MESSAGE_COMMAND: add_task(e, client, m, e->tasks, &e->task_count); break;
       case MESSAGE_PICK:
       case MESSAGE_FOCUS:
+      case MESSAGE_OUTLINE:
+      case MESSAGE_OUTSIDE:
       case MESSAGE_OVERLAY: add_task(e, client, m, e->questions, &e->question_count); break;
       case MESSAGE_SEEN:
       case MESSAGE_STEER: break; /* the server's own */

@@ -96,6 +96,9 @@ void engine_save(Engine *engine, const Task *task);
 void engine_command(Engine *engine, const Task *task);
 /* Posts vanishing points, horizon and, if asked for, the boxes of objects. */
 void engine_overlay(Engine *engine, const Task *task);
+/* Posts the lines that draw the camera from outside; a small image of the scene from outside. */
+void engine_outline(Engine *engine, const Task *task);
+void engine_outside(Engine *engine, const Task *task);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);

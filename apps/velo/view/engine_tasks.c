@@ -121,6 +121,8 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_SAVE: engine_save(e, task); break;
     case MESSAGE_COMMAND: engine_command(e, task); break;
     case MESSAGE_OVERLAY: engine_overlay(e, task); break;
+    case MESSAGE_OUTLINE: engine_outline(e, task); break;
+    case MESSAGE_OUTSIDE: engine_outside(e, task); break;
     case MESSAGE_SEEN: /* these need no world */
     case MESSAGE_CAMERA:
     case MESSAGE_UNDO:

@@ -26,6 +26,8 @@ typedef enum MessageKind {
   MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
   MESSAGE_COMMAND,  /* write the camera and tell the command: id, exposure, view */
   MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes: id, boxes */
+  MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
+  MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
   MESSAGE_STEER     /* the sender wants to steer, if nobody does */
 } MessageKind;
 

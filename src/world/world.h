@@ -144,8 +144,10 @@ typedef struct vlWorldMaterial {
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];
-  bool absent[2]; /* true for a part of a mix that is an interface: shapes use the other part, with an alpha (shapes.c)
-                   */
+  /* nothing: an interface, or a mix of interfaces only. presence: of a mix with an interface among its parts, the node
+   * of the share that is not interface; shapes have it as an alpha (shapes.c). -1: all of it. */
+  bool nothing;
+  int32_t presence;
   bool remap, use_reflectance;
   bool dispersive;                     /* for dielectrics: eta depends on the wavelength */
   float eta_s;                         /* for dielectrics whose eta does not depend on the wavelength */

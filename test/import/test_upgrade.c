@@ -154,6 +154,8 @@ static const struct {
      "[ 1 1 1 ] \"texture amount\" \"w-float\"\nTexture \"c\" \"spectrum\" \"checkerboard\"\nTexture \"t\" "
      "\"spectrum\" \"scale\" \"texture scale\" \"w-float\" \"texture tex\" \"c\"\n",
      0},
+    {"Texture \"t\" \"float\" \"marble\" \"integer octaves\" 3 \"float scale\" 2\n",
+     "Texture \"t\" \"float\" \"constant\"\n", 1},
     {"Texture \"t\" \"float\" \"checkerboard\" \"string aamode\" \"none\" \"float tex1\" .3\n",
      "Texture \"t\" \"float\" \"checkerboard\" \"float tex1\" .3\n", 0},
     {"LightSource \"point\" \"point from\" [ 1 2 3 ] \"color I\" [ 1 2 3 ] \"color scale\" [ 2 2 2 ]\n",

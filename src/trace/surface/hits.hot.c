@@ -66,6 +66,12 @@ static vlTextureCorner hit_corner(const vlWorld *world, const vlPaths *p, const 
   return corner;
 }
 
+/* The share of a material that is not interface. */
+static float presence_of(const vlWorld *world, uint32_t material, const vlTextureQuery *at) {
+  const vlWorldMaterial *m = &world->materials.items[material];
+  return m->nothing ? 0.0f : m->presence >= 0 ? vl_texture_float_at(world, m->presence, at) : 1.0f;
+}
+
 /* A hash of the ray chooses one of a mixed material's materials, so that the choice needs no sampler dimension. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
   uint32_t material = world->shapes.items[h->shape[i]].material;
@@ -77,6 +83,11 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
     vlTextureCorner corner = hit_corner(world, p, h, i);
     vlTextureQuery query = {at.u, at.v, at.p, at.g, &corner};
     float amount = vl_texture_float_at(world, m->amount, &query);
+    if (m->presence >= 0) { /* the ray has hit what is not interface */
+      float first = (1.0f - amount) * presence_of(world, m->mix[0], &query);
+      float second = amount * presence_of(world, m->mix[1], &query);
+      if (first + second > 0.0f) amount = second / (first + second);
+    }
     uint32_t hash = vl_hash3(vl_float_bits(d.x), vl_float_bits(d.y), vl_float_bits(d.z));
     hash = vl_hash3(hash, vl_float_bits(at.p.x), vl_float_bits(at.p.y));
     hash = vl_hash3(hash, vl_float_bits(at.p.z), material);

@@ -227,23 +227,35 @@ vlResult vl_compile_measured_material(const vlMaterialBuild *b) {
   return measured_of(b->world, b->def, b->m, b->error);
 }
 
+/* Makes the node of the share of a mix that is not interface. */
+static vlResult make_presence(const vlMaterialBuild *b, const vlWorldMaterial *first, const vlWorldMaterial *second) {
+  const vlWorldMaterial *parts[2] = {first, second};
+  int32_t nodes[2];
+  for (int i = 0; i < 2; i++) {
+    nodes[i] = parts[i]->presence;
+    if (nodes[i] >= 0) continue;
+    vlResult r = vl_material_float(b, vl_float_input(parts[i]->nothing ? 0.0f : 1.0f), &nodes[i]);
+    if (r != VL_OK) return r;
+  }
+  return vl_world_mix_node(b->world, nodes[0], nodes[1], b->m->amount, &b->m->presence, b->error);
+}
+
 /* At each hit, a mix uses the BSDF of one of its parts. */
 vlResult vl_compile_mix_material(const vlMaterialBuild *b) {
   vlWorldMaterial *m = b->m;
-  for (int i = 0; i < 2; i++) {
-    m->mix[i] = b->def->materials[i].index;
-    const vlWorldMaterial *part = &b->world->materials.items[m->mix[i]];
-    m->absent[i] = part->kind == VL_MATERIAL_INTERFACE;
-    m->has_subsurface = m->has_subsurface || part->has_subsurface;
-    if (part->kind == VL_MATERIAL_MIX && (part->absent[0] || part->absent[1]))
-      return vl_material_fail(b, "a mix with an interface cannot be a part of another mix");
-  }
-  return vl_material_float(b, b->def->amount, &m->amount);
+  for (int i = 0; i < 2; i++) m->mix[i] = b->def->materials[i].index;
+  const vlWorldMaterial *first = &b->world->materials.items[m->mix[0]], *second = &b->world->materials.items[m->mix[1]];
+  m->has_subsurface = first->has_subsurface || second->has_subsurface;
+  m->nothing = first->nothing && second->nothing;
+  vlResult r = vl_material_float(b, b->def->amount, &m->amount);
+  bool holes = first->nothing || second->nothing || first->presence >= 0 || second->presence >= 0;
+  return r == VL_OK && holes && !m->nothing ? make_presence(b, first, second) : r;
 }
 
 /* An interface is never shaded. */
 vlResult vl_compile_interface_material(const vlMaterialBuild *b) {
   b->m->bsdf = VL_BSDF_DIFFUSE;
+  b->m->nothing = true;
   return VL_OK;
 }
 
@@ -265,7 +277,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   memset(&m, 0, sizeof m);
   m.kind = def->kind;
   m.traits = vl_kind_row(&vl_material_family, (int)def->kind)->traits;
-  m.reflectance = m.eta = m.k = m.u_roughness = m.v_roughness = m.amount = -1;
+  m.reflectance = m.eta = m.k = m.u_roughness = m.v_roughness = m.amount = m.presence = -1;
   m.displacement = m.normal_map = m.transmittance = -1;
   m.remap = def->remap_roughness;
   m.eta_s = 1.5f;

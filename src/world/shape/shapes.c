@@ -27,22 +27,23 @@ static vlResult constant_node(vlWorld *world, const vlScene *scene, float value,
   return vl_world_float_node(world, scene, vl_float_input(value), node, error);
 }
 
-/* A mix of a material with an interface is compiled as that material with holes: its share of the mix multiplies the
- * shape's alpha. */
+/* A mix with an interface among its parts is compiled as a material with holes: the share that is not interface
+ * multiplies the shape's alpha. */
 static vlResult cut_interface(vlWorld *world, const vlScene *scene, const vlShapeDef *def, vlWorldShape *s,
                               vlError *error) {
   const vlWorldMaterial *m = &world->materials.items[s->material];
-  if (m->kind != VL_MATERIAL_MIX || !(m->absent[0] || m->absent[1])) return VL_OK;
-  bool first = m->absent[0], both = first && m->absent[1];
-  s->material = m->mix[first && !both ? 1 : 0];
-  if (both) return VL_OK;
+  int32_t presence = m->presence, whole = s->alpha, none;
+  for (; m->kind == VL_MATERIAL_MIX; m = &world->materials.items[s->material]) { /* a part that is all there is */
+    const vlWorldMaterial *first = &world->materials.items[m->mix[0]], *second = &world->materials.items[m->mix[1]];
+    if (!first->nothing && !second->nothing) break;
+    s->material = m->mix[first->nothing && !second->nothing ? 1 : 0];
+  }
+  if (presence < 0) return VL_OK;
   if (def->inside.index != def->outside.index)
     return fail_shape(def, error, "a mix with an interface cannot divide two media");
-  int32_t share = m->amount, whole = s->alpha, none;
   vlResult r = constant_node(world, scene, 0.0f, &none, error);
   if (r == VL_OK && whole < 0) r = constant_node(world, scene, 1.0f, &whole, error);
-  /* `amount` is the share of the second part of the mix */
-  return r == VL_OK ? vl_world_mix_node(world, first ? none : whole, first ? whole : none, share, &s->alpha, error) : r;
+  return r == VL_OK ? vl_world_mix_node(world, none, whole, presence, &s->alpha, error) : r;
 }
 
 static void grow_bounds(float low[3], float high[3], const float p[3]) {

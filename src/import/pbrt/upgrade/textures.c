@@ -185,10 +185,12 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
                       s->name[0], name);
 }
 
-/* pbrt-v4's marble is of colours. */
+/* pbrt-v4's marble is of colours. pbrt-v3 accepts a marble of numbers, but makes no texture of it. */
 static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
-  if (!is_spectrum(s)) vl_old_lose(file, s->line, "marble of numbers has no counterpart: pbrt-v4's is of colours");
-  return true;
+  if (is_spectrum(s)) return true;
+  vl_old_lose(file, s->line, "marble of numbers has no counterpart: the constant 1 replaces it");
+  for (size_t i = 0; i < s->params.count; i++) vl_old_drop(s, &s->params.items[i]);
+  return vl_old_edit(file, s->names[2], "\"constant\"");
 }
 
 /* The share of a mix is a number in both; as a texture it is a float texture in both. */

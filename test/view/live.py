@@ -3,6 +3,11 @@ import base64, json, os, select, signal, socket, struct, subprocess, time
 from urllib.parse import urlsplit
 
 
+def heed_interrupts():
+    """Background jobs of a shell ignore SIGINT, and their children inherit it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Refused(Exception):
     pass
 
@@ -12,7 +17,8 @@ class View:
 
     def __init__(self, program, scene, *options, cwd=None, env=None):
         self.process = subprocess.Popen([program, "view", scene, "--no-open", *options], stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True, cwd=cwd, env=env)
+                                        stderr=subprocess.PIPE, text=True, cwd=cwd, env=env,
+                                        preexec_fn=heed_interrupts)
         ready, _, _ = select.select([self.process.stdout], [], [], 60)
         self.address = self.process.stdout.readline().strip() if ready else ""
         if not self.address:

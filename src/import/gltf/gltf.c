@@ -40,9 +40,10 @@ vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, 
   vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path, .copy = SIZE_MAX};
   set_defaults(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
-  if (ok) vl_gltf_check_names(&g), vl_gltf_count_unread(&g);
-  ok = ok && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) && vl_gltf_read_nodes(&g) &&
-       vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) && vl_gltf_list_choices(&g);
+  if (ok) vl_gltf_check_names(&g);
+  ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) &&
+       vl_gltf_read_nodes(&g) && vl_gltf_make_labels(&g) && vl_gltf_pose(&g) && vl_gltf_draw(&g) &&
+       vl_gltf_list_choices(&g);
   ok = ok && vl_gltf_frame_animation(&g);
   vl_repairs_report(g.context, &g.repairs, path);
   if (ok && g.shapes_made == 0) vl_gltf_warn(&g, VL_LOG_WARNING, NULL, "draws nothing");

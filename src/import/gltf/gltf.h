@@ -245,7 +245,7 @@ vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const doubl
 void vl_gltf_validate(vlGltf *g);
 
 /* unread.c: counts in the scene what the file has and velo does not read (vlScene.unread). */
-void vl_gltf_count_unread(vlGltf *g);
+bool vl_gltf_count_unread(vlGltf *g);
 
 /* choices.c: lists the file's scenes, cameras, animations and variants. Call after vl_gltf_draw. */
 bool vl_gltf_list_choices(vlGltf *g);

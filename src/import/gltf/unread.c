@@ -8,18 +8,21 @@
 
 enum { MOST_KINDS = 40 };
 
-static void add(vlGltf *g, const char *format, const char *name) {
+/* False: out of memory. */
+static bool add(vlGltf *g, const char *format, const char *name) {
   char text[200];
   snprintf(text, sizeof text, format, name);
   for (size_t i = 0; i < g->scene->unread.count; i++)
     if (strcmp(g->scene->unread.items[i].what, text) == 0) {
       g->scene->unread.items[i].count++;
-      return;
+      return true;
     }
-  if (g->scene->unread.count == MOST_KINDS) return;
+  if (g->scene->unread.count == MOST_KINDS) return true;
   const char *what = text;
   vlSceneUnread *slot = vl_scene_copy_string(g->scene, &what) ? VL_PUSH(g->context, &g->scene->unread) : NULL;
-  if (slot) *slot = (vlSceneUnread){what, 1};
+  if (!slot) return vl_gltf_fail_memory(g);
+  *slot = (vlSceneUnread){what, 1};
+  return true;
 }
 
 /* Extras that hold velo's camera alone are read. */
@@ -27,7 +30,7 @@ static bool is_own(const json_t *extras) {
   return json_object_size(extras) == 1 && json_object_get(extras, "velo");
 }
 
-static void count_attributes(vlGltf *g, const json_t *attributes) {
+static bool count_attributes(vlGltf *g, const json_t *attributes) {
   static const char *const read[] = {"POSITION",   "NORMAL",     "TANGENT", "TEXCOORD_0", "TEXCOORD_1",
                                      "TEXCOORD_2", "TEXCOORD_3", "COLOR_0", "JOINTS_",    "WEIGHTS_"};
   const char *name;
@@ -36,34 +39,35 @@ static void count_attributes(vlGltf *g, const json_t *attributes) {
     bool known = false;
     for (size_t i = 0; i < sizeof read / sizeof *read; i++)
       known = known || strncmp(name, read[i], strlen(read[i])) == 0;
-    if (!known) add(g, "vertex attribute %s: left out", vl_short_text(name).text);
+    if (!known && !add(g, "vertex attribute %s: left out", vl_short_text(name).text)) return false;
   }
+  return true;
 }
 
 /* jansson limits the depth of the recursion. */
-static void walk(vlGltf *g, const char *key, json_t *value) {
+static bool walk(vlGltf *g, const char *key, json_t *value) {
   const bool extensions = strcmp(key, "extensions") == 0;
   const char *name;
   json_t *part, *item;
   size_t i;
-  if (strcmp(key, "attributes") == 0) count_attributes(g, value);
+  if (strcmp(key, "attributes") == 0 && !count_attributes(g, value)) return false;
   json_object_foreach(value, name, part) {
     if (strcmp(name, "extras") == 0) {
-      if (!is_own(part)) add(g, "%s of applications: left out", name);
+      if (!is_own(part) && !add(g, "%s of applications: left out", name)) return false;
       continue;
     }
-    if (strcmp(name, "occlusionTexture") == 0) add(g, "%s: left out, velo computes occlusion", name);
+    if (strcmp(name, "occlusionTexture") == 0 && !add(g, "%s: left out, velo computes occlusion", name)) return false;
     if (extensions && !vl_gltf_reads_extension(name)) {
-      add(g, "extension %s: left out, velo does not read it", vl_gltf_extension_text(name).text);
+      if (!add(g, "extension %s: left out, velo does not read it", vl_gltf_extension_text(name).text)) return false;
       continue;
     }
-    if (json_is_object(part)) walk(g, name, part);
-    json_array_foreach(part, i, item) if (json_is_object(item)) walk(g, name, item);
+    if (json_is_object(part) && !walk(g, name, part)) return false;
+    json_array_foreach(part, i, item) if (json_is_object(item) && !walk(g, name, item)) return false;
   }
+  return true;
 }
 
-void vl_gltf_count_unread(vlGltf *g) {
+bool vl_gltf_count_unread(vlGltf *g) {
   g->scene->copyright = json_string_value(json_object_get(json_object_get(g->root, "asset"), "copyright"));
-  vl_scene_copy_string(g->scene, &g->scene->copyright);
-  walk(g, "", g->root);
+  return (vl_scene_copy_string(g->scene, &g->scene->copyright) || vl_gltf_fail_memory(g)) && walk(g, "", g->root);
 }

@@ -9,6 +9,7 @@
 #include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
+#include "math/elementary.h"
 
 /* Steps of a curve: an edge of the image, a circle. */
 enum { STEPS = 48, EDGES = 8 };
@@ -123,8 +124,8 @@ static void curve(Pen *p, vlDrawingPart part, double x0, double y0, double x1, d
 static bool on_circle(const vlCamera *c, double share, double xy[2]) {
   if (!(c->limit < 1e6)) return false;
   double t = 2.0 * 3.14159265358979323846 * share, r = c->limit * (1.0 - 1e-6);
-  xy[0] = c->cx + c->fx * r * cos(t) + c->skew * r * sin(t);
-  xy[1] = c->cy + c->fy * r * sin(t);
+  xy[0] = c->cx + c->fx * r * vl_precise_cos(t) + c->skew * r * vl_precise_sin(t);
+  xy[1] = c->cy + c->fy * r * vl_precise_sin(t);
   return xy[0] >= 0 && xy[1] >= 0 && xy[0] <= c->width && xy[1] <= c->height;
 }
 
@@ -218,8 +219,8 @@ static void draw_eye(Pen *p) {
   label(p, VL_DRAWING_EYE, eye, "e");
   for (int i = 0; c->lens_radius > 0 && i <= STEPS; i++) {
     double t = 2 * 3.14159265358979323846 * i / STEPS;
-    go(eye, right, c->lens_radius * cos(t), next);
-    go(next, down, c->lens_radius * sin(t), next);
+    go(eye, right, c->lens_radius * vl_precise_cos(t), next);
+    go(next, down, c->lens_radius * vl_precise_sin(t), next);
     if (i) line(p, VL_DRAWING_EYE, last, next);
     memcpy(last, next, sizeof last);
   }

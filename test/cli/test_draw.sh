@@ -4,7 +4,7 @@
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
 write_scene scene.pbrt
-small="--size 240x160 --spp 1"
+small="--size 240x160 --spp 2"
 check whole "$VELO" camera draw scene.pbrt -o whole.png $small
 check same_again "$VELO" camera draw scene.pbrt -o again.png $small
 same same_bytes whole.png again.png

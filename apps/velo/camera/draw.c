@@ -92,7 +92,7 @@ static int read_options(State *s, const Arguments *arguments) {
   if (!v[DRAW_OUT].given) return report_usage("-o FILE is needed");
   if (!output_suffix(v[DRAW_OUT].text, &eight_bit) || !eight_bit)
     return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[DRAW_OUT].text);
-  s->view = (OutsideDef){.azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 64};
+  s->view = (OutsideDef){.azimuth = 130, .elevation = 20, .zoom = 1, .width = 960, .height = 640, .spp = 32};
   s->view.exposure = VL_UNSET;
   s->view.scene = !v[DRAW_EMPTY].given;
   s->view.own_image = s->view.scene && !v[DRAW_BLANK].given && !v[RENDER_TRAJECTORY].given;
@@ -282,7 +282,8 @@ static const Option draw_options[] = {
     {DRAW_EMPTY, 0, "no-scene", OPTION_FLAG, NULL, "draw on a white sheet, without the scene", 0, 0, NULL},
     {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL, "leave view plane and film empty, without the camera's image", 0, 0,
      NULL},
-    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the scene; default 64", 1, 1 << 24, NULL},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the scene, which is then denoised; default 32", 2,
+     1 << 24, NULL},
     {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the scene in stops; default: metered", 0, 0, NULL},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",

@@ -15,7 +15,7 @@ typedef struct Style {
 static const Style styles[] = {
     [VL_DRAWING_EYE] = {{20, 20, 20}, 1.0, 1, 0, 4.5, false},
     [VL_DRAWING_WINDOW] = {{20, 70, 170}, 1.5, 1, 0.16, 0, false},
-    [VL_DRAWING_GRID] = {{20, 70, 170}, 0.5, 0.55, 0, 0, false},
+    [VL_DRAWING_GRID] = {{20, 70, 170}, 0.5, 0.38, 0, 0, false},
     [VL_DRAWING_VOLUME] = {{70, 70, 70}, 0.9, 0.9, 0, 0, false},
     [VL_DRAWING_NEAR] = {{10, 120, 60}, 1.2, 1, 0.14, 0, false},
     [VL_DRAWING_FAR] = {{90, 90, 90}, 0.9, 0.9, 0.06, 0, false},
@@ -183,7 +183,7 @@ static double middle_of(const Canvas *c, const vlDrawing *d, const vlDrawingLabe
 
 /* A label stands beside its point, away from the eye of its camera. */
 static void draw_label(const Canvas *c, const vlDrawing *d, const vlDrawingLabel *l, double width) {
-  double p[2], size = 8.5 * c->pen, away[2] = {0, -1}, eye[2];
+  double p[2], size = 10.5 * c->pen, away[2] = {0, -1}, eye[2];
   if (!vl_camera_project(&c->outside->camera, l->at, p, NULL)) return;
   for (uint32_t i = 0; i < d->line_count; i++) { /* the eye's dot */
     const vlDrawingLine *e = &d->lines[i];
@@ -207,7 +207,7 @@ static void draw_labels(const Canvas *c, const vlDrawing *d, vlDrawingPart part)
   static const uint8_t white[3] = {255, 255, 255};
   for (int halo = 1; halo >= 0; halo--) {
     for (uint32_t i = 0; i < d->label_count; i++)
-      if (d->labels[i].part == part) draw_label(c, d, &d->labels[i], (halo ? 4.2 : 1.5) * c->pen);
+      if (d->labels[i].part == part) draw_label(c, d, &d->labels[i], (halo ? 4.4 : 1.5) * c->pen);
     overlay_paint(c->overlay, halo ? white : styles[part].color, halo ? 0.8 : 1);
   }
 }

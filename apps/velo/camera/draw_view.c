@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/draw.h"
+#include "render/denoised.h"
 #include "render/exposure.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
@@ -184,18 +185,36 @@ static void put_on_paper(vlImage *image, double ev, double pale) {
   }
 }
 
+/* The film's image without noise. */
+static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCamera *camera, const vlFilm *film,
+                            const vlRenderDef *render, vlImage **image, vlError *error) {
+  vlDevelopDef develop = vl_default_develop_def();
+  vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
+  channels.channels = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
+  channels.film = film, channels.render = render;
+  vlImage *color = NULL, *floats = NULL, *joined = NULL;
+  vlResult result = vl_film_develop(film, &develop, &color);
+  if (result == VL_OK) result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
+  if (result == VL_OK) result = denoised_join(context, color, floats, &joined);
+  if (result == VL_OK) result = vl_denoise(joined, NULL, image, NULL, error);
+  vl_image_destroy(color);
+  vl_image_destroy(floats);
+  vl_image_destroy(joined);
+  return result;
+}
+
 /* Renders what a camera sees; alpha 0 where it sees no surface. */
 static vlResult render_view(vlContext *context, const vlWorld *world, const vlSceneDefs *defs, const OutsideDef *def,
                             const vlCamera *camera, vlImage **image, vlError *error) {
   vlFilm *film = NULL;
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
-  vlDevelopDef develop = vl_default_develop_def();
+  film_def.errors = true;
   render.spp = def->spp, render.transparent = true;
   render.max_depth = defs->render.max_depth;
   vlResult result = vl_film_create(context, &film_def, &film);
   if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);
-  if (result == VL_OK) result = vl_film_develop(film, &develop, image);
+  if (result == VL_OK) result = clean_image(context, world, camera, film, &render, image, error);
   vl_film_destroy(film);
   return result;
 }

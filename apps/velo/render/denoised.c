@@ -62,8 +62,7 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
   return per_pixel * (double)pixels / threads + ray * sample * features + writing;
 }
 
-/* Makes one image with the channels of both images. */
-static vlResult join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
+vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined) {
   const vlImage *parts[2] = {color, floats};
   const char *names[MAX_CHANNELS];
   uint32_t count = 0;
@@ -105,7 +104,7 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   vlImage *color = NULL, *floats = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
   if (result == VL_OK) result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);
-  if (result == VL_OK) result = join(context, color, floats, joined);
+  if (result == VL_OK) result = denoised_join(context, color, floats, joined);
   if (result == VL_OK) result = attributes_set(*joined, job, vl_film_spp(film));
   vl_image_destroy(color);
   vl_image_destroy(floats);

@@ -26,4 +26,7 @@ double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double wri
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
                    OutputStage stage);
 
+/* Makes one image with the channels of both float images, which have the same size. */
+vlResult denoised_join(vlContext *context, const vlImage *color, const vlImage *floats, vlImage **joined);
+
 #endif

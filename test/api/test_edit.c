@@ -303,8 +303,8 @@ static void an_image_file_changes(void **state) {
   static float a[8 * PIXELS], b[8 * PIXELS];
   vlContext *context = make_context();
   Things t = make_scene(context);
-  char path[64];
-  snprintf(path, sizeof path, "edit_%ld.exr", (long)getpid());
+  char path[512];
+  snprintf(path, sizeof path, "%s/velo_edit_%ld.exr", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid());
   vlImage *image = pattern(context, 5);
   assert_int_equal(vl_image_write(image, path, NULL, NULL), VL_OK);
   vl_image_destroy(image);

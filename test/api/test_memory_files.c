@@ -54,8 +54,9 @@ static void images_in_memory(void **state) {
   vlError error;
   for (int i = 0; i < 6; i++) {
     vlImage *image = gradient(context, i == 0 || i == 5 ? VL_PIXEL_U8 : VL_PIXEL_F32), *a = NULL, *b = NULL;
-    char path[64];
-    snprintf(path, sizeof path, "memory_files_%ld%s", (long)getpid(), suffixes[i]);
+    char path[512];
+    snprintf(path, sizeof path, "%s/velo_memory_%ld%s", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp", (long)getpid(),
+             suffixes[i]);
     assert_int_equal(vl_image_write(image, path, NULL, &error), VL_OK);
     void *data = NULL;
     size_t size = 0, file_size;

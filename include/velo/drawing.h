@@ -33,30 +33,30 @@ typedef enum vlDrawingPart {
 
 /** A line. Equal ends: a dot. World space. */
 typedef struct vlDrawingLine {
-  vlDrawingPart part;
-  uint32_t camera; /**< index of the camera */
-  double from[3], to[3];
+  vlDrawingPart part;    /**< what it belongs to */
+  uint32_t camera;       /**< index of the camera */
+  double from[3], to[3]; /**< its two ends */
 } vlDrawingLine;
 /** A flat quadrilateral, meant to be drawn translucent. World space. */
 typedef struct vlDrawingFace {
-  vlDrawingPart part;
+  vlDrawingPart part;   /**< what it belongs to */
   uint32_t camera;      /**< index of the camera */
   double corners[4][3]; /**< in the order of its border */
 } vlDrawingFace;
 /** A short text beside a point. World space. */
 typedef struct vlDrawingLabel {
-  vlDrawingPart part;
-  uint32_t camera; /**< index of the camera */
-  double at[3];    /**< the labelled point */
-  char text[16];   /**< "e", "u", "v", "w", "d", "P", "P'", ... */
+  vlDrawingPart part; /**< what it belongs to */
+  uint32_t camera;    /**< index of the camera */
+  double at[3];       /**< the labelled point */
+  char text[16];      /**< "e", "u", "v", "w", "d", "P", "P'", ... */
 } vlDrawingLabel;
 /** A drawing. */
 typedef struct vlDrawing {
   uint32_t line_count, face_count, label_count; /**< counts */
-  const vlDrawingLine *lines;
-  const vlDrawingFace *faces;
-  const vlDrawingLabel *labels;
-  double low[3], high[3]; /**< corners of its bounding box, world space */
+  const vlDrawingLine *lines;                   /**< line_count lines */
+  const vlDrawingFace *faces;                   /**< face_count faces */
+  const vlDrawingLabel *labels;                 /**< label_count labels */
+  double low[3], high[3];                       /**< corners of its bounding box, world space */
 } vlDrawing;
 
 /** What is drawn. */
@@ -72,7 +72,7 @@ typedef struct vlDrawingDef {
   double reach;
   uint32_t grid; /**< largest number of grid lines in each direction; the lines are borders of pixels; default 16 */
   const double *points; /**< points whose projectors are drawn: 3 numbers each, world space; null: none */
-  uint32_t point_count;
+  uint32_t point_count; /**< number of points */
 } vlDrawingDef;
 /** The default def. */
 VL_API vlDrawingDef vl_default_drawing_def(void);

@@ -139,7 +139,21 @@ static bool set_skew(Edit *e, const MessageField *f) {
 
 /* ---- projection and distortion ----------------------------------------------------------------------------------- */
 
-/* Parameters with which a projection starts. */
+/* Parameters with which a projection starts, where its own defaults do not do: a field of view over the image's smaller
+ * side (0: none), and the numbers of its shape. */
+static const struct {
+  vlProjection projection;
+  double fov_degrees, shape[2];
+} starts[] = {{VL_PROJECTION_EQUIDISTANT, 180, {VL_UNSET, VL_UNSET}},
+              {VL_PROJECTION_EQUISOLID, 180, {VL_UNSET, VL_UNSET}},
+              {VL_PROJECTION_STEREOGRAPHIC, 180, {VL_UNSET, VL_UNSET}},
+              {VL_PROJECTION_SINE, 180, {VL_UNSET, VL_UNSET}},
+              {VL_PROJECTION_FOV, 0, {0.9, VL_UNSET}},
+              {VL_PROJECTION_DIVISION, 0, {-0.2, VL_UNSET}},
+              {VL_PROJECTION_UNIFIED, 0, {0.8, VL_UNSET}},
+              {VL_PROJECTION_EUCM, 0, {0.6, 1.1}},
+              {VL_PROJECTION_DOUBLE_SPHERE, 0, {-0.2, 0.6}}};
+
 static void start_projection(const ViewCamera *now, vlCameraDef *def) {
   double field = 2.0 * atan(0.5 * now->made.height / now->made.fy), distance = 1.0;
   const CameraPose pose = camera_pose(now);
@@ -150,27 +164,15 @@ static void start_projection(const ViewCamera *now, vlCameraDef *def) {
   def->cx = def->cy = def->skew = def->shape[0] = def->shape[1] = def->max_angle = VL_UNSET;
   def->distortion = VL_DISTORTION_NONE;
   def->distortion_count = 0;
-  switch (def->projection) {
-    case VL_PROJECTION_PERSPECTIVE: def->fov = field < 120 * degree ? field : 60 * degree; break;
-    case VL_PROJECTION_ORTHOGRAPHIC: def->fx = now->made.fx / (distance > 0 ? distance : 1); break;
-    case VL_PROJECTION_SINE:
-    case VL_PROJECTION_EQUIDISTANT:
-    case VL_PROJECTION_EQUISOLID:
-    case VL_PROJECTION_STEREOGRAPHIC: def->fov = 180 * degree, def->fov_axis = VL_FOV_SMALLER; break;
-    case VL_PROJECTION_FOV: def->shape[0] = 0.9; break;
-    case VL_PROJECTION_DIVISION: def->shape[0] = -0.2; break;
-    case VL_PROJECTION_UNIFIED: def->shape[0] = 0.8; break;
-    case VL_PROJECTION_EUCM: def->shape[0] = 0.6, def->shape[1] = 1.1; break;
-    case VL_PROJECTION_DOUBLE_SPHERE: def->shape[0] = -0.2, def->shape[1] = 0.6; break;
-    case VL_PROJECTION_EQUIRECTANGULAR:
-    case VL_PROJECTION_EQUAL_AREA:
-    case VL_PROJECTION_CYLINDRICAL:
-    case VL_PROJECTION_CUBE:
-    case VL_PROJECTION_PANINI:
-    case VL_PROJECTION_OPTICS: break;
+  if (def->projection == VL_PROJECTION_PERSPECTIVE) def->fov = field < 120 * degree ? field : 60 * degree;
+  if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) def->fx = now->made.fx / (distance > 0 ? distance : 1);
+  for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
+    if (starts[i].projection != def->projection) continue;
+    if (starts[i].fov_degrees > 0) def->fov = starts[i].fov_degrees * degree, def->fov_axis = VL_FOV_SMALLER;
+    for (int j = 0; j < 2; j++) def->shape[j] = starts[i].shape[j];
+    if (!isnan(def->shape[0]))
+      def->fx = def->fy = 0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
   }
-  if (!isnan(def->shape[0]) && def->projection != VL_PROJECTION_PANINI)
-    def->fx = def->fy = 0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
 }
 
 static bool set_projection(Edit *e, const MessageField *f) {

@@ -88,7 +88,7 @@ static bool all_exist(const Arguments *arguments) {
 
 /* The command line of one frame: the animation's options become --at or --turn. */
 static int render_frame(const Command *command, const Arguments *arguments, const Animation *a, uint32_t frame,
-                        AnimateRender *render, float *exposure) {
+                        AnimateRender *render, AnimateShared *shared) {
   char(*paths)[PATH_SIZE] = malloc(MAX_TEXTS * sizeof *paths), moment[40];
   Arguments one = *arguments;
   const PatternValues values = {.number = frame};
@@ -107,24 +107,28 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   const bool skip = one.values[RENDER_SKIP_EXISTING].given;
   one.values[RENDER_SKIP_EXISTING].given = false;
   if (status < 0 && skip && all_exist(&one)) status = STATUS_OK;
-  if (status < 0) status = render(command, &one, exposure);
+  if (status < 0) status = render(command, &one, shared);
   free(paths);
   return status;
 }
 
 int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render) {
   Animation a = {0};
-  float exposure = NAN;
+  AnimateShared shared = {.exposure = NAN};
   int status = check(arguments);
   if (status < 0) status = read_animation(arguments, &a);
   if (status < 0) status = choose_frames(arguments, &a);
   if (status >= 0) return status;
+  shared.still = a.turns;
   for (uint64_t i = a.first; i <= a.last; i += a.step) {
-    status = render_frame(command, arguments, &a, (uint32_t)i, render, &exposure);
+    status = render_frame(command, arguments, &a, (uint32_t)i, render, &shared);
     if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given) break;
   }
   if (status == STATUS_OK && arguments->values[RENDER_DRY_RUN].given)
     report_note("%u frames", (a.last - a.first) / a.step + 1);
+  vl_world_destroy(shared.world);
+  vl_scene_destroy(shared.scene);
+  vl_context_destroy(shared.context);
   return status;
 }
 
@@ -175,11 +179,10 @@ static void stand_back(vlCameraDef *camera, const double low[3], const double hi
   }
 }
 
-void turn_camera(vlScene *scene, bool automatic, const double up[3], double degrees) {
-  vlCameraDef *camera = &vl_scene_defs(scene)->camera;
+void turn_camera(vlCameraDef *camera, const double low[3], const double high[3], bool automatic, const double up[3],
+                 double degrees) {
   const double length = sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
-  double low[3], high[3], middle[3], axis[3];
-  vl_scene_bounds(scene, low, high);
+  double middle[3], axis[3];
   for (int i = 0; i < 3; i++) {
     axis[i] = length > 0 ? up[i] / length : i == 1;
     middle[i] = low[0] <= high[0] ? 0.5 * (low[i] + high[i]) : 0;

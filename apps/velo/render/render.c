@@ -240,6 +240,7 @@ static int build_world(Render *render, const char *path) {
 
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
+  const bool kept = render->shared && render->shared->scene;
   start_receipt(render, arguments);
   int status = open_scene(render, path, arguments);
   if (status >= 0) return status;
@@ -284,7 +285,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   status = build_world(render, path);
   if (status >= 0) return status;
   vl_context_record_files(render->context, false);
-  if (arguments->values[RENDER_VERBOSE].given) {
+  if (arguments->values[RENDER_VERBOSE].given && !kept) {
     char bytes[32];
     format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
     report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, x86-64-v%d", loaded - start,

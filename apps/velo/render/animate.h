@@ -25,9 +25,4 @@ bool animate_wanted(const Arguments *arguments);
 /* Renders the frames one after the other. Returns the exit code; the first failure ends it. */
 int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render);
 
-/* --turn: turns a camera about the axis `up` through the middle of the scene's bounds. automatic: the camera was made
- * for the scene; then it keeps a distance at which every angle shows all of the scene. */
-void turn_camera(vlCameraDef *camera, const double low[3], const double high[3], bool automatic, const double up[3],
-                 double degrees);
-
 #endif

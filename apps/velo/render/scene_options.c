@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 
 #include "cli/report.h"
-#include "render/animate.h"
 #include "render/job.h"
+#include "render/turn.h"
 
 static bool ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);

@@ -15,12 +15,14 @@ enum {
   RAYS = OUTSIDE + POINTS * AROUND,
   MOST_FACES = 8000000, /* larger models are taken as open */
   MOST_PLACED = 20000,  /* instances of shapes that are looked at */
-  CONVEX = 400          /* faces and vertices that are compared */
+  CONVEX = 400,         /* faces and vertices that are compared */
+  BLOCK = 32            /* faces in a row that have a box */
 };
 
 /* A mesh at a place in the world. */
 typedef struct Placed {
   const vlShapeDef *def;
+  const vlExtent *blocks; /* the shape's */
   size_t shape;
   vlMat4 to_shape;
   bool flip, fixed; /* fixed: not an instance */
@@ -36,6 +38,7 @@ typedef struct Seen {
 typedef struct Survey {
   Placed *placed;
   size_t count;
+  vlExtent **blocks; /* of each shape: the box of each BLOCK of its faces; null where they are not made */
   double o[RAYS][3], d[RAYS][3];
   Seen seen[RAYS];
 } Survey;
@@ -58,10 +61,10 @@ static void face_normal(const double p[3][3], double n[3]) {
 
 /* ---- rays -------------------------------------------------------------------------------------------------------- */
 
-static bool meets_box(const Placed *p, const double o[3], const double d[3], double t_max) {
+static bool meets_box(const double low[3], const double high[3], const double o[3], const double d[3], double t_max) {
   double t0 = 0, t1 = t_max;
   for (int i = 0; i < 3; i++) {
-    double inverse = 1 / d[i], a = (p->low[i] - o[i]) * inverse, b = (p->high[i] - o[i]) * inverse;
+    double inverse = 1 / d[i], a = (low[i] - o[i]) * inverse, b = (high[i] - o[i]) * inverse;
     if (a > b) {
       double c = a;
       a = b, b = c;
@@ -72,11 +75,9 @@ static bool meets_box(const Placed *p, const double o[3], const double d[3], dou
 }
 
 /* Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. */
-static void meet_faces(const Placed *p, const double world_o[3], const double world_d[3], Seen *seen) {
-  double o[3], d[3];
-  vl_mat4_point(&p->to_shape, world_o, o);
-  vl_mat4_vector(&p->to_shape, world_d, d);
-  for (size_t face = 0; face < p->def->faces; face++) {
+static void meet_block(const Placed *p, size_t first, const double o[3], const double d[3], Seen *seen) {
+  size_t last = first + BLOCK < p->def->faces ? first + BLOCK : p->def->faces;
+  for (size_t face = first; face < last; face++) {
     double c[3][3], n[3], q[3], r[3];
     for (int k = 0; k < 3; k++) corner(p->def, face, k, c[k]);
     face_normal((const double(*)[3])c, n);
@@ -93,13 +94,25 @@ static void meet_faces(const Placed *p, const double world_o[3], const double wo
   }
 }
 
+static void meet_faces(const Placed *p, const double world_o[3], const double world_d[3], Seen *seen) {
+  double o[3], d[3];
+  vl_mat4_point(&p->to_shape, world_o, o);
+  vl_mat4_vector(&p->to_shape, world_d, d);
+  for (size_t first = 0; first < p->def->faces; first += BLOCK) {
+    const vlExtent *block = &p->blocks[first / BLOCK];
+    if (meets_box(block->low, block->high, o, d, seen->t)) meet_block(p, first, o, d, seen);
+  }
+}
+
 static void cast(void *user, uint32_t ray, uint32_t worker) {
   (void)worker;
   Survey *s = user;
   Seen *seen = &s->seen[ray];
   *seen = (Seen){.t = INFINITY};
-  for (size_t i = 0; i < s->count; i++)
-    if (meets_box(&s->placed[i], s->o[ray], s->d[ray], seen->t)) meet_faces(&s->placed[i], s->o[ray], s->d[ray], seen);
+  for (size_t i = 0; i < s->count; i++) {
+    const Placed *p = &s->placed[i];
+    if (meets_box(p->low, p->high, s->o[ray], s->d[ray], seen->t)) meet_faces(p, s->o[ray], s->d[ray], seen);
+  }
 }
 
 static double radical_inverse(uint32_t i, uint32_t base) {
@@ -129,11 +142,34 @@ static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
 
 /* ---- the meshes -------------------------------------------------------------------------------------------------- */
 
-static bool place(Survey *s, const vlShapeDef *d, size_t shape, const vlMat4 *world_from_group, bool fixed) {
+/* Makes the boxes of a shape's blocks, a little larger than their faces. False: memory is exhausted. */
+static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape) {
+  if (s->blocks[shape]) return true;
+  vlExtent *blocks = s->blocks[shape] = vl_alloc_array(context, d->faces / BLOCK + 1, sizeof *blocks);
+  if (!blocks) return false;
+  for (size_t first = 0; first < d->faces; first += BLOCK) {
+    vlExtent *b = &blocks[first / BLOCK];
+    *b = vl_extent_nothing;
+    for (size_t face = first; face < d->faces && face < first + BLOCK; face++)
+      for (int k = 0; k < 3; k++) {
+        double c[3];
+        corner(d, face, k, c);
+        vl_extent_grow(b, c);
+      }
+    double margin = 0;
+    for (int i = 0; i < 3; i++) margin += 1e-6 * (b->high[i] - b->low[i]);
+    for (int i = 0; i < 3; i++) b->low[i] -= margin, b->high[i] += margin;
+  }
+  return true;
+}
+
+static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t shape, const vlMat4 *world_from_group,
+                  bool fixed) {
+  if (!make_blocks(context, s, d, shape)) return false;
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   Placed *p = &s->placed[s->count];
   if (!vl_mat4_inverse(m, &p->to_shape)) return true;
-  p->def = d, p->shape = shape, p->fixed = fixed;
+  p->def = d, p->blocks = s->blocks[shape], p->shape = shape, p->fixed = fixed;
   p->flip = d->reverse_orientation != (vl_mat4_determinant3(m) < 0);
   vlExtent box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
@@ -151,18 +187,22 @@ static bool place_all(const vlScene *scene, Survey *s) {
   for (size_t i = 0; i < scene->shapes.count; i++) faces += scene->shapes.items[i].faces;
   if (faces > MOST_FACES || count == 0) return false;
   s->placed = vl_alloc_array(scene->context, MOST_PLACED, sizeof *s->placed);
-  if (!s->placed) return false;
+  s->blocks = vl_alloc_zero(scene->context, scene->shapes.count, sizeof *s->blocks);
+  if (!s->placed || !s->blocks) return false;
   vlMat4 identity = vl_mat4_identity();
   for (size_t i = 0; i < scene->shapes.count; i++) {
     const vlShapeDef *d = &scene->shapes.items[i];
-    if (d->kind == VL_SHAPE_TRIANGLES && !d->group.index && d->faces && !place(s, d, i, &identity, true)) return false;
+    if (d->kind == VL_SHAPE_TRIANGLES && !d->group.index && d->faces &&
+        !place(scene->context, s, d, i, &identity, true))
+      return false;
   }
   for (size_t k = 0; k < scene->instances.count; k++) {
     vlMat4 m = vl_mat4_load(scene->instances.items[k].world_from_group);
     for (size_t i = 0; i < scene->shapes.count; i++) {
       const vlShapeDef *d = &scene->shapes.items[i];
       bool member = d->group.index && d->group.index == scene->instances.items[k].group.index;
-      if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces && !place(s, d, i, &m, false)) return false;
+      if (member && d->kind == VL_SHAPE_TRIANGLES && d->faces && !place(scene->context, s, d, i, &m, false))
+        return false;
     }
   }
   return s->count > 0;
@@ -298,6 +338,8 @@ bool vl_closed_find(vlScene *scene, const vlExtent *box, const vlExtent *boxes, 
     found = found || find_outward(scene, s, closed, covered);
     if (found) memcpy(closed->middle, s->o[OUTSIDE + best * AROUND], sizeof closed->middle);
   }
+  for (size_t i = 0; s && s->blocks && i < scene->shapes.count; i++) vl_free(scene->context, s->blocks[i]);
+  if (s) vl_free(scene->context, s->blocks);
   if (s) vl_free(scene->context, s->placed);
   vl_free(scene->context, s);
   if (!ok) vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");

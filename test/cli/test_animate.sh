@@ -36,6 +36,8 @@ check some_are_those_too cmp f03.exr g03.exr
 check some_number test "$(ls g*.exr | wc -l)" = 2
 expect_code 2 too_many "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 2-4 $options -o g%02d.exr
 check turns "$VELO" render walk.gltf --turntable 4 $options -o t%d.exr
+check turns_verbose "$VELO" render walk.gltf --turntable 4 $options -o v%d.exr --verbose
+check turns_built_once test "$(printf '%s' "$err" | grep -c 'loaded in')" = 1
 check turns_all test "$(ls t?.exr | wc -l)" = 4
 check turn "$VELO" render walk.gltf --turn 90 $options -o turn.exr --quiet
 check turn_same cmp turn.exr t1.exr

@@ -3,18 +3,26 @@
 #ifndef APP_RENDER_ANIMATE_H
 #define APP_RENDER_ANIMATE_H
 
-#include "cli/options.h"
-#include "velo/velo.h"
+#include "render/scene_options.h"
 
-/* Renders one image. exposure: that of all frames, in stops; NaN until the first frame has been metered. */
-typedef int AnimateRender(const Command *command, const Arguments *arguments, float *exposure);
+/* What the frames have in common. They are built in one context, each with the world of the frame before it, so that
+ * what has not changed is neither read nor built again (vlBuildDef.previous). With --turntable only the camera changes:
+ * scene and world are those of the first frame. */
+typedef struct AnimateShared {
+  float exposure; /* of all frames, in stops; NaN until the first one has been metered */
+  bool still;     /* --turntable */
+  vlContext *context;
+  vlScene *scene; /* with --turntable; null before the first frame */
+  vlWorld *world; /* of the last frame; null before the first one */
+  SceneOpening opening;
+  vlSceneDefs defs; /* of the scene as it was opened */
+} AnimateShared;
+
+/* Renders one image. */
+typedef int AnimateRender(const Command *command, const Arguments *arguments, AnimateShared *shared);
 
 bool animate_wanted(const Arguments *arguments);
 /* Renders the frames one after the other. Returns the exit code; the first failure ends it. */
 int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render);
-
-/* --turn: turns the scene's camera about the axis `up` through the middle of the scene. automatic: the camera was made
- * for the scene; then it keeps a distance at which every angle shows all of the scene. */
-void turn_camera(vlScene *scene, bool automatic, const double up[3], double degrees);
 
 #endif

@@ -134,7 +134,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
-  status = context_open(&def, &render->context);
+  if (!render->context) status = context_open(&def, &render->context);
   if (status < 0) report_memory_of(render->context, def.max_memory);
   return status;
 }
@@ -199,11 +199,50 @@ static int meter_model(Render *render, const Arguments *arguments) {
   return status;
 }
 
+/* Opens the scene, or takes that of the frame before. */
+static int open_scene(Render *render, const char *path, const Arguments *arguments) {
+  AnimateShared *shared = render->shared;
+  if (shared && shared->scene) {
+    render->scene = shared->scene;
+    render->opening = shared->opening;
+    *vl_scene_defs(render->scene) = shared->defs;
+    scene_turn(&render->opening, arguments, vl_scene_defs(render->scene));
+    return -1;
+  }
+  int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
+  if (status < 0 && shared && shared->still) {
+    shared->scene = render->scene;
+    shared->opening = render->opening;
+    shared->defs = *vl_scene_defs(render->scene);
+  }
+  return status;
+}
+
+/* Builds the world, or takes that of the frame before. */
+static int build_world(Render *render, const char *path) {
+  AnimateShared *shared = render->shared;
+  vlError error = {0};
+  if (shared && shared->still && shared->world) {
+    render->world = shared->world;
+    return -1;
+  }
+  vlBuildDef *build = &render->job.defs->build;
+  build->previous = shared ? shared->world : NULL;
+  vlResult result = vl_world_build_last(render->scene, build, &render->world, &error);
+  build->previous = NULL;
+  if (result != VL_OK) return report_error(&error, result, path);
+  if (shared) {
+    vl_world_destroy(shared->world);
+    shared->world = render->world;
+  }
+  return -1;
+}
+
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
-  vlError error = {0};
+  const bool kept = render->shared && render->shared->scene;
   start_receipt(render, arguments);
-  int status = scene_open(render->context, path, arguments, &render->scene, &render->opening);
+  int status = open_scene(render, path, arguments);
   if (status >= 0) return status;
   double loaded = monotonic_seconds();
 
@@ -243,10 +282,10 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
-  vlResult result = vl_world_build_last(render->scene, &render->job.defs->build, &render->world, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
+  status = build_world(render, path);
+  if (status >= 0) return status;
   vl_context_record_files(render->context, false);
-  if (arguments->values[RENDER_VERBOSE].given) {
+  if (arguments->values[RENDER_VERBOSE].given && !kept) {
     char bytes[32];
     format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
     report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, x86-64-v%d", loaded - start,
@@ -290,12 +329,31 @@ static int check_again(const Render *render) {
   return again_check(&render->again, &render->receipt, render->context, job, &which, !render->many);
 }
 
-/* exposure: see outputs.h, `shared`; null: the image has its own. */
-static int render_once(const Command *command, const Arguments *arguments, float *exposure) {
+/* Frees what a frame does not leave to the next one. */
+static void free_render(Render *render) {
+  AnimateShared *shared = render->shared;
+  serve_stop(render->serve);
+  frames_free(&render->frames);
+  channels_free(&render->channels);
+  film_keeper_free(&render->keeper);
+  vl_film_destroy(render->film);
+  if (!shared) vl_world_destroy(render->world);
+  if (!shared || render->scene != shared->scene) vl_scene_destroy(render->scene);
+  report_memory_of(NULL, 0);
+  if (!shared) vl_context_destroy(render->context);
+  if (shared) shared->context = render->context;
+  again_close(&render->again);
+  continue_close(&render->resumed);
+}
+
+/* shared: what the frames of an animation have in common; null: this is one image. */
+static int render_once(const Command *command, const Arguments *arguments, AnimateShared *shared) {
   Render render;
   memset(&render, 0, sizeof render);
   render.start = monotonic_seconds();
-  render.outputs.shared = exposure;
+  render.shared = shared;
+  render.outputs.shared = shared ? &shared->exposure : NULL;
+  render.context = shared ? shared->context : NULL;
   set_up_reports(arguments);
   int status = again_open(&render.again, &arguments);
   if (status < 0) status = continue_open(&render.resumed, &arguments);
@@ -318,17 +376,7 @@ static int render_once(const Command *command, const Arguments *arguments, float
   if (status < 0 && render.many)
     status = frames_render(&render.frames, render.context, render.world, &render.outputs, &render.channels);
   if (status < 0) status = run_image(&render);
-  serve_stop(render.serve);
-  frames_free(&render.frames);
-  channels_free(&render.channels);
-  film_keeper_free(&render.keeper);
-  vl_film_destroy(render.film);
-  vl_world_destroy(render.world);
-  vl_scene_destroy(render.scene);
-  report_memory_of(NULL, 0);
-  vl_context_destroy(render.context);
-  again_close(&render.again);
-  continue_close(&render.resumed);
+  free_render(&render);
   return status;
 }
 

@@ -42,7 +42,8 @@ typedef struct Render {
   FilmKeeper keeper;
   FilmPlan film_plan;
   ReceiptPlan receipt;
-  Serve *serve; /* the page of --serve; null: none */
+  Serve *serve;                 /* the page of --serve; null: none */
+  struct AnimateShared *shared; /* what the frames of an animation have in common; null: this is one image */
 } Render;
 
 /* Whether an output holds ground truth. */

@@ -9,8 +9,8 @@
 #include <sys/stat.h>
 
 #include "cli/report.h"
-#include "render/animate.h"
 #include "render/job.h"
+#include "render/turn.h"
 
 static bool ends_with(const char *text, const char *suffix) {
   size_t n = strlen(text), m = strlen(suffix);
@@ -136,10 +136,20 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (result != VL_OK) return report_error(&error, result, path);
   opening->load = load;
   opening->complete = complete;
-  const OptionValue *turned = &v[RENDER_TURN];
-  if (turned->given && v[RENDER_CAMERA].given && !load.camera)
+  if (v[RENDER_TURN].given && v[RENDER_CAMERA].given && !load.camera)
     return report_usage("--turn turns the scene's own camera: it does not go with --camera FILE");
-  if (turned->given) turn_camera(*scene, camera, complete.up, turned->number);
-  if (camera) tell_camera(defs);
+  opening->camera_added = camera;
+  opening->camera = defs->camera;
+  if (v[RENDER_TURN].given) vl_scene_bounds(*scene, opening->low, opening->high);
+  scene_turn(opening, arguments, defs);
   return -1;
+}
+
+void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs) {
+  const OptionValue *turned = &arguments->values[RENDER_TURN];
+  defs->camera = opening->camera;
+  if (turned->given)
+    turn_camera(&defs->camera, opening->low, opening->high, opening->camera_added, opening->complete.up,
+                turned->number);
+  if (opening->camera_added) tell_camera(defs);
 }

@@ -13,11 +13,16 @@ typedef struct SceneOpening {
   bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
   bool model;             /* a file of a model: its exposure is metered, its default output is a .png */
+  bool camera_added;      /* the file has no camera: one was made for the scene */
+  vlCameraDef camera;     /* before it was turned */
+  double low[3], high[3]; /* the scene's bounds, if the camera turns; low > high: it is empty */
 } SceneOpening;
 
-/* Loads the scene and completes it. Returns -1, or the exit code after reporting the error. */
+/* Loads the scene, completes it and turns its camera. Returns -1, or the exit code after reporting the error. */
 int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
                SceneOpening *opening);
+/* Turns the camera as it was opened as --turn asks. *defs: the scene's. */
+void scene_turn(const SceneOpening *opening, const Arguments *arguments, vlSceneDefs *defs);
 /* Whether the file holds a model: a format other than pbrt. */
 bool scene_is_model(const char *path);
 /* Returns whether --camera names a camera of the scene. This requires that the scene is glTF and that no file has that

@@ -9,14 +9,15 @@ const looks = { eye: ["#f5a623", 3], window: ["#f5a623", 2], grid: ["#f5a62366",
   far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2] };
 
 export class Outside {
-  constructor(app) {
+  // stage: the element that it is in; button: shows and hides it; null: none.
+  constructor(app, stage = byId("stage"), button = byId("outside-toggle")) {
     this.app = app;
     this.canvas = make("canvas", { title: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Wheel: nearer, farther" });
     this.box = make("div", { id: "outside" }, this.canvas);
     this.box.hidden = true;
-    byId("stage").append(this.box);
-    this.button = byId("outside-toggle");
-    this.button.onclick = () => this.toggle();
+    stage.append(this.box);
+    this.button = button;
+    if (button) button.onclick = () => this.toggle();
     for (const [name, action] of [["pointerdown", "down"], ["pointermove", "move"], ["pointerup", "up"], ["wheel", "wheel"]])
       this.box.addEventListener(name, event => { event.stopPropagation(); this[action](event); }, { passive: false });
     this.box.addEventListener("dblclick", event => event.stopPropagation());
@@ -24,7 +25,7 @@ export class Outside {
 
   toggle() {
     this.box.hidden = !this.box.hidden;
-    this.button.setAttribute("aria-pressed", String(!this.box.hidden));
+    this.button?.setAttribute("aria-pressed", String(!this.box.hidden));
     if (!this.box.hidden) { this.pose ??= this.start(); this.outline(); this.render(); }
   }
 

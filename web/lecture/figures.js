@@ -1,16 +1,19 @@
 // web/lecture/figures.js: sliders, views and formulas of the lecture's live figures. What renders is given by the caller:
 //
-//   start(figure, scene)          a figure has come into view, or another view was chosen: gives a promise of the scene's
+//   start(figure, scene)          the figure is live from now on, or shows another view: gives a promise of the scene's
 //                                 camera { eye, lookat, up, d, zoom, s, roll, width, height, near, far, ... }
 //   show(figure, scene, camera)   the camera has changed: render it
-//   stop(figure)                  the figure is out of sight
+//   stop(figure)                  the figure is live no longer
+//
+// One figure is live at a time: the one that was clicked last, while it is in sight; else the one nearest to the middle.
 import { formula } from "./formulas.js";
 import { parseSliders, positionOf, sliderValue, valueAt, withSlider } from "./sliders.js";
 
 const STEPS = 1000;
+const CALM = 120; // milliseconds without scrolling after which a figure becomes live
 const WORDS = {
-  en: { reset: "Reset", sliders: "camera", failed: "no live image" },
-  it: { reset: "Ripristina", sliders: "camera", failed: "nessuna immagine dal vivo" },
+  en: { reset: "Reset", sliders: "camera", failed: "no live image", outside: "the camera from outside" },
+  it: { reset: "Ripristina", sliders: "camera", failed: "nessuna immagine dal vivo", outside: "la camera dall'esterno" },
 };
 
 function make(tag, properties = {}, ...children) {
@@ -44,7 +47,7 @@ function sliderRow(slider, language, change) {
   const update = (camera) => {
     const value = sliderValue(camera, slider.name);
     row.hidden = value === undefined; // such as d, where the view's projection has none
-    if (row.hidden) return;
+    if (row.hidden || input.matches(":active")) return; // it is held
     input.value = Math.round(STEPS * positionOf(slider, value));
     write(value);
   };
@@ -72,11 +75,16 @@ class Figure {
     this.panel.setAttribute("role", "group");
     this.panel.setAttribute("aria-label", words.sliders);
     this.error = make("p", { className: "error", hidden: true });
+    this.error.setAttribute("role", "status");
+    const image = element.querySelector("img"), outside = make("div", { className: "pane outside" });
+    outside.setAttribute("aria-label", words.outside);
+    this.panes = make("div", { className: "panes" }, make("div", { className: "pane image" }, image), ...(element.dataset.outside ? [outside] : []));
+    element.prepend(this.panes);
     element.append(this.panel, this.error);
   }
 
-  // Called by the first click or when the figure comes into view; chosen again, a view starts again.
-  async start(scene = this.scene) {
+  // The figure becomes live, or shows another view. keep: a scene that was there before keeps its camera.
+  async start(scene = this.scene, keep = true) {
     this.scene = scene;
     this.seen = true;
     for (const view of this.views)
@@ -84,13 +92,14 @@ class Figure {
     try {
       const camera = await this.options.start(this.element, scene);
       if (scene !== this.scene || !this.seen) return; // another view was chosen meanwhile
+      const again = keep && this.loaded === scene;
       this.first = camera;
+      this.loaded = scene;
       this.panel.hidden = false;
-      this.error.hidden = true;
-      this.set(camera, true, false);
+      this.complain("");
+      this.set(again ? this.camera : camera, true, again);
     } catch (error) {
-      this.error.textContent = `${WORDS[this.options.language].failed}: ${error.message}`;
-      this.error.hidden = false;
+      if (scene === this.scene && this.seen) this.complain(`${WORDS[this.options.language].failed}: ${error.message}`);
     }
   }
 
@@ -100,13 +109,70 @@ class Figure {
     this.options.stop?.(this.element);
   }
 
+  // A line below the figure; empty: none.
+  complain(text) {
+    this.error.textContent = text;
+    this.error.hidden = !text;
+  }
+
   set(camera, moveSliders, render = true) {
     this.camera = camera;
     if (moveSliders) for (const { update } of this.rows) update(camera);
     for (const { name, line } of this.formulas) line.textContent = formula(name, camera, this.options.language);
-    this.options.changed(camera);
+    if (camera.d !== undefined) this.options.changed(camera);
     if (render) this.options.show(this.element, this.scene, camera);
   }
+
+  // The renderer's numbers are those of `camera`.
+  follow(camera) {
+    if (this.camera) this.set(camera, true, false);
+  }
+}
+
+// Chooses the figure that is live. Returns a function that ends that.
+function chooseLive(figures) {
+  const inSight = new Set();
+  let live = null, held = null, timer = null;
+  const distance = (figure) => {
+    const box = figure.panes.getBoundingClientRect();
+    return Math.abs((box.top + box.bottom) / 2 - innerHeight / 2);
+  };
+  const choose = () => {
+    if (!inSight.has(held)) held = null;
+    const next = held ?? [...inSight].sort((a, b) => distance(a) - distance(b))[0] ?? null;
+    if (next === live && (!live || live.seen)) return;
+    live?.stop();
+    live = next;
+    live?.start();
+  };
+  const later = () => {
+    clearTimeout(timer);
+    timer = setTimeout(choose, CALM);
+  };
+  const hold = (event) => {
+    const figure = figures.find((f) => f.element.contains(event.target) || f.views.some((view) => view.contains(event.target)));
+    if (!figure) return;
+    held = figure;
+    inSight.add(figure);
+    choose();
+  };
+  const observer = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      const figure = figures.find((f) => f.element === target);
+      if (isIntersecting) inSight.add(figure);
+      else inSight.delete(figure);
+    }
+    later();
+  });
+  for (const figure of figures) observer.observe(figure.element);
+  const listeners = [["scroll", later], ["resize", later], ["pointerdown", hold], ["focusin", hold]];
+  for (const [name, action] of listeners) addEventListener(name, action, { passive: true });
+  return () => {
+    observer.disconnect();
+    clearTimeout(timer);
+    for (const [name, action] of listeners) removeEventListener(name, action);
+    live?.stop();
+  };
 }
 
 // All live figures below root. The formulas of the text show the numbers of the figure that changed last.
@@ -131,16 +197,9 @@ export function attachFigures(root, options) {
     } else if (last) {
       const figure = last;
       figure.views.push(element);
-      element.addEventListener("click", () => figure.start(`${figure.folder}${element.dataset.view}.pbrt`));
+      element.addEventListener("click", () => figure.start(`${figure.folder}${element.dataset.view}.pbrt`, false));
     }
   }
-  const observer = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) {
-      const figure = figures.get(target);
-      if (isIntersecting && !figure.seen) figure.start();
-      else if (!isIntersecting) figure.stop();
-    }
-  }, { rootMargin: "100px" });
-  for (const element of figures.keys()) observer.observe(element);
-  return { figures: [...figures.values()], close: () => observer.disconnect() };
+  const all = [...figures.values()];
+  return { figures: all, close: chooseLive(all) };
 }

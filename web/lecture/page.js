@@ -5,11 +5,33 @@ import { markdownToHtml } from "./markdown.js";
 
 const PAGES = { en: "lecture.md", it: "lezione.md" };
 
-// root is the element to fill. options: language "en" or "it"; docs, the address of the folder docs/ (with a slash);
-// start, show, stop as in figures.js; sources, a list of the files, from the root of the tree, that lie beside docs/ and
-// whose lines can be shown.
+// Links lead to the page itself, to its other language, or to a file beside docs/, whose lines are shown. What else a link
+// names (a folder, another page of docs/) is not here: its path is text.
+function settleLinks(root) {
+  for (const link of root.querySelectorAll("a")) {
+    const target = link.getAttribute("href"), file = target.match(/^\.\.\/(.*\.[a-z]+)(#.*)?$/);
+    const language = Object.keys(PAGES).find((name) => PAGES[name] === target);
+    if (target.startsWith("#")) continue;
+    if (language) {
+      Object.assign(link, { href: `?language=${language}`, hreflang: language });
+    } else if (file) {
+      link.dataset.source = target;
+      link.title = file[1];
+    } else {
+      const path = target.startsWith("../") ? target.slice(3) : `docs/${target}`;
+      const place = document.createElement("span");
+      place.className = "place";
+      place.append(...link.childNodes);
+      if (!place.textContent.includes(path.replace(/^.*\//, ""))) place.append(` (${path})`);
+      link.replaceWith(place);
+    }
+  }
+}
+
+// root is the element to fill. options: language "en" or "it"; docs, the address of the folder docs/ (with a slash), beside
+// which the files lie that the pages link to; start, show, stop as in figures.js.
 export async function openLecture(root, options) {
-  const { docs, language = "en", sources = ["examples/lecture.c"] } = options;
+  const { docs, language = "en" } = options;
   const get = async (address) => {
     const answer = await fetch(address);
     if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
@@ -17,11 +39,8 @@ export async function openLecture(root, options) {
   };
   const text = await get(docs + PAGES[language]);
   root.lang = language;
-  root.innerHTML = markdownToHtml(text, { image: (source) => docs + source, link: (target) => (target.startsWith("#") ? target : docs + target) });
-  for (const link of root.querySelectorAll("a")) {
-    const target = link.getAttribute("href").slice(docs.length);
-    if (target.includes("#L")) link.dataset.source = target;
-  }
-  attachListings(root, (path) => (sources.includes(path) ? get(`${docs}../${path}`) : undefined), language === "it" ? "Chiudi" : "Close");
+  root.innerHTML = markdownToHtml(text, { image: (source) => docs + source });
+  settleLinks(root);
+  attachListings(root, (path) => get(`${docs}../${path}`), language);
   return attachFigures(root, { ...options, language });
 }

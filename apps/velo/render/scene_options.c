@@ -103,7 +103,9 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (v[RENDER_VARIANT].given) load.variant = v[RENDER_VARIANT].text;
   if (scene_camera_is_own(path, arguments)) load.camera = v[RENDER_CAMERA].text;
   vlResult result = vl_scene_create(context, scene);
-  if (result == VL_OK) result = vl_scene_load(*scene, path, &load, &error);
+  if (result == VL_OK)
+    result = opening->text ? vl_scene_load_memory(*scene, path, opening->text, strlen(opening->text), &load, &error)
+                           : vl_scene_load(*scene, path, &load, &error);
   if (result != VL_OK) return report_error(&error, result, path);
 
   vlCompleteDef complete = vl_default_complete_def();

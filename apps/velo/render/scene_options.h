@@ -12,6 +12,7 @@ typedef struct SceneOpening {
   vlCompleteDef complete;
   bool lamps;             /* a file of a model (glTF, OBJ, PLY) with lights of its own */
   const vlCancel *cancel; /* input: stops the load; null: nothing does */
+  const char *text;       /* input: a pbrt scene in memory, in place of the file; null: the file */
   bool model;             /* a file of a model: its exposure is metered, its default output is a .png */
   bool camera_added;      /* the file has no camera: one was made for the scene */
   vlCameraDef camera;     /* before it was turned */

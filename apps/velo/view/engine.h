@@ -10,7 +10,8 @@ typedef struct Engine Engine;
 
 typedef struct EngineDef {
   vlContext *context;
-  const char *path;           /* of the scene */
+  const char *path;           /* of the scene; it stays valid */
+  bool lecture;               /* pages choose among the scenes of the lecture; nothing is saved */
   const Arguments *arguments; /* of the command line */
   const char *film_path;      /* to write the film to at the end; null: none */
 } EngineDef;

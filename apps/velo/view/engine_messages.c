@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "view/engine_status.h"
+#include "view/lecture.h"
 
 static char *engine_state(const Engine *e) {
   const Wanted *w = &e->wanted;
@@ -160,6 +161,15 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
   engine_post_state(e, 0);
 }
 
+static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
+  const char *scene = e->def.lecture ? lecture_scene(m->name) : NULL;
+  if (!scene) {
+    post_refusal(e, client, m, e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
+    return;
+  }
+  e->chosen = scene, e->chosen_change = m->change;
+}
+
 /* Adds a message to a list of tasks. */
 static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tasks, uint32_t *count) {
   if (*count == MOST_TASKS) {
@@ -187,7 +197,13 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
       case MESSAGE_RESET: step_history(e, m); break;
       case MESSAGE_SETTINGS: change_settings(e, client, m); break;
       case MESSAGE_SAVE:
-      case MESSAGE_COMMAND: add_task(e, client, m, e->tasks, &e->task_count); break;
+      case MESSAGE_COMMAND:
+        if (e->def.lecture)
+          post_refusal(e, client, m, "the lecture's page saves nothing");
+        else
+          add_task(e, client, m, e->tasks, &e->task_count);
+        break;
+      case MESSAGE_SCENE: choose_scene(e, client, m); break;
       case MESSAGE_PICK:
       case MESSAGE_FOCUS:
       case MESSAGE_OUTLINE:

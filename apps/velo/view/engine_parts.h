@@ -49,8 +49,11 @@ struct Engine {
   Wanted wanted;
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
-  char *last_status;                             /* the last state of the render, for pages that come; null: none */
-  Model *next;                                   /* the scene after a change of its files; null: none */
+  char *last_status; /* the last state of the render, for pages that come; null: none */
+  Model *next;       /* the scene after a change of its files; null: none */
+  /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none; the scene of `next` */
+  const char *chosen, *next_path;
+  uint32_t chosen_change, next_change;           /* the page's numbers of these choices */
   Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
   uint32_t task_count, question_count;
   /* the watcher's own */
@@ -86,6 +89,8 @@ void engine_remember(Engine *engine, const ViewCamera *camera, uint32_t gesture)
 void *engine_watch(void *engine);
 /* Goes on with the scene that was loaded again, if there is one. Returns whether there was. */
 bool engine_swap_model(Engine *engine);
+/* The thread that loads what pages choose among the lecture's scenes. */
+void *engine_load_chosen(void *engine);
 /* Answers a task; on the render thread, without the lock. */
 void engine_answer(Engine *engine, const Task *task);
 /* The thread that answers questions while the render goes on. */

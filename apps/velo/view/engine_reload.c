@@ -1,5 +1,6 @@
 /* view/engine_reload.c: watches the scene's files. When one changed, the scene is loaded in the background, and the
- * render thread goes on with the new world; when it cannot be loaded, the old image stays and the error is shown. */
+ * render thread goes on with the new world; when it cannot be loaded, the old image stays and the error is shown. In
+ * the same way the lecture's scenes are loaded when a page chooses one. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,6 +74,48 @@ void *engine_watch(void *user) {
   return NULL;
 }
 
+/* ---- the lecture's scenes ---------------------------------------------------------------------------------------- */
+
+/* Waits for a choice. Null: the end. */
+static const char *wait_for_choice(Engine *e, uint32_t *change) {
+  pthread_mutex_lock(&e->lock);
+  while (!e->quit && !e->chosen) pthread_cond_wait(&e->wake, &e->lock);
+  const char *path = e->quit ? NULL : e->chosen;
+  *change = e->chosen_change;
+  e->chosen = NULL;
+  pthread_mutex_unlock(&e->lock);
+  return path;
+}
+
+void *engine_load_chosen(void *user) {
+  Engine *e = user;
+  uint32_t change;
+  report_listen(on_report, e);
+  for (const char *path; (path = wait_for_choice(e, &change));) {
+    Model *model = calloc(1, sizeof *model);
+    FileList files = {.count = 0};
+    int status = model ? model_load(e->def.context, path, e->def.arguments, NULL, e->end, model, &files) : STATUS_OTHER;
+    file_list_free(&files);
+    if (status >= 0) {
+      free(model);
+      continue;
+    }
+    pthread_mutex_lock(&e->lock);
+    Model *unused = e->next;
+    e->next = model;
+    e->next_path = path, e->next_change = change;
+    vl_cancel_request(e->stop);
+    pthread_cond_broadcast(&e->wake);
+    pthread_mutex_unlock(&e->lock);
+    if (unused) model_free(unused);
+    free(unused);
+  }
+  report_listen(NULL, NULL);
+  return NULL;
+}
+
+/* ---- the render thread ------------------------------------------------------------------------------------------- */
+
 /* Whether two cameras are described by the same numbers. */
 static bool same_place(const ViewCamera *a, const ViewCamera *b) {
   const vlCamera *c = &a->made, *d = &b->made;
@@ -97,15 +140,24 @@ bool engine_swap_model(Engine *e) {
   uint32_t crop[4], spp = e->wanted.spp, old_spp = old.job.defs->render.spp;
   memcpy(crop, e->wanted.crop, sizeof crop);
   e->model = *next;
+  bool other = e->next_path != NULL;
+  if (other) {
+    e->def.path = e->next_path;
+    e->next_path = NULL;
+    e->wanted.change = e->next_change;
+    e->wanted.channel = 0;
+    e->wanted.paused = false;
+  }
   bool taken = engine_take_model(e) < 0,
        sized = shown.made.width == e->scene_camera.made.width && shown.made.height == e->scene_camera.made.height;
   /* the page's camera stays unless the file's camera changed, or it has parts of the old scene */
-  bool keep = sized && same_place(&before, &e->scene_camera) && !shown.def.lens.optics && !shown.def.lens.aperture;
+  bool keep =
+      !other && sized && same_place(&before, &e->scene_camera) && !shown.def.lens.optics && !shown.def.lens.aperture;
   if (taken && keep) {
     e->wanted.camera = e->history.cameras[0] = shown;
     memcpy(e->wanted.crop, crop, sizeof crop);
   }
-  if (spp != old_spp) e->wanted.spp = spp;
+  if (spp != old_spp && !other) e->wanted.spp = spp;
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
   pthread_rwlock_unlock(&e->model_lock);

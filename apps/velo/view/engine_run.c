@@ -293,6 +293,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   if (status < 0)
     status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
   if (status < 0) status = engine_take_model(engine);
+  engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   *result = engine;
   return status;
 }
@@ -307,7 +308,8 @@ int engine_start(Engine *engine, Server *server) {
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
   engine->answering = pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
-  engine->watching = pthread_create(&engine->watcher, NULL, engine_watch, engine) == 0;
+  void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
+  engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
   return -1;
 }
 

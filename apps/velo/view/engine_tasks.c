@@ -129,7 +129,8 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_REDO:
     case MESSAGE_RESET:
     case MESSAGE_SETTINGS:
-    case MESSAGE_STEER: break;
+    case MESSAGE_STEER:
+    case MESSAGE_SCENE: break;
   }
 }
 

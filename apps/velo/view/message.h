@@ -28,7 +28,8 @@ typedef enum MessageKind {
   MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes: id, boxes */
   MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
-  MESSAGE_STEER     /* the sender wants to steer, if nobody does */
+  MESSAGE_STEER,    /* the sender wants to steer, if nobody does */
+  MESSAGE_SCENE     /* another scene of the lecture: name, change */
 } MessageKind;
 
 /* A field of an edit: numbers, or a text. */

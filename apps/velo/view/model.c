@@ -2,11 +2,13 @@
 #include "view/model.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/report.h"
 #include "render/exposure.h"
-#include "render/lens_options.h"
+#include "view/lecture.h"
+#include "view/view.h"
 
 static int choose_exposure(vlContext *context, const Arguments *arguments, Model *model) {
   bool meter;
@@ -41,11 +43,18 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
                const vlCancel *cancel, Model *model, FileList *files) {
   memset(model, 0, sizeof *model);
   model->opening.cancel = cancel;
+  char *text = NULL;
+  if (arguments->values[VIEW_LECTURE].given) {
+    model->opening.text = text = lecture_text(path);
+    if (!text) return report_failure(STATUS_OTHER, "out of memory");
+  }
   vlError error = {0};
   vl_context_record_files(context, false);
   vl_context_record_files(context, true);
   model->job.records_files = true;
   int status = scene_open(context, path, arguments, &model->scene, &model->opening);
+  free(text);
+  model->opening.text = NULL;
   if (status < 0) status = job_make(&model->job, context, model->scene, path, arguments);
   if (status < 0) {
     vlBuildDef build = model->job.defs->build;

@@ -18,8 +18,8 @@ typedef struct Model {
   uint32_t file_count;
 } Model;
 
-/* Loads, completes and builds. Adds the paths of the files that were read to the list. Returns -1, or the exit code
- * after reporting the error; *model is empty then. */
+/* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the paths of the files that
+ * were read to the list. Returns -1, or the exit code after reporting the error; *model is empty then. */
 int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
                const vlCancel *cancel, Model *model, FileList *files);
 /* Frees what the model has and empties it. */

@@ -68,7 +68,8 @@ int serve_start(const Job *job, const vlWorld *world, vlView view, float exposur
   s->exposure = exposure;
   s->camera = (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
   vl_world_info(world, &s->info);
-  const ServerDef def = {.calls = {.user = s, .greet = greet, .message = refuse, .clients = count}};
+  const ServerDef def = {
+      .home = "index.html", .query = "", .calls = {.user = s, .greet = greet, .message = refuse, .clients = count}};
   int status = server_start(&def, &s->server);
   if (status < 0) report_note("the image while it renders: %s", server_address(s->server));
   return status;

@@ -23,6 +23,8 @@ typedef struct ServerCalls {
 typedef struct ServerDef {
   const char *address; /* to listen on: an address of this machine; null: 127.0.0.1 */
   int port;            /* 0: a free one */
+  const char *home;    /* file of the page: "index.html" */
+  const char *query;   /* what the address ends with: "", "?language=it" */
   bool steering;       /* one page steers; false: all only look */
   ServerCalls calls;
 } ServerDef;
@@ -31,7 +33,7 @@ typedef struct ServerDef {
 int server_start(const ServerDef *def, Server **server);
 /* Ends the thread and frees the server. Null is allowed. */
 void server_stop(Server *server);
-/* The address of the page, with its token. */
+/* The address of the page, with its token and query. */
 const char *server_address(const Server *server);
 int server_port(const Server *server);
 

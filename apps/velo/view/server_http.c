@@ -13,8 +13,8 @@ typedef struct Download {
 
 const size_t server_http_bytes = sizeof(Download);
 
-static const WebFile *find_file(const char *name) {
-  if (!*name) name = "index.html";
+static const WebFile *find_file(const Server *server, const char *name) {
+  if (!*name) name = server->def.home;
   for (const WebFile *file = web_files; file->name; file++)
     if (strcmp(file->name, name) == 0) return file;
   return NULL;
@@ -50,7 +50,7 @@ static int answer(struct lws *wsi, Download *download, const char *path) {
   if (!server_check_host(wsi, server, host, sizeof host)) return refuse(wsi, HTTP_STATUS_FORBIDDEN);
   const char *name = access_path(path, server->token);
   if (!name) return refuse(wsi, HTTP_STATUS_FORBIDDEN);
-  const WebFile *file = find_file(name);
+  const WebFile *file = find_file(server, name);
   if (!file) return refuse(wsi, HTTP_STATUS_NOT_FOUND);
   if (lws_add_http_common_headers(wsi, HTTP_STATUS_OK, file->type, file->size, &p, end) || !add_headers(wsi, &p, end) ||
       lws_finalize_write_http_header(wsi, buffer + LWS_PRE, &p, end))

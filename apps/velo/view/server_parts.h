@@ -41,7 +41,7 @@ typedef struct Client {
 struct Server {
   ServerDef def;
   char listen[256]; /* copy of the address; empty: 127.0.0.1 */
-  char token[TOKEN_SIZE], address[400];
+  char token[TOKEN_SIZE], address[420];
   int port;
   struct lws_context *lws;
   struct lws_vhost *vhost;

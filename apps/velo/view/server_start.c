@@ -69,8 +69,8 @@ int server_start(const ServerDef *def, Server **result) {
     bool all = strcmp(server->listen, "0.0.0.0") == 0 || strcmp(server->listen, "::") == 0;
     const char *name = server->listen[0] && !all ? server->listen : "127.0.0.1";
     bool six = strchr(name, ':') != NULL;
-    snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/", six ? "[" : "", name, six ? "]" : "",
-             server->port, server->token);
+    snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "", name, six ? "]" : "",
+             server->port, server->token, def->query);
     if (pthread_create(&server->thread, NULL, serve, server) != 0)
       status = report_failure(STATUS_OTHER, "the system refuses to start a thread");
   }

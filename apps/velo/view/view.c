@@ -7,12 +7,36 @@
 #include "cli/report.h"
 #include "view/serve.h"
 
+/* The options that go with --lecture: its scenes have all the rest. */
+static bool goes_with_lecture(int option) {
+  static const int all[] = {VIEW_PORT,  VIEW_LISTEN,    VIEW_NO_OPEN, VIEW_LECTURE,      VIEW_LANGUAGE,
+                            RENDER_SPP, RENDER_THREADS, RENDER_BITS,  RENDER_MAX_MEMORY, RENDER_QUIET};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    if (all[i] == option) return true;
+  return false;
+}
+
+/* Returns -1, or the exit code after reporting the error. */
+static int check_usage(const Command *command, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  if (!v[VIEW_LECTURE].given) {
+    if (v[VIEW_LANGUAGE].given) return report_usage("--language goes with --lecture");
+    if (arguments->operand_count) return -1;
+    return report_usage("view: too few arguments; usage: velo view %s", command->usage);
+  }
+  if (arguments->operand_count)
+    return report_usage("--lecture takes no FILE, but \"%s\" is given", arguments->operands[0]);
+  for (const Option *o = view_options; o->name; o++)
+    if (v[o->id].given && !goes_with_lecture(o->id)) return report_usage("--%s does not go with --lecture", o->name);
+  return -1;
+}
+
 static int run_view(const Command *command, const Arguments *arguments) {
-  (void)command;
+  int status = check_usage(command, arguments);
+  if (status >= 0) return status;
 #ifdef VELO_HAS_VIEW
   return view_run(arguments);
 #else
-  (void)arguments;
   return report_failure(STATUS_OTHER, "velo view: this velo was built without libwebsockets, which the command needs");
 #endif
 }
@@ -33,12 +57,17 @@ void serve_stop(Serve *serve) {
 /* Families of velo/schema.h. */
 static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
 
+static const Choice languages[] = {{"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
+
 const Option view_options[] = {
     {VIEW_PORT, 0, "port", OPTION_INTEGER, "N", "port to listen on; default: a free one", 1, 65535, NULL},
     {VIEW_LISTEN, 0, "listen", OPTION_TEXT, "ADDRESS",
      "address of this machine to listen on, 0.0.0.0 for all; default 127.0.0.1, which no other machine can reach", 0, 0,
      NULL},
     {VIEW_NO_OPEN, 0, "no-open", OPTION_FLAG, NULL, "do not open a browser", 0, 0, NULL},
+    {VIEW_LECTURE, 0, "lecture", OPTION_FLAG, NULL, "show the lecture with live scenes, in place of FILE", 0, 0, NULL},
+    {VIEW_LANGUAGE, 0, "language", OPTION_CHOICE, "NAME", "language of the lecture; default: that of LANG, else en:", 0,
+     0, languages},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel at which the image is done", 1, 1 << 24, NULL},
     {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE", "write the film of the last image to this file at the end", 0, 0,
      NULL},
@@ -126,19 +155,23 @@ static const Section view_sections[] = {{VIEW_PORT, "the page"},
 
 const Command view_command = {
     .name = "view",
-    .usage = "FILE [options]",
+    .usage = "FILE | --lecture [options]",
     .summary = "see and steer a scene in the browser while it renders",
     .text =
         "Prints the address of a page and opens it in a browser. The page shows the scene while it renders,\n"
         "moves the camera, edits it in every spelling, shows ground truth, and saves cameras and images\n"
         "(docs/view.md). The address has a random token; only this machine can reach it. Through ssh, the\n"
-        "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.",
+        "printed ssh -L line brings the page to your own machine. Ctrl-C ends it.\n"
+        "\n"
+        "With --lecture the page is the lecture on perspective (docs/lecture.md), whose images are live: a slider\n"
+        "moves d, e, zoom, s or roll, and image, formulas and the view from outside follow.",
     .examples =
         "velo view scenes/lecture/pinhole.pbrt\n"
-        "velo view model.glb --resolution 1280x720 --port 8800 --no-open",
+        "velo view model.glb --resolution 1280x720 --port 8800 --no-open\n"
+        "velo view --lecture --language it",
     .options = view_options,
     .sections = view_sections,
-    .min_operands = 1,
+    .min_operands = 0,
     .max_operands = 1,
     .run = run_view,
 };

@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "view/engine.h"
+#include "view/lecture.h"
 #include "view/view.h"
 
 extern char **environ;
@@ -65,7 +66,9 @@ int view_run(const Arguments *arguments) {
   Engine *engine = NULL;
   Server *server = NULL;
   report_setup(false, v[RENDER_QUIET].given ? REPORT_QUIET : REPORT_NORMAL);
-  const EngineDef def = {.path = arguments->operands[0],
+  bool lecture = v[VIEW_LECTURE].given;
+  const EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
+                         .lecture = lecture,
                          .arguments = arguments,
                          .film_path = v[RENDER_FILM].given ? v[RENDER_FILM].text : NULL};
   int status = open_context(arguments, &context);
@@ -77,6 +80,8 @@ int view_run(const Arguments *arguments) {
   if (status < 0) {
     const ServerDef server_def = {.address = v[VIEW_LISTEN].given ? v[VIEW_LISTEN].text : NULL,
                                   .port = v[VIEW_PORT].given ? (int)v[VIEW_PORT].integer : 0,
+                                  .home = lecture ? "lecture.html" : "index.html",
+                                  .query = lecture ? lecture_query(arguments) : "",
                                   .steering = true,
                                   .calls = engine_calls(engine)};
     status = server_start(&server_def, &server);

@@ -1,4 +1,4 @@
-/* view/web_files.h: the files of the page (folder web/), which the build puts into the program. */
+/* view/web_files.h: the files of the pages, which the build puts into the program: web/, the lecture and its scenes. */
 #ifndef APP_VIEW_WEB_FILES_H
 #define APP_VIEW_WEB_FILES_H
 
@@ -7,7 +7,7 @@
 typedef struct WebFile {
   const char *name, *type; /* "app.js", "text/javascript; charset=utf-8" */
   const unsigned char *data;
-  size_t size;
+  size_t size; /* a zero follows */
 } WebFile;
 
 /* The last has no name. */

@@ -1,0 +1,240 @@
+// web/lecture/live.js: velo as the renderer of the lecture's figures: one scene at a time, shown in the figure that is
+// live, with the view from outside beside it.
+import { Connection } from "../socket.js";
+import { parseFrame } from "../frame.js";
+import { Outside } from "../outside.js";
+import { Overlay } from "../overlay.js";
+import { Screen } from "../screen.js";
+
+const WORDS = {
+  en: { steered: "another page steers", away: "velo has ended or cannot be reached; trying again",
+        status: (s) => `${s.spp} of ${s.target} samples per pixel` },
+  it: { steered: "un'altra pagina ha il comando", away: "velo è terminato o non è raggiungibile; nuovo tentativo",
+        status: (s) => `${s.spp} di ${s.target} campioni per pixel` },
+};
+const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
+
+// The camera of a figure, of velo's camera. What it does not have is absent.
+export function figureCamera(c) {
+  const camera = { projection: c.projection, width: c.width, height: c.height };
+  for (const name of ["eye", "lookat", "up", "zoom", "s", "roll", "near"]) camera[name] = c[name];
+  camera.far = c.far ?? Infinity;
+  if (c.projection === "perspective") camera.d = c.d;
+  if (["perspective", "panini", "stereographic"].includes(c.projection)) camera.fov = c.fov_horizontal;
+  if (c.projection === "panini") camera.panini = c.shape[0];
+  return camera;
+}
+
+// The fields of velo's camera that change between two cameras of a figure.
+export function changedFields(before, after) {
+  const set = {}, differs = (name) => String(before[name]) !== String(after[name]);
+  for (const name of PLAIN) if (name in after && differs(name)) set[name] = Number.isFinite(after[name]) || Array.isArray(after[name]) ? after[name] : null;
+  if ("fov" in after && differs("fov")) Object.assign(set, { fov: after.fov, fov_axis: "horizontal" });
+  if ("panini" in after && differs("panini")) set.shape = [after.panini];
+  return set;
+}
+
+export class Live {
+  // tell(text): a line about the image.
+  constructor(tell) {
+    this.tell = tell;
+    this.words = WORDS.en;
+    this.figures = [];    // those of figures.js
+    this.element = null;  // the figure that is live
+    this.change = 0;      // the number of the last change; velo gives it back
+    this.gesture = 1;
+    this.waiting = new Map();
+    this.nextId = 1;
+    this.canvas = Object.assign(document.createElement("canvas"), { className: "screen", hidden: true });
+    this.svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    this.svg.id = "overlay";
+    document.body.append(this.canvas, this.svg);
+    this.screen = new Screen(this.canvas);
+    this.overlay = new Overlay(document.createElement("div"), this);
+    this.screen.onplace = () => this.overlay.draw();
+    this.display = { ev: 0 };
+    this.connection = new Connection({
+      text: (message) => this.receive(message),
+      frame: (buffer) => this.receiveFrame(buffer),
+      state: (connected, reason) => this.connected(connected, reason),
+    });
+  }
+
+  use(language) {
+    this.leave();
+    this.words = WORDS[language];
+  }
+
+  // ---- for figures.js ----
+
+  start(element, scene) {
+    this.leave();
+    if (this.steers === false) return Promise.reject(new Error(this.words.steered));
+    this.element = element;
+    this.scene = scene;
+    this.state = null;
+    element.querySelector(".pane.image").append(this.canvas, this.svg);
+    return new Promise((resolve, reject) => {
+      this.pending = { change: ++this.change, resolve, reject };
+      this.first = this.change;
+      this.connection.send({ type: "scene", name: scene, change: this.change });
+    });
+  }
+
+  show(element, scene, camera) {
+    if (element !== this.element || !this.state) return;
+    this.wanted = camera;
+    this.timer ??= requestAnimationFrame(() => this.flush());
+  }
+
+  stop(element) {
+    if (element !== this.element) return;
+    this.leave();
+    this.connection.send({ type: "settings", paused: true });
+  }
+
+  // ---- what the view from outside and the overlays need ----
+
+  camera() { return this.local; }
+
+  edit(set) {
+    const figure = this.figures.find((f) => f.element === this.element);
+    if (!figure?.camera || !this.steers) return;
+    Object.assign(this.local, set);
+    figure.set({ ...figure.camera, ...set }, true);
+  }
+
+  ask(message, answer) {
+    const id = this.nextId++;
+    this.waiting.set(id, answer);
+    this.connection.send({ ...message, id });
+  }
+
+  // ---- the figure ----
+
+  // The figure keeps its last image, and its view from outside as it is.
+  leave() {
+    cancelAnimationFrame(this.timer);
+    this.timer = null;
+    this.pending = null;
+    if (this.element && this.screen.frame && !this.canvas.hidden) {
+      const pane = this.element.querySelector(".pane.image");
+      const still = Object.assign(document.createElement("canvas"), { className: "still", width: this.canvas.width, height: this.canvas.height });
+      this.screen.drawNow(); // the canvas keeps what is drawn until the browser shows the next frame
+      still.getContext("2d").drawImage(this.canvas, 0, 0);
+      pane.querySelector(".still")?.remove();
+      pane.append(still);
+    }
+    this.canvas.hidden = true;
+    this.overlay.on.clear();
+    this.overlay.draw();
+    this.outside = this.element = this.state = null;
+  }
+
+  // velo has the scene.
+  begin(state) {
+    const { element } = this, pane = element.querySelector(".pane.outside");
+    this.sent = figureCamera(state.camera);
+    this.display.ev = state.exposure;
+    Object.assign(this.screen.display, { exposure: state.exposure, view: state.view, kind: 0 });
+    this.screen.redevelop();
+    if (element.dataset.overlay === "vanishing") for (const name of ["vanishing", "horizon"]) this.overlay.toggle(name, true);
+    if (pane) {
+      pane.replaceChildren();
+      this.outside = new Outside(this, pane, null);
+      this.outside.pose = this.outsidePose(pane);
+      this.outside.toggle();
+    }
+    return this.sent;
+  }
+
+  // From so far that eye and scene fit into the pane's width.
+  outsidePose(pane) {
+    const pose = this.outside.start(), box = pane.getBoundingClientRect(), k = Math.max(1, 1.7 * box.height / box.width);
+    return { ...pose, eye: pose.eye.map((x, i) => pose.lookat[i] + k * (x - pose.lookat[i])) };
+  }
+
+  flush() {
+    this.timer = null;
+    const set = changedFields(this.sent, this.wanted);
+    if (!Object.keys(set).length) return;
+    this.sent = this.wanted;
+    this.connection.send({ type: "camera", change: ++this.change, gesture: this.gesture, set });
+  }
+
+  complain(text) {
+    const figure = this.figures.find((f) => f.element === this.element);
+    figure?.complain(text);
+  }
+
+  // ---- messages of velo ----
+
+  receive(message) {
+    if (message.type === "state") this.receiveState(message);
+    else if (message.type === "refused") this.refused(message);
+    else if (message.type === "error" || message.type === "warning") this.complain(message.message);
+    else if (message.type === "status") this.tell(this.words.status(message));
+    else if (message.type === "role") this.receiveRole(message);
+    else if (message.id) this.answered(message);
+  }
+
+  answered(message) {
+    this.waiting.get(message.id)?.(message);
+    this.waiting.delete(message.id);
+  }
+
+  receiveRole(message) {
+    this.steers = message.steers;
+    const figure = this.figures.find((f) => f.seen);
+    if (figure) figure.start(); // the connection is new, or the page that steered is closed
+  }
+
+  receiveState(state) {
+    if (!this.element || state.scene !== this.scene || state.change < this.first) return;
+    this.state = state;
+    this.local = state.camera;
+    this.overlay.state(state);
+    const { pending } = this;
+    if (pending?.change === state.change) {
+      this.pending = null;
+      pending.resolve(this.begin(state));
+    } else if (state.change === this.change) {
+      this.complain("");
+      this.follow(state);
+    }
+    this.outside?.state();
+  }
+
+  // The figure's numbers are those of velo, unless newer ones are on their way.
+  follow(state) {
+    if (this.timer !== null) return;
+    this.sent = figureCamera(state.camera);
+    this.figures.find((f) => f.element === this.element)?.follow(this.sent);
+  }
+
+  refused(message) {
+    if (message.id && this.waiting.has(message.id)) return this.answered(message);
+    if (this.pending && message.change === this.pending.change) {
+      this.pending.reject(new Error(message.message));
+      this.pending = null;
+    } else if (message.change === this.change) {
+      this.complain(message.message);
+      if (this.state) this.follow(this.state);
+    }
+  }
+
+  receiveFrame(buffer) {
+    const frame = parseFrame(buffer);
+    this.screen.take(frame); // also one of another scene: the next has only what differs from it
+    this.connection.send({ type: "seen", serial: frame.serial });
+    if (this.element && this.state && frame.change >= this.first) this.canvas.hidden = false;
+    this.frames = (this.frames ?? 0) + 1;
+    this.shown = frame.change;
+  }
+
+  connected(connected, reason) {
+    if (connected) return;
+    this.steers = undefined;
+    this.tell(reason || this.words.away);
+  }
+}

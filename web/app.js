@@ -11,6 +11,7 @@ import { Overlay } from "./overlay.js";
 import { Compare } from "./compare.js";
 import { Save } from "./save.js";
 import { Outside } from "./outside.js";
+import { Paths } from "./paths.js";
 import { byId, make, metric } from "./dom.js";
 import { addHelp } from "./help.js";
 
@@ -70,6 +71,7 @@ const app = {
     app.ask({ type: "pick", x, y }, answer => {
       if (answer.type !== "picked") return;
       inspector.picked(answer);
+      paths.pick(x, y);
       outside.point = answer.object.id ? answer.P : null;
       outside.state();
       if (kind === "turn" && answer.object.id) app.edit(pivot(app.local, answer.P));
@@ -96,6 +98,8 @@ new Save(byId("save"), app);
 const outside = app.outside = new Outside(app);
 screen.onplace = () => { overlay.draw(); compare.draw(); };
 const inspector = new Inspector(byId("pixel"), app);
+const paths = app.paths = new Paths(byId("pixel"), app);
+paths.onpaths = () => inspector.texture(paths);
 new Pointer(byId("stage"), app);
 
 // ---- messages of velo ----
@@ -117,9 +121,13 @@ function showState(state) {
   app.cropped = c[0] > 0 || c[1] > 0 || c[2] < state.camera.width || c[3] < state.camera.height;
   overlay.state(state);
   outside.state();
+  const camera = JSON.stringify(state.camera);
+  if (camera !== app.lastCamera) paths.stale();
+  app.lastCamera = camera;
 }
 
 function showStatus(s) {
+  app.spp = s.spp;
   const error = s.error === null ? "" : `  ·  error ${(100 * s.error).toPrecision(2)} %`;
   const end = s.spp >= s.target ? "done" : s.paused ? "paused" : `${metric(s.paths_per_second)}paths/s`;
   byId("status").textContent = `${s.spp} of ${s.target} spp  ·  ${end}${error}`;
@@ -141,7 +149,7 @@ const handlers = {
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
   loading: () => { byId("status").textContent = "a file changed: loading"; },
-  loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); },
+  loaded() { app.notice("The scene was loaded again.", true); outside.loaded(); paths.stale(); },
   warning: message => app.notice(message.message, true),
   note: message => app.notice(message.message, true),
   error(message) {

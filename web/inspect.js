@@ -49,8 +49,15 @@ export class Inspector {
     const rows = [["pixel", `${p.x}, ${p.y}`], ["object", name(p.object)], ["", place(p.object)], ["material", name(p.material)],
       ["instance", p.instance.id ? name(p.instance) : ""], ["depth z", numbers(p.Z)], ["distance", numbers(p.distance)],
       ["position", numbers(p.P)], ["normal", numbers(p.N)], ["geometric", numbers(p.Ng)], ["uv", numbers(p.uv)],
-      ["albedo", numbers(p.albedo)], ["ray", numbers(p.ray)]];
+      ["albedo", numbers(p.albedo)], ["texture", "…"], ["ray", numbers(p.ray)]];
     this.hint.hidden = true;
     this.list.replaceChildren(...rows.filter(r => r[1]).flatMap(r => [make("dt", { textContent: r[0] }), make("dd", { textContent: r[1] })]));
+    this.object = p.object;
+  }
+
+  // The texture is known once the pixel's paths are.
+  texture(paths) {
+    const name = [...this.list.children].find(e => e.textContent === "texture");
+    if (name) name.nextElementSibling.textContent = this.object.id ? paths.textureOf(this.object) : "";
   }
 }

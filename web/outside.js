@@ -6,7 +6,8 @@ import { byId, make } from "./dom.js";
 
 const fov = 40 * Math.PI / 180; // vertical; as apps/velo/view/engine_outside.c
 const looks = { eye: ["#f5a623", 3], window: ["#f5a623", 2], grid: ["#f5a62366", 0.6], volume: ["#fff", 1], near: ["#7fd1ff", 1.4],
-  far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2] };
+  far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2],
+  path: ["#ffd24a", 1.8], leaves: ["#9fb4c8", 1.2, [2, 4]], light: ["#fff3b0", 1.1, [5, 3]], occluded: ["#c0566a", 0.8, [2, 3]] };
 
 export class Outside {
   // stage: the element that it is in; button: shows and hides it; null: none.
@@ -23,6 +24,7 @@ export class Outside {
     this.box.addEventListener("dblclick", event => event.stopPropagation());
   }
 
+  open() { if (this.box.hidden) this.toggle(); }
   toggle() {
     this.box.hidden = !this.box.hidden;
     this.button?.setAttribute("aria-pressed", String(!this.box.hidden));
@@ -81,27 +83,43 @@ export class Outside {
     return [w / 2 + f * dot(v, a.right) / z, h / 2 - f * dot(v, a.up) / z, z];
   }
 
+  // A segment in space, cut at the pane's own eye.
+  stroke(g, a, b, [colour, width, dash], alpha = 1) {
+    const near = 0.02 * length(sub(this.pose.lookat, this.pose.eye)), forward = this.axes().forward;
+    const depth = p => dot(sub(p, this.pose.eye), forward), za = depth(a), zb = depth(b);
+    const cut = (p, q, zp, zq) => add(p, scale(sub(q, p), (near - zp) / (zq - zp)));
+    if (za < near && zb < near) return;
+    if (za < near) a = cut(a, b, za, zb); else if (zb < near) b = cut(b, a, zb, za);
+    const [p, q] = [this.project(a), this.project(b)];
+    g.strokeStyle = colour, g.lineWidth = width, g.lineCap = "round", g.globalAlpha = alpha;
+    g.setLineDash(dash || []);
+    g.beginPath();
+    g.moveTo(p[0], p[1]);
+    g.lineTo(q[0] + (p[0] === q[0] && p[1] === q[1] ? 0.01 : 0), q[1]);
+    g.stroke();
+    g.globalAlpha = 1;
+  }
+
+  // The paths of the picked pixel; the chosen one is stronger.
+  drawPaths(g) {
+    for (const [kind, chosen, from, to] of this.app.paths.lines) {
+      const [colour, width, dash] = looks[kind];
+      this.stroke(g, from, to, [colour, chosen ? width : 0.6 * width, dash], chosen ? 1 : 0.4);
+      if (chosen && kind === "path") this.stroke(g, to, to, [colour, 5]);
+    }
+    g.setLineDash([]);
+  }
+
   draw() {
+    if (this.box.hidden) return;
     const [w, h] = this.size(), g = this.canvas.getContext("2d"), ratio = window.devicePixelRatio || 1, d = this.drawing;
     this.canvas.width = w * ratio, this.canvas.height = h * ratio;
     g.scale(ratio, ratio);
     if (this.image) g.drawImage(this.image, 0, 0, w, h);
     g.fillStyle = "#0006";
     g.fillRect(0, 0, w, h);
-    const near = 0.02 * length(sub(this.pose.lookat, this.pose.eye)), forward = this.axes().forward;
-    const depth = p => dot(sub(p, this.pose.eye), forward);
-    for (const [part, ...n] of d?.lines || []) {
-      let a = n.slice(0, 3), b = n.slice(3);
-      const za = depth(a), zb = depth(b), cut = (p, q, zp, zq) => add(p, scale(sub(q, p), (near - zp) / (zq - zp)));
-      if (za < near && zb < near) continue;
-      if (za < near) a = cut(a, b, za, zb); else if (zb < near) b = cut(b, a, zb, za);
-      const [p, q] = [this.project(a), this.project(b)], [colour, width] = looks[part] || ["#fff", 1];
-      g.strokeStyle = colour, g.lineWidth = width, g.lineCap = "round";
-      g.beginPath();
-      g.moveTo(p[0], p[1]);
-      g.lineTo(q[0] + (p[0] === q[0] && p[1] === q[1] ? 0.01 : 0), q[1]);
-      g.stroke();
-    }
+    for (const [part, ...n] of d?.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), looks[part] || ["#fff", 1]);
+    this.drawPaths(g);
     g.font = "italic 14px serif";
     for (const [text, ...at] of d?.labels || []) {
       const p = this.project(at);

@@ -115,7 +115,8 @@ typedef struct vlPixelPaths {
  * (vl_pixel_paths_destroy). A null render def means the default.
  *
  * Errors: ARGUMENT: a pixel outside the film's crop, a camera of another size, a tracer other than path and volpath.
- * MEMORY. Must not be called from inside a parallel loop. */
+ * MEMORY. CANCELLED: def->cancel was requested; the call looks after at most 256 paths. It runs on the calling thread
+ * alone. Must not be called from inside a parallel loop. */
 VL_API vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
                                const vlRenderDef *def, uint32_t x, uint32_t y, uint32_t first, uint32_t count,
                                vlPixelPaths **paths, vlError *error);

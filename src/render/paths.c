@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/cancel.h"
 #include "base/context.h"
 #include "base/error.h"
 #include "film/expose.h"
@@ -167,6 +168,7 @@ static vlResult trace_all(Call *c, uint32_t first, uint32_t count, vlError *erro
   vlResult result = VL_OK;
   for (uint32_t done = 0; done < count && result == VL_OK;) {
     uint32_t n = count - done < c->lanes ? count - done : c->lanes;
+    if (vl_is_cancelled(c->run.def->cancel)) return vl_fail(error, VL_CANCELLED, "stopped");
     memset(c->recorder.paths, 0, c->lanes * sizeof *c->recorder.paths);
     list_samples(c, first + done, n);
     unsigned state = vl_accel_enter();

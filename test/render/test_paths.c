@@ -1,5 +1,8 @@
 /* The recorded paths of a pixel: their contributions sum to the samples that a film adds, for surfaces, media,
- * subsurface materials, lenses, and in RGB; densities and weights of a known lamp; chains of vertices; wrong calls. */
+ * subsurface materials, lenses, and in RGB; densities and weights of a known lamp; chains of vertices; wrong calls;
+ * cancelling. */
+#include <pthread.h>
+
 #include "loaded.h"
 #include "render/shots.h"
 
@@ -248,8 +251,38 @@ static void wrong_calls(void **state) {
   unload_world(&l);
 }
 
+static void *request(void *cancel) {
+  vl_cancel_request(cancel);
+  return NULL;
+}
+
+/* A request before the call, and one from another thread during it. */
+static void cancelled(void **state) {
+  (void)state;
+  Loaded l;
+  assert_true(load_world(&l, "features/two_way.pbrt", SIDE, SIDE));
+  vlFilmDef film = vl_default_film_def(SIDE, SIDE);
+  vlRenderDef def = vl_default_render_def();
+  vlPixelPaths *paths = NULL;
+  vlError error;
+  vlCancel *cancel;
+  assert_int_equal(vl_cancel_create(l.context, &cancel), VL_OK);
+  def.cancel = cancel;
+  vl_cancel_request(cancel);
+  assert_int_equal(vl_trace_paths(l.world, &l.camera, &film, &def, 9, 9, 0, 4, &paths, &error), VL_CANCELLED);
+  assert_null(paths);
+  vl_cancel_clear(cancel);
+  pthread_t thread;
+  assert_int_equal(pthread_create(&thread, NULL, request, cancel), 0);
+  assert_int_equal(vl_trace_paths(l.world, &l.camera, &film, &def, 9, 9, 0, 1 << 20, &paths, &error), VL_CANCELLED);
+  pthread_join(thread, NULL);
+  assert_null(paths);
+  vl_cancel_destroy(cancel);
+  unload_world(&l);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(sums), cmocka_unit_test(densities),
-                                     cmocka_unit_test(wrong_calls)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(sums), cmocka_unit_test(densities), cmocka_unit_test(wrong_calls),
+                                     cmocka_unit_test(cancelled)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

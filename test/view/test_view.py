@@ -38,7 +38,8 @@ def state_after(page, **message):
     """Sends an edit; the state or the refusal that answers it."""
     page.change = getattr(page, "change", 100) + 1
     page.send(change=page.change, **message)
-    return page.wait(lambda m: isinstance(m, dict) and m["type"] in ("state", "refused") and m["change"] == page.change)
+    return page.wait(lambda m: isinstance(m, dict) and m["type"] in ("state", "refused") and
+                     m.get("change") == page.change)
 
 
 def edit(page, **fields):
@@ -159,10 +160,45 @@ def test_latency(page):
     print(f"   while moving: {frames / 2:.1f} frames/s", file=sys.stderr)
 
 
+def test_paths(page):
+    """The paths of a pixel are those of `velo camera paths`; a newer request and another camera end an older one."""
+    state_after(page, type="reset")
+    told = answer(page, "paths", type="paths", x=81.5, y=60, samples=32, show=5)
+    run = subprocess.run([VELO, "camera", "paths", SCENE, "--resolution", "160x120", "--pixel", "81,60", "--samples", "32",
+                          "--show", "5", "--json"], capture_output=True, text=True)
+    same = json.loads(run.stdout) if run.returncode == 0 else {}
+    told.pop("type"), told.pop("id")
+    check("paths", told == same and len(told["paths"]) == 5 and told["sees"]["object"]["id"] > 0, run.stderr,
+          [key for key in told if told[key] != same.get(key)])
+    first = answer(page, "paths", type="paths", x=81, y=60, samples=3, by_sample=True)
+    check("paths_by_sample", [p["sample"] for p in first["paths"]] == [0, 1, 2])
+    check("paths_outside", answer(page, "paths", type="paths", x=160, y=1)["type"] == "refused")
+    page.send(type="paths", id=9001, x=81, y=60, samples=65536)
+    page.send(type="paths", id=9002, x=81, y=60, samples=65536)
+    older = page.wait(lambda m: isinstance(m, dict) and m.get("id") == 9001)
+    check("paths_newer_ends_older", older["type"] == "refused", older["type"])
+    begun = time.monotonic()
+    page.send(type="camera", change=page.change, set={"eye": [300, 200, 471]})
+    newer = page.wait(lambda m: isinstance(m, dict) and m.get("id") == 9002)
+    print(f"   paths are cancelled after {1e3 * (time.monotonic() - begun):.0f} ms", file=sys.stderr)
+    check("paths_camera_ends_them", newer["type"] == "refused", newer["type"])
+    state_after(page, type="undo")
+
+
+def test_other_tracer(folder):
+    view = View(VELO, SCENE, "--resolution", "64x48", "--tracer", "sppm", "--spp", "1", cwd=folder)
+    page = Page(view)
+    told = answer(page, "paths", type="paths", x=3, y=4)
+    check("paths_other_tracer", told["type"] == "refused" and "sppm" in told["message"] and "volpath" in told["message"], told)
+    page.close()
+    check("other_tracer_ends", view.end()[0] == 0)
+
+
 def test_tasks(page):
     picked = answer(page, "picked", type="pick", x=page.wait_camera["width"] / 2, y=page.wait_camera["height"] / 2)
     check("pick", picked["type"] == "picked" and picked["Z"][0] > 0 and picked["object"]["id"] > 0, picked)
     check("pick_outside", answer(page, "picked", type="pick", x=60000, y=1)["type"] == "refused")
+    test_paths(page)
     overlay = answer(page, "overlay", type="overlay", boxes=True)
     check("overlay", len(overlay["vanishing"]) == 3 and len(overlay["boxes"]) > 0, overlay)
     outline = answer(page, "outline", type="outline", set={"point": picked["P"]})
@@ -421,6 +457,7 @@ def main():
         code, errors = view.end()
     check("ends", code == 0, code, errors)
     check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
+    test_other_tracer(folder)
     test_watch(folder)
     test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)

@@ -1,7 +1,6 @@
 /* camera/paths.c: `velo camera paths`: the samples of one pixel, traced again and printed vertex by vertex. */
 #include "camera/paths.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,9 +19,7 @@ typedef struct State {
   vlContext *context;
   vlScene *scene;
   vlWorld *world;
-  vlPixelPaths *paths;
-  vlImage *channels, *ids;
-  uint32_t *order;
+  TracedPaths traced;
   Job job;
   SceneOpening opening;
 } State;
@@ -65,48 +62,31 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
   if (pixel[0] >= defs->film.width || pixel[1] >= defs->film.height)
     return report_usage("--pixel %u,%u: the image has only %u x %u pixels", pixel[0], pixel[1], defs->film.width,
                         defs->film.height);
-  const uint32_t whole[4] = {0, 0, defs->film.width, defs->film.height};
-  memcpy(defs->film.crop, whole, sizeof whole);
-  vlResult result = vl_trace_paths(s->world, &s->job.camera, &defs->film, &defs->render, pixel[0], pixel[1], first,
-                                   count, &s->paths, &error);
-  vlChannelsDef channels = vl_default_channels_def(defs->film.width, defs->film.height);
-  channels.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
-                      VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE |
-                      VL_CHANNEL_ID_PRIMITIVE;
-  const uint32_t one[4] = {pixel[0], pixel[1], pixel[0] + 1, pixel[1] + 1};
-  memcpy(channels.crop, one, sizeof one);
-  if (result == VL_OK) result = vl_render_channels(s->world, &s->job.camera, &channels, &s->channels, &s->ids, &error);
+  const PathsRequest request = {.world = s->world,
+                                .camera = &s->job.camera,
+                                .film = &defs->film,
+                                .render = &defs->render,
+                                .pixel = {pixel[0], pixel[1]},
+                                .first = first,
+                                .count = count,
+                                .by_sample = v[PATHS_SORT].given && v[PATHS_SORT].integer == 1};
+  vlResult result = paths_trace(&request, &s->traced, &error);
   return result == VL_OK ? -1 : report_error(&error, result, s->job.path);
 }
 
-/* qsort has no argument for the paths. */
-static const vlPixelPaths *sorted;
-
-static int larger_first(const void *a, const void *b) {
-  uint32_t i = *(const uint32_t *)a, j = *(const uint32_t *)b;
-  double x = fabs(paths_share(&sorted->paths[i])), y = fabs(paths_share(&sorted->paths[j]));
-  if (!(x == y)) return !isfinite(x) || x > y ? -1 : 1;
-  return i < j ? -1 : i > j;
-}
-
 static int print(State *s, const OptionValue *v) {
-  uint32_t count = s->paths->count, most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
-  s->order = malloc(count * sizeof *s->order);
-  if (!s->order) return report_reason(VL_ERROR_MEMORY, s->job.path, "paths");
-  for (uint32_t i = 0; i < count; i++) s->order[i] = i;
-  sorted = s->paths;
-  if (!v[PATHS_SORT].given || v[PATHS_SORT].integer == 0) qsort(s->order, count, sizeof *s->order, larger_first);
-  const PathsReport report = {.file = s->job.path,
-                              .world = s->world,
-                              .paths = s->paths,
-                              .order = s->order,
-                              .shown = count < most ? count : most,
-                              .channels = s->channels,
-                              .ids = s->ids};
-  if (v[PATHS_JSON].given)
-    paths_print_json(&report);
-  else
+  uint32_t count = s->traced.paths->count, most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
+  const PathsReport report = {
+      .file = s->job.path, .world = s->world, .traced = &s->traced, .shown = count < most ? count : most};
+  if (v[PATHS_JSON].given) {
+    Json json = {.out = stdout};
+    json_begin(&json, NULL, '{');
+    paths_put_json(&json, &report);
+    json_end(&json, '}');
+    putchar('\n');
+  } else {
     paths_print_text(&report);
+  }
   return image_finish_output(STATUS_OK);
 }
 
@@ -122,10 +102,7 @@ static int run_paths(const Command *command, const Arguments *arguments) {
   int status = load(&s, arguments);
   if (status < 0) status = trace(&s, pixel, v);
   if (status < 0) status = print(&s, v);
-  free(s.order);
-  vl_image_destroy(s.channels);
-  vl_image_destroy(s.ids);
-  vl_pixel_paths_destroy(s.paths);
+  paths_free(&s.traced);
   vl_world_destroy(s.world);
   vl_scene_destroy(s.scene);
   vl_context_destroy(s.context);

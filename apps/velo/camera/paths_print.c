@@ -3,7 +3,6 @@
 #include <stdio.h>
 
 #include "camera/paths.h"
-#include "cli/json.h"
 
 static const char *const events[] = {"surface", "medium", "exit", "nothing"};
 static const char *const fates[] = {"on", "left", "absorbed", "roulette", "depth"};
@@ -37,11 +36,11 @@ static vlIdInfo info_of(const vlWorld *world, vlIdKind kind, uint32_t id) {
 enum { C_Z, C_DISTANCE, C_P, C_N = 5, C_NG = 8, C_UV = 11, C_ALBEDO = 13, C_COUNT = 16 };
 
 static double channel_at(const PathsReport *r, uint32_t channel) {
-  return (double)vl_image_get(r->channels, 0, 0, channel);
+  return (double)vl_image_get(r->traced->channels, 0, 0, channel);
 }
 
 static uint32_t id_of(const PathsReport *r, uint32_t channel) {
-  return ((const uint32_t *)vl_image_const_pixels(r->ids))[channel];
+  return ((const uint32_t *)vl_image_const_pixels(r->traced->ids))[channel];
 }
 
 /* ---- text -------------------------------------------------------------------------------------------------------- */
@@ -148,14 +147,14 @@ static void print_vertex(const PathsReport *r, const vlPath *p, uint32_t index) 
 }
 
 void paths_print_text(const PathsReport *r) {
-  const vlPixelPaths *all = r->paths;
+  const vlPixelPaths *all = r->traced->paths;
   printf("%s: pixel %u,%u, %u samples by %s: mean %.6g %.6g %.6g\n", r->file, all->x, all->y, all->count,
          all->tracer == VL_TRACER_PATH ? "path" : "volpath", all->mean[0], all->mean[1], all->mean[2]);
   if (all->dropped) printf("%u samples are not finite\n", all->dropped);
   print_seen(r);
   double sum = all_shares(all);
   for (uint32_t k = 0; k < r->shown; k++) {
-    const vlPath *p = &all->paths[r->order[k]];
+    const vlPath *p = &all->paths[r->traced->order[k]];
     printf("\nsample %u: ", p->sample);
     print_rgb(p->rgb);
     printf(", %.3g %% of the pixel; film point %.6g,%.6g", sum > 0 ? 100 * fabs(paths_share(p)) / sum : 0.0,
@@ -301,26 +300,22 @@ static void json_path(Json *json, const PathsReport *r, const vlPath *p, double 
   json_end(json, '}');
 }
 
-void paths_print_json(const PathsReport *r) {
-  const vlPixelPaths *all = r->paths;
+void paths_put_json(Json *json, const PathsReport *r) {
+  const vlPixelPaths *all = r->traced->paths;
   double sum = all_shares(all);
-  Json json = {.out = stdout};
-  json_begin(&json, NULL, '{');
-  json_text(&json, "file", r->file);
-  json_begin(&json, "pixel", '[');
-  json_integer(&json, NULL, all->x);
-  json_integer(&json, NULL, all->y);
-  json_end(&json, ']');
-  json_text(&json, "tracer", all->tracer == VL_TRACER_PATH ? "path" : "volpath");
-  json_integer(&json, "samples", all->count);
-  json_integer(&json, "dropped", all->dropped);
-  json_begin(&json, "mean", '[');
-  for (int i = 0; i < 3; i++) json_number(&json, NULL, all->mean[i]);
-  json_end(&json, ']');
-  json_seen(&json, r);
-  json_begin(&json, "paths", '[');
-  for (uint32_t k = 0; k < r->shown; k++) json_path(&json, r, &all->paths[r->order[k]], sum);
-  json_end(&json, ']');
-  json_end(&json, '}');
-  putchar('\n');
+  json_text(json, "file", r->file);
+  json_begin(json, "pixel", '[');
+  json_integer(json, NULL, all->x);
+  json_integer(json, NULL, all->y);
+  json_end(json, ']');
+  json_text(json, "tracer", all->tracer == VL_TRACER_PATH ? "path" : "volpath");
+  json_integer(json, "samples", all->count);
+  json_integer(json, "dropped", all->dropped);
+  json_begin(json, "mean", '[');
+  for (int i = 0; i < 3; i++) json_number(json, NULL, all->mean[i]);
+  json_end(json, ']');
+  json_seen(json, r);
+  json_begin(json, "paths", '[');
+  for (uint32_t k = 0; k < r->shown; k++) json_path(json, r, &all->paths[r->traced->order[k]], sum);
+  json_end(json, ']');
 }

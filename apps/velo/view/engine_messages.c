@@ -45,7 +45,10 @@ void engine_clients(void *user, uint32_t count) {
   Engine *e = user;
   pthread_mutex_lock(&e->lock);
   e->clients = count;
-  if (!count) vl_cancel_request(e->stop);
+  if (!count) {
+    vl_cancel_request(e->stop);
+    engine_drop_traces(e, 0, "the page is closed");
+  }
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
 }
@@ -66,6 +69,7 @@ static void show_camera(Engine *e, const ViewCamera *camera) {
   e->wanted.camera = *camera;
   e->wanted.generation++;
   vl_cancel_request(e->stop);
+  engine_drop_traces(e, 0, "the camera moved");
 }
 
 void engine_remember(Engine *e, const ViewCamera *camera, uint32_t gesture) {
@@ -181,7 +185,8 @@ static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tas
 
 /* Messages that change nothing that others see. */
 static bool is_harmless(MessageKind kind) {
-  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE || kind == MESSAGE_OUTSIDE;
+  return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE || kind == MESSAGE_OUTSIDE ||
+         kind == MESSAGE_PATHS;
 }
 
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
@@ -204,6 +209,7 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
           add_task(e, client, m, e->tasks, &e->task_count);
         break;
       case MESSAGE_SCENE: choose_scene(e, client, m); break;
+      case MESSAGE_PATHS: engine_add_trace(e, client, m); break;
       case MESSAGE_PICK:
       case MESSAGE_FOCUS:
       case MESSAGE_OUTLINE:

@@ -36,13 +36,14 @@ typedef struct Task {
 struct Engine {
   EngineDef def;
   Server *server;
-  pthread_t thread, watcher, answerer;
-  bool started, watching, answering;
+  pthread_t thread, watcher, answerer, tracer;
+  bool started, watching, answering, tracing;
   pthread_mutex_t lock;
   pthread_cond_t wake;
   pthread_rwlock_t model_lock; /* held by those who use the model outside the render thread */
   vlCancel *stop;              /* stops the render; requested and withdrawn under the lock */
   vlCancel *end;               /* stops everything */
+  vlCancel *trace_stop;        /* stops the tracing of a pixel's paths; as `stop` */
   /* under the lock */
   bool quit;
   uint32_t clients;
@@ -56,6 +57,8 @@ struct Engine {
   uint32_t chosen_change, next_change;           /* the page's numbers of these choices */
   Task tasks[MOST_TASKS], questions[MOST_TASKS]; /* for the render thread, for the answerer */
   uint32_t task_count, question_count;
+  Task traces[MOST_TASKS];            /* pixels whose paths are to be traced: at most one of each page */
+  uint32_t trace_count, trace_client; /* trace_client: the page whose paths are being traced; 0: none */
   /* the watcher's own */
   FileList files; /* of which the scene was made */
   /* the render thread's own; the model is replaced under the lock */
@@ -104,6 +107,14 @@ void engine_overlay(Engine *engine, const Task *task);
 /* Posts the lines that draw the camera from outside; a small image of the scene from outside. */
 void engine_outline(Engine *engine, const Task *task);
 void engine_outside(Engine *engine, const Task *task);
+/* Adds a pixel whose paths are to be traced, in place of the page's one before; the caller holds the lock. */
+void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *message);
+/* Drops the pixels of a page, or of all (0), because of `why`; the caller holds the lock. */
+void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
+/* The thread that traces the paths of pixels. */
+void *engine_trace(void *engine);
+/* Posts why a message is not answered. */
+void engine_refuse(Engine *engine, const Task *task, const char *why);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);

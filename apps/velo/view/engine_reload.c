@@ -45,6 +45,7 @@ static bool load_again(Engine *e, Watch *watch) {
   Model *unused = e->next;
   e->next = model;
   vl_cancel_request(e->stop);
+  engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
   if (unused) model_free(unused);

@@ -287,8 +287,9 @@ int engine_create(const EngineDef *def, Engine **result) {
   pthread_mutex_init(&engine->lock, NULL);
   pthread_cond_init(&engine->wake, NULL);
   pthread_rwlock_init(&engine->model_lock, NULL);
-  bool made =
-      vl_cancel_create(def->context, &engine->stop) == VL_OK && vl_cancel_create(def->context, &engine->end) == VL_OK;
+  bool made = vl_cancel_create(def->context, &engine->stop) == VL_OK &&
+              vl_cancel_create(def->context, &engine->end) == VL_OK &&
+              vl_cancel_create(def->context, &engine->trace_stop) == VL_OK;
   int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
   if (status < 0)
     status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
@@ -308,6 +309,7 @@ int engine_start(Engine *engine, Server *server) {
     return report_failure(STATUS_OTHER, "the system refuses to start a thread");
   engine->started = true;
   engine->answering = pthread_create(&engine->answerer, NULL, engine_answer_questions, engine) == 0;
+  engine->tracing = pthread_create(&engine->tracer, NULL, engine_trace, engine) == 0;
   void *(*watch)(void *) = engine->def.lecture ? engine_load_chosen : engine_watch;
   engine->watching = pthread_create(&engine->watcher, NULL, watch, engine) == 0;
   return -1;
@@ -319,11 +321,13 @@ int engine_stop(Engine *engine) {
   engine->quit = true;
   vl_cancel_request(engine->stop);
   vl_cancel_request(engine->end);
+  vl_cancel_request(engine->trace_stop);
   pthread_cond_broadcast(&engine->wake);
   pthread_mutex_unlock(&engine->lock);
   pthread_join(engine->thread, NULL);
   if (engine->watching) pthread_join(engine->watcher, NULL);
   if (engine->answering) pthread_join(engine->answerer, NULL);
+  if (engine->tracing) pthread_join(engine->tracer, NULL);
   engine->started = false;
   if (!engine->def.film_path) return STATUS_OK;
   if (!engine->film || !vl_film_spp(engine->film))
@@ -343,6 +347,7 @@ void engine_destroy(Engine *engine) {
   free(engine->last_status);
   vl_cancel_destroy(engine->stop);
   vl_cancel_destroy(engine->end);
+  vl_cancel_destroy(engine->trace_stop);
   pthread_rwlock_destroy(&engine->model_lock);
   pthread_cond_destroy(&engine->wake);
   pthread_mutex_destroy(&engine->lock);

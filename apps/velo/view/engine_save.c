@@ -36,14 +36,6 @@ static void scene_stem(const Engine *e, char stem[NAME_SIZE]) {
   snprintf(stem, NAME_SIZE, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
 }
 
-static void refuse(Engine *e, const Task *task, const char *why) {
-  JsonText text;
-  if (!json_text_begin(&text, "refused")) return;
-  json_integer(&text.json, "id", task->message.id);
-  json_text(&text.json, "message", why);
-  json_text_post(&text, e->server, task->client);
-}
-
 static void post_saved(Engine *e, const Task *task, const char *name) {
   JsonText text;
   if (!json_text_begin(&text, "saved")) return;
@@ -66,14 +58,14 @@ static void save_camera(Engine *e, const Task *task, const char *wanted, const c
   vlCameraFileDef def = vl_default_camera_file_def();
   vlCameraRecord record = {.camera = e->now.camera.def, .frames = 1};
   int found = choice_value(dialect_choices, dialect, -1);
-  if (found < 0 || found == VL_CAMERA_DIALECT_EXR) return refuse(e, task, "there is no such dialect");
-  if (!free_name(wanted, name)) return refuse(e, task, "there are too many files of this name");
+  if (found < 0 || found == VL_CAMERA_DIALECT_EXR) return engine_refuse(e, task, "there is no such dialect");
+  if (!free_name(wanted, name)) return engine_refuse(e, task, "there are too many files of this name");
   def.dialect = (vlCameraDialect)found;
   vlResult result = vl_camera_write(e->def.context, name, &def, &record, &error);
   if (result == VL_OK)
     post_saved(e, task, name);
   else
-    refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
 }
 
 /* The job as `velo render` would have it for the present image. */
@@ -93,9 +85,9 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
   char name[NAME_SIZE];
   bool eight_bit;
   const ViewMessage *m = &task->message;
-  if (!e->film || !vl_film_spp(e->film)) return refuse(e, task, "the image has no samples yet");
-  if (!output_suffix(wanted, &eight_bit)) return refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
-  if (!free_name(wanted, name)) return refuse(e, task, "there are too many files of this name");
+  if (!e->film || !vl_film_spp(e->film)) return engine_refuse(e, task, "the image has no samples yet");
+  if (!output_suffix(wanted, &eight_bit)) return engine_refuse(e, task, "formats are .exr .png .jpg .hdr .pfm .tga");
+  if (!free_name(wanted, name)) return engine_refuse(e, task, "there are too many files of this name");
   Outputs outputs = {.paths = {name},
                      .count = 1,
                      .view = (vlView)choice_value(view_choices, m->view, VL_VIEW_STANDARD),
@@ -111,15 +103,15 @@ static void save_image(Engine *e, const Task *task, const char *wanted) {
   if (status == STATUS_OK)
     post_saved(e, task, name);
   else
-    refuse(e, task, "the image could not be written; the terminal has the reason");
+    engine_refuse(e, task, "the image could not be written; the terminal has the reason");
 }
 
 void engine_save(Engine *e, const Task *task) {
   const ViewMessage *m = &task->message;
-  if (!name_is_plain(m->name)) return refuse(e, task, "the name must be that of a file in this folder");
+  if (!name_is_plain(m->name)) return engine_refuse(e, task, "the name must be that of a file in this folder");
   if (strcmp(m->what, "camera") == 0) return save_camera(e, task, m->name, m->dialect);
   if (strcmp(m->what, "image") == 0) return save_image(e, task, m->name);
-  refuse(e, task, "only cameras and images can be saved");
+  engine_refuse(e, task, "only cameras and images can be saved");
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
@@ -179,12 +171,12 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.200s-view", whole);
   snprintf(whole, sizeof whole, "%s.json", stem);
-  if (!free_name(whole, camera)) return refuse(e, task, "there are too many files of this name"), NULL;
+  if (!free_name(whole, camera)) return engine_refuse(e, task, "there are too many files of this name"), NULL;
   def.dialect = VL_CAMERA_DIALECT_VELO;
   vlResult result = vl_camera_write(e->def.context, camera, &def, &record, &error);
-  if (result != VL_OK) return refuse(e, task, error.message[0] ? error.message : vl_result_name(result)), NULL;
+  if (result != VL_OK) return engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result)), NULL;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return refuse(e, task, "out of memory"), NULL;
+  if (!out) return engine_refuse(e, task, "out of memory"), NULL;
   const vlRenderDef *render = &e->model.job.defs->render;
   char number[40];
   fputs("velo render", out);
@@ -208,7 +200,7 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
 
 void engine_command(Engine *e, const Task *task) {
   char camera[NAME_SIZE];
-  if (!e->film || !vl_film_spp(e->film)) return refuse(e, task, "the image has no samples yet");
+  if (!e->film || !vl_film_spp(e->film)) return engine_refuse(e, task, "the image has no samples yet");
   char *command = make_command(e, task, camera);
   JsonText text;
   if (command && json_text_begin(&text, "command")) {

@@ -6,7 +6,7 @@
 
 #include "view/engine_status.h"
 
-static void post_answer_error(Engine *e, const Task *task, const char *why) {
+void engine_refuse(Engine *e, const Task *task, const char *why) {
   JsonText text;
   if (!json_text_begin(&text, "refused")) return;
   json_integer(&text.json, "id", task->message.id);
@@ -53,7 +53,7 @@ static void pick(Engine *e, const Task *task) {
   const ViewCamera camera = present_camera(e);
   const vlCamera *c = &camera.made;
   if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
-    post_answer_error(e, task, "the point is outside the image");
+    engine_refuse(e, task, "the point is outside the image");
     return;
   }
   vlChannelsDef def = vl_default_channels_def(c->width, c->height);
@@ -67,7 +67,7 @@ static void pick(Engine *e, const Task *task) {
   vlResult result = vl_render_channels(e->model.world, c, &def, &floats, &ids, &error);
   JsonText text;
   if (result != VL_OK) {
-    post_answer_error(e, task, error.message);
+    engine_refuse(e, task, error.message);
   } else if (json_text_begin(&text, "picked")) {
     static const char *const vectors[][4] = {{"P", "P.X", "P.Y", "P.Z"},
                                              {"N", "N.X", "N.Y", "N.Z"},
@@ -100,7 +100,7 @@ static void focus(Engine *e, const Task *task) {
   vlResult result = vl_autofocus(e->model.world, &camera.made, m->x, m->y, &distance, &error);
   if (result == VL_OK) result = camera_set_focus(&camera, distance, &next, &error);
   if (result != VL_OK) {
-    post_answer_error(e, task, error.message);
+    engine_refuse(e, task, error.message);
     return;
   }
   pthread_mutex_lock(&e->lock);
@@ -109,6 +109,7 @@ static void focus(Engine *e, const Task *task) {
   e->wanted.camera = next;
   e->wanted.generation++;
   vl_cancel_request(e->stop);
+  engine_drop_traces(e, 0, "the camera moved");
   pthread_cond_broadcast(&e->wake);
   engine_post_state(e, 0);
   pthread_mutex_unlock(&e->lock);
@@ -123,7 +124,8 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_OVERLAY: engine_overlay(e, task); break;
     case MESSAGE_OUTLINE: engine_outline(e, task); break;
     case MESSAGE_OUTSIDE: engine_outside(e, task); break;
-    case MESSAGE_SEEN: /* these need no world */
+    case MESSAGE_PATHS: /* engine_trace answers it */
+    case MESSAGE_SEEN:  /* these need no world */
     case MESSAGE_CAMERA:
     case MESSAGE_UNDO:
     case MESSAGE_REDO:

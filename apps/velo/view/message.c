@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const kinds[] = {"seen", "camera",  "undo",    "redo",    "reset",   "settings", "pick", "focus",
-                                    "save", "command", "overlay", "outline", "outside", "steer",    "scene"};
+static const char *const kinds[] = {"seen", "camera",  "undo",    "redo",    "reset",   "settings", "pick",  "focus",
+                                    "save", "command", "overlay", "outline", "outside", "paths",    "steer", "scene"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The following functions return false for a value of a wrong type or out of range. A missing value is right. */
@@ -111,9 +111,12 @@ static bool read_members(const json_t *object, ViewMessage *m, const char **why)
                  read_count(object, "gesture", 4294967295.0, &m->gesture, NULL) &&
                  read_count(object, "id", 4294967295.0, &m->id, NULL) && read_double(object, "x", 65536, &m->x) &&
                  read_double(object, "y", 65536, &m->y) && read_double(object, "exposure", 64, &m->exposure) &&
+                 read_count(object, "samples", 65536, &m->samples, NULL) &&
+                 read_count(object, "show", 64, &m->show, NULL) &&
                  read_count(object, "spp", 1 << 24, &m->spp, &m->has_spp) && (!m->has_spp || m->spp > 0);
   if (!numbers) return *why = "a number is of a wrong type or out of range", false;
   bool rest = read_bool(object, "paused", &m->paused, &m->has_paused) && read_bool(object, "boxes", &m->boxes, NULL) &&
+              read_bool(object, "by_sample", &m->by_sample, NULL) &&
               read_counts(object, "crop", 4, m->crop, &m->has_crop) &&
               read_counts(object, "size", 2, m->size, &m->has_size);
   if (!rest) return *why = "a setting is of a wrong type or out of range", false;

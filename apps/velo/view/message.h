@@ -28,6 +28,7 @@ typedef enum MessageKind {
   MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes: id, boxes */
   MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
+  MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
   MESSAGE_STEER,    /* the sender wants to steer, if nobody does */
   MESSAGE_SCENE     /* another scene of the lecture: name, change */
 } MessageKind;
@@ -49,7 +50,8 @@ typedef struct ViewMessage {
   MessageField fields[MESSAGE_FIELDS];
   bool has_spp, has_paused, has_crop, has_channel, has_size; /* of settings */
   uint32_t spp;
-  bool paused, boxes;
+  uint32_t samples, show; /* numbers of paths; 0: not given */
+  bool paused, boxes, by_sample;
   uint32_t crop[4]; /* all 0: none */
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME], view[MESSAGE_NAME];

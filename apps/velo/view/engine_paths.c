@@ -1,0 +1,99 @@
+/* view/engine_paths.c: the paths of a pixel, traced again for a page, on a thread beside the render. A page has one
+ * request at a time: a newer one, another camera or another scene ends it. */
+#include <string.h>
+
+#include "camera/paths.h"
+#include "cli/kinds.h"
+#include "view/engine_status.h"
+
+enum { DEFAULT_SAMPLES = 16, DEFAULT_SHOWN = 16 };
+
+void engine_drop_traces(Engine *e, uint32_t client, const char *why) {
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < e->trace_count; i++) {
+    if (client && e->traces[i].client != client)
+      e->traces[kept++] = e->traces[i];
+    else
+      engine_refuse(e, &e->traces[i], why);
+  }
+  e->trace_count = kept;
+  if (e->trace_client && (!client || e->trace_client == client)) vl_cancel_request(e->trace_stop);
+}
+
+void engine_add_trace(Engine *e, uint32_t client, const ViewMessage *m) {
+  const Task task = {.client = client, .message = *m};
+  engine_drop_traces(e, client, "another pixel was chosen");
+  if (e->trace_count == MOST_TASKS)
+    engine_refuse(e, &task, "too much at once");
+  else
+    e->traces[e->trace_count++] = task;
+}
+
+static void post_paths(Engine *e, const Task *task, const TracedPaths *traced) {
+  uint32_t most = task->message.show ? task->message.show : DEFAULT_SHOWN, count = traced->paths->count;
+  const PathsReport report = {
+      .file = e->def.path, .world = e->model.world, .traced = traced, .shown = count < most ? count : most};
+  JsonText text;
+  if (!json_text_begin(&text, "paths")) return;
+  json_integer(&text.json, "id", task->message.id);
+  paths_put_json(&text.json, &report);
+  json_text_post(&text, e->server, task->client);
+}
+
+/* Traces the pixel's paths: the samples of the image. */
+static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
+  const ViewMessage *m = &task->message;
+  const vlCamera *c = &camera->made;
+  vlRenderDef render = e->model.job.defs->render;
+  vlError error = {0};
+  TracedPaths traced = {.paths = NULL};
+  if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
+    engine_refuse(e, task, "the point is outside the image");
+    return;
+  }
+  if (render.tracer != VL_TRACER_PATH && render.tracer != VL_TRACER_VOLPATH) {
+    char why[200];
+    snprintf(why, sizeof why, "paths of the tracer %s are not recorded; start velo view with --tracer path or volpath",
+             kind_name("tracers", (int)render.tracer));
+    engine_refuse(e, task, why);
+    return;
+  }
+  render.cancel = e->trace_stop, render.priority = 2;
+  const PathsRequest request = {.world = e->model.world,
+                                .camera = c,
+                                .film = &e->model.job.defs->film,
+                                .render = &render,
+                                .pixel = {(uint32_t)m->x, (uint32_t)m->y},
+                                .count = m->samples ? m->samples : DEFAULT_SAMPLES,
+                                .by_sample = m->by_sample};
+  vlResult result = paths_trace(&request, &traced, &error);
+  if (result == VL_OK)
+    post_paths(e, task, &traced);
+  else
+    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+  paths_free(&traced);
+}
+
+void *engine_trace(void *user) {
+  Engine *e = user;
+  static Task task; /* this thread alone uses it */
+  static ViewCamera camera;
+  pthread_mutex_lock(&e->lock);
+  for (;;) {
+    while (!e->quit && !e->trace_count) pthread_cond_wait(&e->wake, &e->lock);
+    if (e->quit) break;
+    task = e->traces[0];
+    memmove(e->traces, e->traces + 1, --e->trace_count * sizeof *e->traces);
+    camera = e->wanted.camera;
+    e->trace_client = task.client;
+    vl_cancel_clear(e->trace_stop);
+    pthread_mutex_unlock(&e->lock);
+    pthread_rwlock_rdlock(&e->model_lock);
+    answer(e, &task, &camera);
+    pthread_rwlock_unlock(&e->model_lock);
+    pthread_mutex_lock(&e->lock);
+    e->trace_client = 0;
+  }
+  pthread_mutex_unlock(&e->lock);
+  return NULL;
+}

@@ -227,6 +227,19 @@ static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made
   return camera_wrap(&def, made, NULL, self->keep);
 }
 
+/* A camera with other pixels. */
+static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) {
+  PyObject *result = with_compiled(self, done, made, NULL);
+  if (result) {
+    vlCameraDef *def = &((Camera *)result)->def;
+#define UNSET(field) def->field = VL_UNSET;
+    FOCAL(UNSET)
+#undef UNSET
+    def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy, def->skew = made->skew;
+  }
+  return result;
+}
+
 static PyObject *camera_resize(Camera *self, PyObject *arguments) {
   unsigned width, height;
   if (!PyArg_ParseTuple(arguments, "II:_resize", &width, &height)) return NULL;
@@ -234,15 +247,15 @@ static PyObject *camera_resize(Camera *self, PyObject *arguments) {
     return Py_INCREF((PyObject *)self), (PyObject *)self;
   vlCamera made;
   vlResult done = vl_camera_resize(&self->camera, width, height, &made);
-  PyObject *result = with_compiled(self, done, &made, NULL);
-  if (result) {
-    vlCameraDef *def = &((Camera *)result)->def;
-#define UNSET(field) def->field = VL_UNSET;
-    FOCAL(UNSET)
-#undef UNSET
-    def->fx = made.fx, def->fy = made.fy, def->cx = made.cx, def->cy = made.cy, def->skew = made.skew;
-  }
-  return result;
+  return with_pixels(self, done, &made);
+}
+static PyObject *camera_coarse(Camera *self, PyObject *number) {
+  unsigned long factor = PyLong_AsUnsignedLong(number);
+  if (PyErr_Occurred()) return NULL;
+  if (factor < 1 || factor > VL_MOST_COARSE) return raise_usage("coarse: a factor from 1 to %d", VL_MOST_COARSE);
+  vlCamera made;
+  vlResult done = vl_camera_coarse(&self->camera, (uint32_t)factor, &made);
+  return with_pixels(self, done, &made);
 }
 static PyObject *camera_move(Camera *self, PyObject *matrix) {
   double m[16];
@@ -508,6 +521,7 @@ end:
 static PyMethodDef camera_methods[] = {
     {"_replace", (PyCFunction)camera_replace, METH_O, "This camera with other parameters."},
     {"_resize", (PyCFunction)camera_resize, METH_VARARGS, "For another image size."},
+    {"_coarse", (PyCFunction)camera_coarse, METH_O, "With pixels that are this many times as wide and high."},
     {"_move", (PyCFunction)camera_move, METH_O, "With another pose."},
     {"_at", (PyCFunction)camera_at, METH_O, "Frozen at a time."},
     {"_stereo", (PyCFunction)camera_stereo, METH_NOARGS, "Both eyes."},

@@ -1,12 +1,9 @@
-/* _velo/context.c: contexts, calls without the GIL, callbacks, exceptions. */
+/* _velo/context.c: contexts, short calls without the GIL, exceptions. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <unistd.h>
 
 #include "module.h"
-
-_Thread_local const Film *open_film;
-_Thread_local bool inside_pass;
 
 /* Calls a function of velo/_errors.py. The name is looked up in the module's dict: getattr would keep each new str in
  * the interpreter's cache of methods. */
@@ -68,7 +65,6 @@ bool context_check(const Context *context) {
     Py_XDECREF(error);
     return false;
   }
-  if (inside_pass) return raise_usage("a progress callback may use velo only when progress.pass_done is true"), false;
   return true;
 }
 
@@ -85,42 +81,6 @@ bool call_begin(Call *call, const Context *context, bool *busy) {
 void call_end(Call *call) {
   PyEval_RestoreThread(call->thread);
   if (call->busy) *call->busy = false;
-}
-
-static PyObject *progress_object(const vlProgress *p) {
-  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed, p->remaining, p->fraction,
-                      (unsigned long long)p->paths, (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
-}
-
-bool progress_call(void *user, const vlProgress *progress) {
-  Progress *p = user;
-  PyEval_RestoreThread(p->call->thread);
-  bool go_on = !PyErr_Occurred() && PyErr_CheckSignals() == 0;
-  if (go_on && p->callback) {
-    const Film *film = open_film;
-    bool pass = inside_pass;
-    if (progress->pass_done)
-      open_film = p->film;
-    else
-      inside_pass = true;
-    PyObject *object = progress_object(progress);
-    PyObject *answer = object ? PyObject_CallFunctionObjArgs(p->callback, object, NULL) : NULL;
-    open_film = film;
-    inside_pass = pass;
-    go_on = answer && answer != Py_False;
-    Py_XDECREF(answer);
-    Py_XDECREF(object);
-  }
-  p->call->thread = PyEval_SaveThread();
-  return go_on;
-}
-
-bool stop_call(void *user) {
-  Call *call = user;
-  PyEval_RestoreThread(call->thread);
-  bool stop = PyErr_Occurred() || PyErr_CheckSignals() != 0;
-  call->thread = PyEval_SaveThread();
-  return stop;
 }
 
 /* ---- contexts ---------------------------------------------------------------------------------------------------- */

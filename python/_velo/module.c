@@ -106,6 +106,7 @@ static PyMethodDef functions[] = {
     {"sensor_names", sensor_names, METH_NOARGS, "Names of the library's sensors."},
     {"channel_names", channel_names, METH_NOARGS, "Names of ground truth channels."},
     {"kinds", kinds, METH_VARARGS, "Kinds of a family with their keywords."},
+    {"shut_down", shut_down, METH_NOARGS, "Stops the calls of other threads; later ones are errors."},
     {NULL, NULL, 0, NULL},
 };
 
@@ -125,7 +126,7 @@ PyMODINIT_FUNC PyInit__velo(void) {
     Py_INCREF(type);
     types[i] = (PyTypeObject *)type;
   }
-  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions, render_functions};
+  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions, render_functions, world_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
     if (PyModule_AddFunctions(module, tables[i]) < 0) return NULL;
   return module;

@@ -111,17 +111,29 @@ bool context_check(const Context *context);
 /* Whether the context belongs to this process, without an exception. */
 bool context_is_ours(const Context *context);
 
-/* The progress callback of a render and what it needs. */
-typedef struct Progress {
-  Call *call;
+/* A call that takes long: a load, a build, a render, ground truth. It runs on a thread of its own (long_call.c). */
+typedef struct Waiting Waiting;
+typedef struct LongCall {
+  const Context *context;
+  vlCancel *cancel;   /* for the def of the call */
   PyObject *callback; /* null: none */
-  Film *film;
-} Progress;
-bool progress_call(void *user, const vlProgress *progress); /* a vlProgressFn; user is a Progress */
-bool stop_call(void *user);                                 /* a vlStopFn; user is a Call */
+  Film *film;         /* which the callback may read after a pass; may be null */
+  Waiting *waiting;
+} LongCall;
+typedef vlResult LongBody(void *user);
+/* callback: a callable, or None. False: an exception is set. True: long_call_end must follow. */
+bool long_call_begin(LongCall *call, const Context *context, PyObject *callback);
+/* Runs body(user) without the GIL; *result is what it returns. False: an exception is set, by a signal, the callback,
+ * or since the call could not run. */
+bool long_call_run(LongCall *call, bool *busy, LongBody *body, void *user, vlResult *result);
+void long_call_end(LongCall *call);
+/* The callbacks for the def of a call; user is the LongCall. */
+bool long_call_progress(void *user, const vlProgress *progress);
+bool long_call_step(void *user, const vlStep *step);
 /* The film that this thread may read, although a render runs: inside a callback after a pass. */
 extern _Thread_local const Film *open_film;
-extern _Thread_local bool inside_pass;
+/* shut_down(): stops the calls of other threads, and waits for them; later ones are errors. */
+PyObject *shut_down(PyObject *module, PyObject *unused);
 
 /* Calls a function of velo/_errors.py with arguments as Py_BuildValue("(...)") makes them. */
 PyObject *call_package(const char *name, const char *format, ...);
@@ -188,10 +200,24 @@ int find_kind(const vlKindFamily *family, PyObject *name);
 
 PyObject *image_object(Context *context, vlImage *image); /* takes the image, also when it fails */
 bool scene_open(const Scene *self);                       /* false: an exception is set */
+/* A file that is read. */
+typedef struct Loading {
+  vlScene *scene;
+  const char *file, *name;
+  vlLoadDef def;
+  vlLoadedGroup *loaded; /* null: it is added to the scene; else as a group */
+  vlError error;
+} Loading;
+bool load_file(Scene *self, Loading *loading, PyObject *callback); /* false: an exception is set */
 PyObject *scene_add(Scene *self, PyObject *arguments);
 PyObject *scene_load_group(Scene *self, PyObject *arguments);
 PyObject *scene_add_instance(Scene *self, PyObject *arguments);
+PyObject *scene_set(Scene *self, PyObject *arguments);
+PyObject *scene_show(Scene *self, PyObject *arguments);
+PyObject *scene_remove(Scene *self, PyObject *handle);
+PyObject *scene_handles(Scene *self, PyObject *family);
+PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
-extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[];
+extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[];
 
 #endif

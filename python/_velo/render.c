@@ -1,4 +1,4 @@
-/* _velo/render.c: settings, worlds, renders, ground truth and boxes. */
+/* _velo/render.c: settings, renders, ground truth and boxes. */
 #include <math.h>
 #include <string.h>
 
@@ -95,9 +95,28 @@ static PyObject *settings_crop(Settings *self, PyObject *arguments) {
     return raise_usage("crop: x0, y0, x1, y1 must be inside the image");
   Py_RETURN_NONE;
 }
+
+/* set_coarse(factor): the film of 1/factor of the size. */
+static PyObject *settings_coarse(Settings *self, PyObject *number) {
+  unsigned long factor = PyLong_AsUnsignedLong(number);
+  if (PyErr_Occurred()) return NULL;
+  if (factor < 1 || factor > VL_MOST_COARSE) return raise_usage("coarse: a factor from 1 to %d", VL_MOST_COARSE);
+  self->defs.film = vl_coarse_film_def(&self->defs.film, (uint32_t)factor);
+  Py_RETURN_NONE;
+}
 static PyObject *settings_get_size(Settings *self, void *unused) {
   (void)unused;
   return Py_BuildValue("(II)", self->defs.film.width, self->defs.film.height);
+}
+
+static PyObject *settings_copy(Settings *self, PyObject *unused) {
+  (void)unused;
+  Settings *copy = make_object(TYPE_SETTINGS);
+  if (!copy) return NULL;
+  copy->defs = self->defs;
+  copy->keep = PyList_New(0);
+  if (!copy->keep || !keep_object(copy->keep, (PyObject *)self)) return Py_DECREF((PyObject *)copy), NULL;
+  return (PyObject *)copy;
 }
 
 /* names(): all keywords. */
@@ -114,6 +133,8 @@ static PyMethodDef settings_methods[] = {
     {"set_size", (PyCFunction)settings_size, METH_VARARGS,
      "Width and height, pixels; the crop becomes the whole image."},
     {"set_crop", (PyCFunction)settings_crop, METH_VARARGS, "x0, y0, x1, y1, pixels."},
+    {"copy", (PyCFunction)settings_copy, METH_NOARGS, "The same settings, to be changed on their own."},
+    {"set_coarse", (PyCFunction)settings_coarse, METH_O, "The size of a coarse image of this factor."},
     {"names", (PyCFunction)settings_names, METH_NOARGS, "All keywords."},
     {NULL, NULL, 0, NULL},
 };
@@ -131,107 +152,20 @@ static PyType_Slot settings_slots[] = {
 PyType_Spec settings_spec = {"velo._velo.Settings", sizeof(Settings), 0,
                              Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, settings_slots};
 
-/* ---- worlds ------------------------------------------------------------------------------------------------------ */
-
-static PyObject *world_build(PyObject *module, PyObject *arguments) {
-  (void)module;
-  Scene *scene;
-  Settings *settings;
-  if (!PyArg_ParseTuple(arguments, "O!O!:world_build", base_types[TYPE_SCENE], &scene, base_types[TYPE_SETTINGS],
-                        &settings))
-    return NULL;
-  if (!scene->scene) return raise_usage("the scene is closed");
-  Call call;
-  if (!call_begin(&call, scene->context, &scene->busy)) return NULL;
-  vlError error = {0};
-  vlWorld *world = NULL;
-  vlResult done = vl_world_build(scene->scene, &settings->defs.build, &world, &error);
-  call_end(&call);
-  if (done != VL_OK) return raise_result(done, &error);
-  World *self = make_object(TYPE_WORLD);
-  if (!self) {
-    vl_world_destroy(world);
-    return NULL;
-  }
-  Py_INCREF((PyObject *)scene->context);
-  self->context = scene->context;
-  self->world = world;
-  return (PyObject *)self;
-}
-
-static void world_dealloc(World *self) {
-  if (context_is_ours(self->context)) vl_world_destroy(self->world);
-  Py_XDECREF((PyObject *)self->context);
-  free_object((PyObject *)self);
-}
-
-static PyObject *world_close(World *self, PyObject *unused) {
-  (void)unused;
-  if (self->users) return raise_usage("the world is in use");
-  if (context_is_ours(self->context)) vl_world_destroy(self->world);
-  self->world = NULL;
-  Py_RETURN_NONE;
-}
-
-static PyObject *world_info(World *self, void *unused) {
-  (void)unused;
-  if (!self->world) return raise_usage("the world is closed");
-  vlWorldInfo i;
-  vl_world_info(self->world, &i);
-  return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:(ddd),s:(ddd),s:d}", "triangles", (unsigned long long)i.triangles,
-                       "primitives", (unsigned long long)i.primitives, "instances", (unsigned long long)i.instances,
-                       "lights", (unsigned long long)i.lights, "texture_bytes", (unsigned long long)i.texture_bytes,
-                       "bytes", (unsigned long long)i.bytes, "bounds_min", (double)i.bounds_min[0],
-                       (double)i.bounds_min[1], (double)i.bounds_min[2], "bounds_max", (double)i.bounds_max[0],
-                       (double)i.bounds_max[1], (double)i.bounds_max[2], "build_seconds", i.build_seconds);
-}
-
-static PyObject *text_or_none(const char *text) {
-  if (!text) Py_RETURN_NONE;
-  return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
-}
-
-/* _ids(kind): a list of dicts, that of id 1 first. */
-static PyObject *world_ids(World *self, PyObject *name) {
-  static const char *const kinds[] = {"object", "material", "instance", NULL};
-  if (!self->world) return raise_usage("the world is closed");
-  int kind = find_choice(kinds, "kind of id", name);
-  if (kind < 0) return NULL;
-  PyObject *list = PyList_New(0);
-  for (uint32_t id = 1; list && id <= vl_world_id_count(self->world, (vlIdKind)kind); id++) {
-    vlIdInfo info;
-    vl_world_id_info(self->world, (vlIdKind)kind, id, &info);
-    PyObject *entry =
-        Py_BuildValue("{s:I,s:N,s:N,s:N,s:N,s:N,s:N,s:I,s:I}", "id", id, "name", text_or_none(info.name), "path",
-                      text_or_none(info.path), "place", text_or_none(info.place), "type", text_or_none(info.type),
-                      "shared_name", PyBool_FromLong(info.shared_name), "file", text_or_none(info.source.file), "line",
-                      info.source.line, "material", info.material);
-    if (!entry || PyList_Append(list, entry) < 0) Py_CLEAR(list);
-    Py_XDECREF(entry);
-  }
-  return list;
-}
-
-static PyMethodDef world_methods[] = {
-    {"_close", (PyCFunction)world_close, METH_NOARGS, "Frees the world."},
-    {"_ids", (PyCFunction)world_ids, METH_O, "What the ids of a kind stand for."},
-    {NULL, NULL, 0, NULL},
-};
-static PyGetSetDef world_members[] = {
-    {"info", (getter)world_info, NULL, "Counts, bytes, bounds (scene units) and seconds of the build.", NULL},
-    {NULL, NULL, NULL, NULL, NULL},
-};
-static PyType_Slot world_slots[] = {
-    {Py_tp_doc, "A compiled scene. It never changes."},
-    {Py_tp_dealloc, world_dealloc},
-    {Py_tp_methods, world_methods},
-    {Py_tp_getset, world_members},
-    {0, NULL},
-};
-PyType_Spec world_spec = {"velo._velo.World", sizeof(World), 0,
-                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, world_slots};
-
 /* ---- renders ----------------------------------------------------------------------------------------------------- */
+
+typedef struct Rendering {
+  const vlWorld *world;
+  const vlCamera *camera;
+  vlFilm *film;
+  vlRenderDef def;
+  vlRenderStats stats;
+  vlError error;
+} Rendering;
+static vlResult run_render(void *user) {
+  Rendering *r = user;
+  return vl_render(r->world, r->camera, r->film, &r->def, &r->stats, &r->error);
+}
 
 /* render(world, camera, film, settings, callback or None): {statistic: number}; None: the callback ended it. */
 static PyObject *render(PyObject *module, PyObject *arguments) {
@@ -245,27 +179,39 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
                         base_types[TYPE_FILM], &film, base_types[TYPE_SETTINGS], &settings, &callback))
     return NULL;
   if (!world->world || !film->film) return raise_usage(world->world ? "the film is closed" : "the world is closed");
-  if (callback != Py_None && !PyCallable_Check(callback)) return raise_usage("progress must be callable");
-  Call call;
-  Progress progress = {&call, callback == Py_None ? NULL : callback, film};
-  vlRenderDef def = settings->defs.render;
-  def.progress = progress_call;
-  def.progress_user = &progress;
-  if (!call_begin(&call, world->context, &film->busy)) return NULL;
+  LongCall call;
+  if (!long_call_begin(&call, world->context, callback)) return NULL;
+  call.film = film;
+  Rendering r = {.world = world->world, .camera = &camera->camera, .film = film->film, .def = settings->defs.render};
+  r.def.cancel = call.cancel;
+  r.def.progress = call.callback ? long_call_progress : NULL;
+  r.def.progress_user = &call;
   world->users++;
-  vlError error = {0};
-  vlRenderStats s = {0};
-  vlResult done = vl_render(world->world, &camera->camera, film->film, &def, &s, &error);
-  call_end(&call);
+  vlResult done;
+  bool fine = long_call_run(&call, &film->busy, run_render, &r, &done);
+  long_call_end(&call);
   world->users--;
-  if (PyErr_Occurred()) return NULL;
+  if (!fine) return NULL;
   if (done == VL_CANCELLED) Py_RETURN_NONE;
-  if (done != VL_OK) return raise_result(done, &error);
+  if (done != VL_OK) return raise_result(done, &r.error);
+  const vlRenderStats s = r.stats;
   return Py_BuildValue("{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp, "paths",
                        (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays, "bounce_rays",
                        (unsigned long long)s.bounce_rays, "shadow_rays", (unsigned long long)s.shadow_rays,
                        "not_finite", (unsigned long long)s.not_finite, "seconds", s.seconds, "blocks", s.blocks,
                        "noisy_blocks", s.noisy_blocks);
+}
+
+typedef struct Truth {
+  const vlWorld *world;
+  const vlCamera *camera;
+  vlChannelsDef def;
+  vlImage *floats, *ids;
+  vlError error;
+} Truth;
+static vlResult run_channels(void *user) {
+  Truth *t = user;
+  return vl_render_channels(t->world, t->camera, &t->def, &t->floats, &t->ids, &t->error);
 }
 
 /* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward or None): (image of
@@ -281,39 +227,42 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
                         &keywords, &forward, &backward))
     return NULL;
   if (!world->world) return raise_usage("the world is closed");
-  vlChannelsDef def = vl_default_channels_def(settings->defs.film.width, settings->defs.film.height);
-  memcpy(def.crop, settings->defs.film.crop, sizeof def.crop);
-  def.space = settings->defs.film.space;
-  def.render = &settings->defs.render;
-  def.exposure = settings->defs.develop.exposure;
-  def.channels = 0;
+  Truth t = {.world = world->world,
+             .camera = &camera->camera,
+             .def = vl_default_channels_def(settings->defs.film.width, settings->defs.film.height)};
+  vlChannelsDef *def = &t.def;
+  memcpy(def->crop, settings->defs.film.crop, sizeof def->crop);
+  def->space = settings->defs.film.space;
+  def->render = &settings->defs.render;
+  def->exposure = settings->defs.develop.exposure;
+  def->channels = 0;
   const char *known[VL_CHANNEL_COUNT + 1] = {0};
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++) known[i] = vl_channel_name(i);
   for (Py_ssize_t i = 0; i < PyList_Size(names); i++) {
     int channel = find_choice(known, "channel", PyList_GetItem(names, i));
     if (channel < 0) return NULL;
-    def.channels |= 1u << channel;
+    def->channels |= 1u << channel;
   }
   if (film != Py_None) {
     if (!is_object(film, TYPE_FILM) || !((Film *)film)->film) return raise_usage("expected a Film");
-    def.film = ((Film *)film)->film;
-    def.samples = vl_film_spp(def.film);
+    def->film = ((Film *)film)->film;
+    def->samples = vl_film_spp(def->film);
   }
-  if (forward != Py_None && is_object(forward, TYPE_CAMERA)) def.forward = &((Camera *)forward)->camera;
-  if (backward != Py_None && is_object(backward, TYPE_CAMERA)) def.backward = &((Camera *)backward)->camera;
-  const Target target = {(char *)&def, settings->keep, NULL, false};
+  if (forward != Py_None && is_object(forward, TYPE_CAMERA)) def->forward = &((Camera *)forward)->camera;
+  if (backward != Py_None && is_object(backward, TYPE_CAMERA)) def->backward = &((Camera *)backward)->camera;
+  const Target target = {(char *)def, settings->keep, NULL, false};
   if (!set_parameters(&target, channels_rows, "keyword of channels", keywords)) return NULL;
-  Call call;
-  def.stop = stop_call;
-  def.stop_user = &call;
-  if (!call_begin(&call, world->context, film == Py_None ? NULL : &((Film *)film)->busy)) return NULL;
+  LongCall call;
+  if (!long_call_begin(&call, world->context, Py_None)) return NULL;
+  def->cancel = call.cancel;
   world->users++;
-  vlError error = {0};
-  vlImage *floats = NULL, *ids = NULL;
-  vlResult done = vl_render_channels(world->world, &camera->camera, &def, &floats, &ids, &error);
-  call_end(&call);
+  vlResult done;
+  bool fine = long_call_run(&call, film == Py_None ? NULL : &((Film *)film)->busy, run_channels, &t, &done);
+  long_call_end(&call);
   world->users--;
-  if (done != VL_OK) return raise_result(done, &error);
+  if (!fine) return NULL;
+  if (done != VL_OK) return raise_result(done, &t.error);
+  vlImage *floats = t.floats, *ids = t.ids;
   PyObject *images[2] = {Py_None, Py_None};
   if (floats && !(images[0] = image_object(world->context, floats))) {
     vl_image_destroy(ids);
@@ -353,6 +302,18 @@ static PyObject *box_list(const vlIdBox *boxes, uint32_t count) {
   return list;
 }
 
+typedef struct Boxing {
+  const vlWorld *world;
+  const vlCamera *camera;
+  vlBoxesDef def;
+  vlIdBox *objects, *instances;
+  vlError error;
+} Boxing;
+static vlResult run_boxes(void *user) {
+  Boxing *b = user;
+  return vl_world_boxes(b->world, b->camera, &b->def, b->objects, b->instances, &b->error);
+}
+
 /* boxes(world, camera, settings): (list of objects' boxes, list of instances' boxes), that of id 1 first. */
 static PyObject *boxes(PyObject *module, PyObject *arguments) {
   (void)module;
@@ -367,19 +328,25 @@ static PyObject *boxes(PyObject *module, PyObject *arguments) {
            instances = vl_world_id_count(world->world, VL_ID_INSTANCE);
   vlIdBox *list = PyMem_Malloc(((size_t)objects + instances + 1) * sizeof *list);
   if (!list) return PyErr_NoMemory();
-  vlBoxesDef def = vl_default_boxes_def(settings->defs.film.width, settings->defs.film.height);
-  memcpy(def.crop, settings->defs.film.crop, sizeof def.crop);
-  Call call;
-  def.stop = stop_call;
-  def.stop_user = &call;
-  if (!call_begin(&call, world->context, NULL)) return PyMem_Free(list), NULL;
+  Boxing b = {.world = world->world,
+              .camera = &camera->camera,
+              .def = vl_default_boxes_def(settings->defs.film.width, settings->defs.film.height),
+              .objects = list,
+              .instances = list + objects};
+  memcpy(b.def.crop, settings->defs.film.crop, sizeof b.def.crop);
+  LongCall call;
+  if (!long_call_begin(&call, world->context, Py_None)) return PyMem_Free(list), NULL;
+  b.def.cancel = call.cancel;
   world->users++;
-  vlError error = {0};
-  vlResult done = vl_world_boxes(world->world, &camera->camera, &def, list, list + objects, &error);
-  call_end(&call);
+  vlResult done;
+  bool fine = long_call_run(&call, NULL, run_boxes, &b, &done);
+  long_call_end(&call);
   world->users--;
-  PyObject *result = done == VL_OK ? Py_BuildValue("(NN)", box_list(list, objects), box_list(list + objects, instances))
-                                   : raise_result(done, &error);
+  PyObject *result = NULL;
+  if (fine && done == VL_OK)
+    result = Py_BuildValue("(NN)", box_list(list, objects), box_list(list + objects, instances));
+  else if (fine)
+    raise_result(done, &b.error);
   PyMem_Free(list);
   return result;
 }
@@ -403,7 +370,6 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
 
 PyMethodDef render_functions[] = {
     {"scene_settings", scene_settings, METH_O, "A copy of a scene's settings."},
-    {"world_build", world_build, METH_VARARGS, "Compiles a scene: scene, settings."},
     {"render", render, METH_VARARGS, "Adds samples to a film."},
     {"channels", channels, METH_VARARGS, "Ground truth."},
     {"boxes", boxes, METH_VARARGS, "Bounding boxes of objects and instances."},

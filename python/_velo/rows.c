@@ -50,6 +50,7 @@ static const vlParameter scene_array[] = {
     CHOICE(vlSceneDefs, render.noise_view, views),
     SCENE(FLOAT, render.noise_exposure),
     SCENE(FLOAT, render.noise_scale),
+    SCENE(COUNT, render.priority),
     ROW(CHOICE, vlSceneDefs, film.filter.kind, .name = "filter", .choices = filters),
     ROW(FLOAT, vlSceneDefs, film.filter.radius_x, .name = "filter_radius_x"),
     ROW(FLOAT, vlSceneDefs, film.filter.radius_y, .name = "filter_radius_y"),

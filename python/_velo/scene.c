@@ -1,4 +1,4 @@
-/* _velo/scene.c: scenes: files, camera, contents; handles. */
+/* _velo/scene.c: scenes: files, camera, contents. */
 #include <string.h>
 
 #include "module.h"
@@ -49,29 +49,37 @@ static PyObject *scene_close(Scene *self, PyObject *unused) {
   Py_RETURN_NONE;
 }
 
-/* _load(path, keywords of vlLoadDef) */
+static vlResult run_load(void *user) {
+  Loading *l = user;
+  return l->loaded ? vl_scene_load_group(l->scene, l->file, &l->def, l->name, l->loaded, &l->error)
+                   : vl_scene_load(l->scene, l->file, &l->def, &l->error);
+}
+
+bool load_file(Scene *self, Loading *l, PyObject *callback) {
+  LongCall call;
+  if (!long_call_begin(&call, self->context, callback)) return false;
+  l->scene = self->scene;
+  l->def.cancel = call.cancel;
+  l->def.progress = call.callback ? long_call_step : NULL;
+  l->def.progress_user = &call;
+  vlResult done;
+  bool fine = long_call_run(&call, &self->busy, run_load, l, &done);
+  long_call_end(&call);
+  if (fine && done != VL_OK) fine = raise_result(done, &l->error) != NULL;
+  return fine;
+}
+
+/* _load(path, keywords of vlLoadDef, callback or None) */
 static PyObject *scene_load(Scene *self, PyObject *arguments) {
-  PyObject *path, *keywords, *keep = PyList_New(0), *result = NULL;
-  vlLoadDef def = vl_default_load_def();
-  const char *file;
-  const Target target = {(char *)&def, keep, self, false};
-  if (!keep || !PyArg_ParseTuple(arguments, "OO!:_load", &path, &PyDict_Type, &keywords) || !scene_open(self) ||
-      !set_parameters(&target, load_rows, "keyword of load", keywords) || !(file = keep_path(keep, path)))
-    goto end;
-  Call call;
-  if (!call_begin(&call, self->context, &self->busy)) goto end;
-  vlError error = {0};
-  vlResult done = vl_scene_load(self->scene, file, &def, &error);
-  call_end(&call);
-  if (done == VL_OK) {
-    Py_INCREF(Py_None);
-    result = Py_None;
-  } else {
-    raise_result(done, &error);
-  }
-end:
+  PyObject *path, *keywords, *callback, *keep = PyList_New(0);
+  Loading l = {.def = vl_default_load_def()};
+  const Target target = {(char *)&l.def, keep, self, false};
+  bool fine = keep && PyArg_ParseTuple(arguments, "OO!O:_load", &path, &PyDict_Type, &keywords, &callback) &&
+              scene_open(self) && set_parameters(&target, load_rows, "keyword of load", keywords) &&
+              (l.file = keep_path(keep, path)) && load_file(self, &l, callback);
   Py_XDECREF(keep);
-  return result;
+  if (!fine) return NULL;
+  Py_RETURN_NONE;
 }
 
 /* _complete(keywords of vlCompleteDef) */
@@ -160,6 +168,11 @@ static PyMethodDef scene_methods[] = {
     {"_add", (PyCFunction)scene_add, METH_VARARGS, "Adds a texture, material, medium, emission, light or shape."},
     {"_load_group", (PyCFunction)scene_load_group, METH_VARARGS, "Loads a file as one group."},
     {"_add_instance", (PyCFunction)scene_add_instance, METH_VARARGS, "Places a group."},
+    {"_set", (PyCFunction)scene_set, METH_VARARGS, "Changes an object."},
+    {"_show", (PyCFunction)scene_show, METH_VARARGS, "Shows or hides a light, a shape or an instance."},
+    {"_remove", (PyCFunction)scene_remove, METH_O, "Removes an instance."},
+    {"_handles", (PyCFunction)scene_handles, METH_O, "The handles of a family."},
+    {"_instance", (PyCFunction)scene_instance, METH_O, "An instance's group, pose, whether it moves and is shown."},
     {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
     {"_set_camera", (PyCFunction)scene_set_camera, METH_O, "Sets the scene's camera and image size."},
     {"_close", (PyCFunction)scene_close, METH_NOARGS, "Frees the scene."},
@@ -185,35 +198,3 @@ static PyType_Slot scene_slots[] = {
     {0, NULL},
 };
 PyType_Spec scene_spec = {"velo._velo.Scene", sizeof(Scene), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, scene_slots};
-
-/* ---- handles ----------------------------------------------------------------------------------------------------- */
-
-static void handle_dealloc(Handle *self) {
-  Py_XDECREF((PyObject *)self->scene);
-  free_object((PyObject *)self);
-}
-static PyObject *handle_repr(Handle *self) {
-  return PyUnicode_FromFormat("<velo.Handle: number %u of the scene's %s>", self->index, self->family);
-}
-static PyObject *handle_index_member(Handle *self, void *unused) {
-  (void)unused;
-  return PyLong_FromUnsignedLong(self->index);
-}
-static PyObject *handle_family(Handle *self, void *unused) {
-  (void)unused;
-  return PyUnicode_FromString(self->family);
-}
-static PyGetSetDef handle_members[] = {
-    {"index", (getter)handle_index_member, NULL, "Its number in the scene, from 1.", NULL},
-    {"family", (getter)handle_family, NULL, "textures, materials, media, emission, lights, shapes or groups.", NULL},
-    {NULL, NULL, NULL, NULL, NULL},
-};
-static PyType_Slot handle_slots[] = {
-    {Py_tp_doc, "A texture, material, medium, emission, light, shape or group of a scene."},
-    {Py_tp_dealloc, handle_dealloc},
-    {Py_tp_repr, handle_repr},
-    {Py_tp_getset, handle_members},
-    {0, NULL},
-};
-PyType_Spec handle_spec = {"velo._velo.Handle", sizeof(Handle), 0,
-                           Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION, handle_slots};

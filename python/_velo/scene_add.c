@@ -1,17 +1,7 @@
 /* _velo/scene_add.c: adds textures, materials, media, emissions, lights, shapes, groups and instances to a scene. */
 #include <string.h>
 
-#include "module.h"
-
-enum { MOST_ARRAYS = 24 };
-
-/* A def under construction. */
-typedef struct Adding {
-  Scene *scene;
-  PyObject *keep;
-  Numbers arrays[MOST_ARRAYS];
-  int array_count;
-} Adding;
+#include "adding.h"
 
 /* The numbers of an array, which live until the call ends; null with an exception. */
 static const Numbers *array(Adding *a, PyObject *value, char type, const char *what) {
@@ -22,16 +12,18 @@ static const Numbers *array(Adding *a, PyObject *value, char type, const char *w
   return n;
 }
 
-/* The index of a handle; false with an exception. None is index 0. */
-static bool handle(const Adding *a, PyObject *value, const char *family, const char *what, uint32_t *index) {
+bool read_handle(const Scene *scene, PyObject *value, const char *family, const char *what, uint32_t *index) {
   *index = 0;
   if (value == Py_None) return true;
   const Handle *h = (const Handle *)value;
   if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0)
     return raise_usage("%s must be one of the scene's %s", what, family), false;
-  if (h->scene != a->scene) return raise_usage("%s is part of another scene", what), false;
+  if (h->scene != scene) return raise_usage("%s is part of another scene", what), false;
   *index = h->index;
   return true;
+}
+static bool handle(const Adding *a, PyObject *value, const char *family, const char *what, uint32_t *index) {
+  return read_handle(a->scene, value, family, what, index);
 }
 
 static bool image_of(PyObject *value, const char *what, const vlImage **image) {
@@ -244,20 +236,10 @@ static bool check_lengths(const vlShapeDef *d, PyObject *keywords) {
 
 /* ---- adding ------------------------------------------------------------------------------------------------------ */
 
-typedef union Def {
-  vlTextureDef texture;
-  vlMaterialDef material;
-  vlMediumDef medium;
-  vlEmissionDef emission;
-  vlLightDef light;
-  vlShapeDef shape;
-} Def;
+const char *const family_names[] = {"textures", "materials", "media",     "emission", "lights",
+                                    "shapes",   "groups",    "instances", NULL};
 
-typedef enum Family { TEXTURES, MATERIALS, MEDIA, EMISSION, LIGHTS, SHAPES, GROUPS } Family;
-static const char *const family_names[] = {"textures", "materials", "media",  "emission",
-                                           "lights",   "shapes",    "groups", NULL};
-
-static void default_def(Family family, int kind, bool spectrum, Def *def) {
+void default_def(Family family, int kind, bool spectrum, Def *def) {
   switch (family) {
     case TEXTURES: def->texture = vl_default_texture_def((vlTextureKind)kind, spectrum); break;
     case MATERIALS: def->material = vl_default_material_def((vlMaterialKind)kind); break;
@@ -265,7 +247,8 @@ static void default_def(Family family, int kind, bool spectrum, Def *def) {
     case EMISSION: def->emission = vl_default_emission_def(); break;
     case LIGHTS: def->light = vl_default_light_def((vlLightKind)kind); break;
     case SHAPES: def->shape = vl_default_shape_def((vlShapeKind)kind); break;
-    case GROUPS: break;
+    case GROUPS:
+    case INSTANCES: break;
   }
 }
 
@@ -277,7 +260,8 @@ static int set_extra(Adding *a, Family family, Def *def, const char *name, PyObj
     case LIGHTS: return set_light(a, &def->light, name, value);
     case SHAPES: return set_shape(a, &def->shape, name, value);
     case EMISSION:
-    case GROUPS: break;
+    case GROUPS:
+    case INSTANCES: break;
   }
   return 0;
 }
@@ -290,13 +274,14 @@ static uint32_t add(vlScene *scene, Family family, const Def *def) {
     case EMISSION: return vl_scene_add_emission(scene, &def->emission).index;
     case LIGHTS: return vl_scene_add_light(scene, &def->light).index;
     case SHAPES: return vl_scene_add_shape(scene, &def->shape).index;
-    case GROUPS: break;
+    case GROUPS:
+    case INSTANCES: break;
   }
   return 0;
 }
 
-static bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, PyObject *keywords,
-                    bool spectrum, Def *def) {
+bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, PyObject *keywords, bool spectrum,
+             Def *def) {
   const Target target = {(char *)def, a->keep, a->scene, spectrum};
   PyObject *name, *value;
   Py_ssize_t position = 0;
@@ -323,7 +308,7 @@ static bool set_all(Adding *a, Family family, const vlKindRow *row, const char *
   return family != SHAPES || check_lengths(&def->shape, keywords);
 }
 
-static PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
+PyObject *new_handle(Scene *scene, Family family, uint32_t index) {
   Handle *h = make_object(TYPE_HANDLE);
   if (!h) return NULL;
   Py_INCREF((PyObject *)scene);
@@ -358,6 +343,7 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
   int family = find_choice(family_names, "family", family_name);
   if (family < 0) return NULL;
   if (family == GROUPS) return add_group(self, kind_name);
+  if (family == INSTANCES) return raise_usage("instances are added by add_instance");
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
   int kind = find_kind(kinds, kind_name);
   if (kind < 0) return NULL;
@@ -381,50 +367,40 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
   return result;
 }
 
-/* _add_instance(group, matrices, times or None) */
+/* _add_instance(group, matrices, times or None): handle */
 PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
   PyObject *group, *matrices, *times;
   if (!PyArg_ParseTuple(arguments, "OOO:_add_instance", &group, &matrices, &times) || !scene_open(self)) return NULL;
-  const Adding a = {.scene = self};
   vlGroupId id;
-  if (!handle(&a, group, "groups", "group", &id.index)) return NULL;
+  if (!read_handle(self, group, "groups", "group", &id.index)) return NULL;
   Numbers poses = {0}, seconds = {0};
   bool fine = numbers_read(matrices, 'd', "transform", &poses) &&
               (times == Py_None || numbers_read(times, 'd', "times", &seconds));
   size_t keys = times == Py_None ? 1 : seconds.count;
   if (fine && (keys == 0 || keys > 65536 || poses.count != 16 * keys))
     fine = raise_usage("an instance needs a matrix of 16 numbers for each time") != NULL;
+  vlInstanceId instance = {0};
   if (fine && times == Py_None)
-    vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
+    instance = vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
   else if (fine)
-    vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data, poses.data, (vlSource){0});
+    instance = vl_scene_add_moving_instance(self->scene, id, (uint32_t)keys, seconds.data, poses.data, (vlSource){0});
   numbers_release(&poses);
   numbers_release(&seconds);
   if (!fine) return NULL;
-  if (vl_scene_result(self->scene, NULL) != VL_OK) return scene_error(self);
-  Py_RETURN_NONE;
+  return instance.index ? new_handle(self, INSTANCES, instance.index) : scene_error(self);
 }
 
-/* _load_group(path, name or None, keywords): handle, {what: number}. */
+/* _load_group(path, name or None, keywords, callback or None): handle, {what: number}. */
 PyObject *scene_load_group(Scene *self, PyObject *arguments) {
-  PyObject *path, *name, *keywords, *keep = PyList_New(0), *result = NULL;
-  vlLoadDef def = vl_default_load_def();
-  const char *file, *text = NULL;
-  const Target target = {(char *)&def, keep, self, false};
-  if (!keep || !PyArg_ParseTuple(arguments, "OOO!:_load_group", &path, &name, &PyDict_Type, &keywords) ||
-      !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
-      !(file = keep_path(keep, path)) || (name != Py_None && !(text = keep_text(keep, name))))
-    goto end;
-  Call call;
-  if (!call_begin(&call, self->context, &self->busy)) goto end;
-  vlError error = {0};
+  PyObject *path, *name, *keywords, *callback, *keep = PyList_New(0), *result = NULL;
   vlLoadedGroup loaded;
-  vlResult done = vl_scene_load_group(self->scene, file, &def, text, &loaded, &error);
-  call_end(&call);
-  if (done != VL_OK) {
-    raise_result(done, &error);
+  Loading l = {.def = vl_default_load_def(), .loaded = &loaded};
+  const Target target = {(char *)&l.def, keep, self, false};
+  if (!keep || !PyArg_ParseTuple(arguments, "OOO!O:_load_group", &path, &name, &PyDict_Type, &keywords, &callback) ||
+      !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
+      !(l.file = keep_path(keep, path)) || (name != Py_None && !(l.name = keep_text(keep, name))) ||
+      !load_file(self, &l, callback))
     goto end;
-  }
   PyObject *group = new_handle(self, GROUPS, loaded.group.index);
   if (group)
     result =

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from velo import _velo
 from velo._context import Context, default_context, set_threads
-from velo._errors import (Error, ForkError, MissingFileError, OutOfMemoryError, OutputError, Progress, SceneError,
-                          UnsupportedError, UsageError)
+from velo._errors import (CancelledError, Error, ForkError, MissingFileError, OutOfMemoryError, OutputError, Progress,
+                          SceneError, Step, UnsupportedError, UsageError)
 from velo.camera import Camera, Projection, Rays, TrajectoryFrame, read_camera, read_trajectory
 from velo.film import Film, merge_films, read_film
 from velo.image import Image, read_image
@@ -42,9 +42,9 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 
 
 __all__ = [
-    "Camera", "Context", "Error", "Film", "ForkError", "Handle", "Image", "MissingFileError", "Model", "OutOfMemoryError",
-    "OutputError", "Progress", "Projection", "Rays", "Scene", "SceneError", "Spectrum", "TrajectoryFrame",
-    "UnsupportedError", "UsageError", "World", "blackbody", "channel_names", "default_context", "kinds", "load",
-    "merge_films", "named", "read_camera", "read_film", "read_image", "read_trajectory", "rgb", "sampled",
+    "Camera", "CancelledError", "Context", "Error", "Film", "ForkError", "Handle", "Image", "MissingFileError", "Model",
+    "OutOfMemoryError", "OutputError", "Progress", "Projection", "Rays", "Scene", "SceneError", "Spectrum", "Step",
+    "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody", "channel_names", "default_context", "kinds",
+    "load", "merge_films", "named", "read_camera", "read_film", "read_image", "read_trajectory", "rgb", "sampled",
     "sensor_names", "set_threads", "settings_names", "spectrum_names",
 ]

@@ -1,6 +1,7 @@
 """The context that objects are made from, unless another is given."""
 from __future__ import annotations
 
+import atexit
 import os
 from typing import Any, Optional
 
@@ -32,3 +33,5 @@ def _forget() -> None:
 
 
 os.register_at_fork(after_in_child=_forget)
+# Threads that still render when the interpreter ends.
+atexit.register(_velo.shut_down)

@@ -53,12 +53,17 @@ class OutOfMemoryError(Error, MemoryError):
     """The memory does not suffice."""
 
 
+class CancelledError(Error):
+    """A callback returned False, so that a load or a build has no result."""
+
+
 class ForkError(Error, RuntimeError):
     """An object made before fork() was used after it."""
 
 
 # By vlResult.
-_CLASSES = {1: UsageError, 2: OutOfMemoryError, 3: SceneError, 4: MissingFileError, 5: OutputError, 6: UnsupportedError}
+_CLASSES = {1: UsageError, 2: OutOfMemoryError, 3: SceneError, 4: MissingFileError, 5: OutputError, 6: UnsupportedError,
+            7: CancelledError}
 
 
 def make(result: int, message: str, line: int, column: int) -> Error:
@@ -84,7 +89,7 @@ def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
 
 
 class Progress(NamedTuple):
-    """The state of a render. While `pass_done` is false, a callback must not use velo."""
+    """The state of a render."""
     spp: int  #: samples per pixel of finished passes
     spp_total: int  #: samples per pixel that were asked for
     elapsed: float  #: seconds
@@ -93,6 +98,13 @@ class Progress(NamedTuple):
     paths: int  #: paths traced
     rays: int  #: rays traced
     pass_done: bool  #: a pass is finished: the film may be read
+
+
+class Step(NamedTuple):
+    """The state of a load or a build."""
+    name: str  #: what is done now: reading, images, shapes, lights, accelerator
+    fraction: float  #: estimated share of the work that is done, 0 to 1
+    elapsed: float  #: seconds
 
 
 _LEVELS = (logging.ERROR, logging.WARNING, logging.INFO, logging.DEBUG)

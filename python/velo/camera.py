@@ -82,6 +82,11 @@ class Camera(_velo.Camera):
         """This camera for another image size. Focal length and principal point scale with the smaller side."""
         return self._resize(width, height)
 
+    def coarse(self, factor: int) -> "Camera":
+        """The same view with pixels that are `factor` (1 to 64) times as wide and as high: pixel (x, y) covers the pixels from
+        (factor x, factor y) on. The last column and row may reach beyond the image."""
+        return self._coarse(factor)
+
     def move(self, world_from_camera: Any) -> "Camera":
         """This camera with another pose, 4 x 4, at rest."""
         return self._move(world_from_camera)

@@ -4,15 +4,16 @@ from __future__ import annotations
 import os
 from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
-from velo import _velo
+from velo import _arrays, _velo
 from velo._context import default_context
-from velo._errors import Progress, UsageError
+from velo._errors import Progress, Step, UsageError, unknown
 from velo.camera import Camera
 from velo.film import Film
 from velo.image import Image, Path, join
 
 Handle = _velo.Handle
 Callback = Callable[[Progress], Optional[bool]]
+StepCallback = Callable[[Step], Optional[bool]]
 
 # Keywords of vlLoadDef; the other keywords of load() are those of vlCompleteDef.
 _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
@@ -60,28 +61,33 @@ def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
 class Scene(_velo.Scene):
     """The description of a world and of how its image is taken. A new scene is empty; `velo.load` reads a file.
 
-    After an error of an add_ method the scene keeps this error and cannot be used further."""
+    After an error of an add_ method the scene keeps this error and cannot be used further. After one of set, show, hide or
+    remove it is as it was before."""
 
     _world: Optional[tuple[Any, World]]
+    _changed: bool
     _film: Optional[Film]
 
     def __new__(cls, *, context: Any = None) -> "Scene":
         self = super().__new__(cls, context or default_context())
         self._world = None
+        self._changed = False
         self._film = None
         return self
 
     # ---- files and camera
 
-    def load(self, path: Path, **keywords: Any) -> None:
-        """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's."""
-        self._world = None
-        self._load(path, keywords)
+    def load(self, path: Path, *, progress: Optional[StepCallback] = None, **keywords: Any) -> None:
+        """Adds the contents of a file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. Keywords: vlLoadDef's. progress: called
+        about ten times a second with a velo.Step; False ends the load with a CancelledError. After this, and after a
+        KeyboardInterrupt, the scene cannot be used further."""
+        self._changed = True
+        self._load(path, keywords, progress)
 
     def complete(self, **keywords: Any) -> None:
         """Adds a camera and lights if there are none, and what is asked for. Keywords: vlCompleteDef's; environment may also
         be the path of an image."""
-        self._world = None
+        self._changed = True
         environment = keywords.get("environment")
         if environment is not None and environment not in _ENVIRONMENTS:
             keywords.update(environment="file", path=environment)
@@ -104,7 +110,7 @@ class Scene(_velo.Scene):
     # ---- contents
 
     def _new(self, family: str, kind: Optional[str], keywords: dict[str, Any]) -> Handle:
-        self._world = None
+        self._changed = True
         return self._add(family, kind, keywords)
 
     def add_texture(self, kind: str, **keywords: Any) -> Handle:
@@ -159,19 +165,66 @@ class Scene(_velo.Scene):
         """Adds an empty group. Shapes join it (keyword group); add_instance places it."""
         return self._new("groups", name, {})
 
-    def load_group(self, path: Path, name: Optional[str] = None, **keywords: Any) -> "Model":
+    def load_group(self, path: Path, name: Optional[str] = None, *, progress: Optional[StepCallback] = None,
+                   **keywords: Any) -> "Model":
         """Loads a model's file as one group, which add_instance places; the file's camera, lights and emission are ignored.
-        name: the name of its instances; default the file's name without suffix. Keywords: vlLoadDef's."""
-        self._world = None
+        name: the name of its instances; default the file's name without suffix. progress, keywords: as load."""
+        self._changed = True
         name = name if name is not None else os.path.basename(os.fspath(path)).split(".")[0]
-        group, info = self._load_group(path, name, keywords)
+        group, info = self._load_group(path, name, keywords, progress)
         return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
 
-    def add_instance(self, group: Handle, transform: Any, times: Optional[Sequence[float]] = None) -> None:
+    def add_instance(self, group: Handle, transform: Any, times: Optional[Sequence[float]] = None) -> Handle:
         """Places a group: transform is 4 x 4, world from group. With times (seconds, ascending) it moves: a matrix for each
         time."""
-        self._world = None
-        self._add_instance(group, transform, times)
+        self._changed = True
+        return self._add_instance(group, transform, times)
+
+    # ---- changes
+
+    def handles(self, family: str) -> list[Handle]:
+        """The scene's textures, materials, media, emission, lights, shapes, groups or instances (those not removed), in the
+        order in which they were added or are in the file."""
+        return self._handles(family)
+
+    def find(self, family: str, name: str) -> Handle:
+        """The first object of a family with this name."""
+        names = []
+        for handle in self._handles(family):
+            if handle.name == name:
+                return handle
+            names.append(handle.name)
+        raise unknown(f"name of the scene's {family}", name, [known for known in names if known])
+
+    def set(self, handle: Handle, kind: Optional[str] = None, **keywords: Any) -> None:
+        """Changes what the keywords name; the rest stays. Textures, materials, emission and lights take the keywords of their
+        add_ method; with a kind they become one of this kind, with defaults where nothing is given. Shapes take material and
+        emission (None: none), instances transform (4 x 4, world from group)."""
+        if handle.family == "lights" and "from_" in keywords:
+            keywords["from"] = keywords.pop("from_")
+        if handle.family in ("lights", "textures") and "image" in keywords:
+            keywords["image"] = _as_image(keywords["image"], "linear" if handle.family == "lights" else None)
+        self._changed = True
+        self._set(handle, kind, keywords)
+
+    def show(self, handle: Handle, shown: bool = True) -> None:
+        """Shows or hides a light, a shape (in all instances of its group) or an instance."""
+        self._changed = True
+        self._show(handle, shown)
+
+    def hide(self, handle: Handle) -> None:
+        """Hides a light, a shape or an instance. Hidden instances have no id.instance: the ids of those after it are lower by
+        1."""
+        self.show(handle, False)
+
+    def remove(self, instance: Handle) -> None:
+        """Removes an instance for good."""
+        self._changed = True
+        self._remove(instance)
+
+    def transform(self, instance: Handle) -> Any:
+        """An instance's pose, 4 x 4, world from group; of a moving one that at its first time."""
+        return _arrays.from_rows(self._instance(instance)[1], 4, 4)
 
     # ---- rendering
 
@@ -187,15 +240,27 @@ class Scene(_velo.Scene):
             settings.set(name, value)
         return settings
 
-    def world(self, **keywords: Any) -> World:
-        """The compiled scene. It is kept until the scene changes. Keywords: color, light_sampler, regularize, bits."""
-        return self._build(self.settings(**keywords))
+    def world(self, *, previous: Optional[World] = None, progress: Optional[StepCallback] = None, **keywords: Any) -> World:
+        """The compiled scene. It is kept until the scene changes. The next one shares with it what has not changed: meshes,
+        their part of the accelerator, images; the bits are those of a world that shares nothing.
 
-    def _build(self, settings: Any) -> World:
+        previous: a world of another scene to share with, one that the same file was loaded into for example. progress: called
+        about ten times a second with a velo.Step; False ends the build with a CancelledError. Keywords: color, light_sampler,
+        regularize, bits."""
+        return self._build(self.settings(**keywords), previous, progress)
+
+    def _build(self, settings: Any, previous: Optional[World] = None, progress: Optional[StepCallback] = None) -> World:
         key = tuple(settings.get(name) for name in _BUILD)
-        if self._world is None or self._world[0] != key:
-            self._world = (key, _velo.world_build(self, settings))
-        return self._world[1]
+        last = self._world
+        if last is not None and last[1].closed:
+            last = None
+        if last is None or self._changed or last[0] != key:
+            if previous is None and last is not None:
+                previous = last[1]
+            last = (key, _velo.world_build(self, settings, previous, progress))
+            self._world = last
+            self._changed = False
+        return last[1]
 
     def _camera_for(self, camera: Optional[Camera], settings: Any) -> Camera:
         return (camera if camera is not None else self.camera).resize(*settings.size)
@@ -229,13 +294,18 @@ class Scene(_velo.Scene):
 
     def passes(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), film: Optional[Film] = None,
-               **keywords: Any) -> Iterator[Image]:
+               coarse: Sequence[int] = (), **keywords: Any) -> Iterator[Image]:
         """Renders and yields the images so far: at 1, 2, 4, ... and finally spp samples per pixel. The last one has the bits
-        of render's image. Keywords: as render."""
+        of render's image. Keywords: as render.
+
+        coarse: factors from 1 to 64, (8, 4, 2) for example: yields images of 1 / factor of the width and height first, with 1
+        sample per pixel (Camera.coarse)."""
         settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         self._film = target
         world = self._build(settings)
+        for factor in coarse:
+            yield self._coarse(world, view, settings, factor, channels)
         total = settings.get("spp")
         spp = max(1, target.spp)
         if settings.get("sequence") == 0:
@@ -248,6 +318,15 @@ class Scene(_velo.Scene):
             if spp >= total:
                 return
             spp *= 2
+
+    def _coarse(self, world: World, view: Camera, settings: Any, factor: int, channels: Sequence[str]) -> Image:
+        small = settings.copy()
+        small.set_coarse(factor)
+        small.set("spp", 1)
+        film = _velo.film_new(self._context_of(), small)
+        _velo.render(world, view.coarse(factor), film, small, None)
+        wanted = [name for name in channels if name != "error"]
+        return self._develop(world, view.coarse(factor), film, small, wanted, False)
 
     @staticmethod
     def _sequence(settings: Any, total: int) -> int:
@@ -325,16 +404,17 @@ class Scene(_velo.Scene):
 _velo.set_type("Scene", Scene)
 
 
-def load(path: Path, *, context: Any = None, **keywords: Any) -> Scene:
+def load(path: Path, *, context: Any = None, progress: Optional[StepCallback] = None, **keywords: Any) -> Scene:
     """Reads a scene file: .pbrt, .gltf, .glb, .obj, .ply, .stl, .off. A file without a camera or lights gets a camera that
-    frames it and a studio.
+    frames it and a studio. progress: called about ten times a second with a velo.Step; False ends the load with a
+    CancelledError.
 
     Keywords: the members of vlLoadDef (permissive, strict, search_path, time, scene, animation, variant, camera) and of
     vlCompleteDef (environment: auto, none, studio, sky, white or the path of an image; rotation in radians, strength, up,
     front, ground, reframe, framing, backdrop)."""
     scene = Scene(context=context)
     loading = {name: keywords.pop(name) for name in _LOAD if name in keywords}
-    scene.load(path, **loading)
+    scene.load(path, progress=progress, **loading)
     scene.complete(**keywords)
     return scene
 

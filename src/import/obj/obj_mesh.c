@@ -7,6 +7,11 @@
 #include "math/approx_double.h"
 #include "math/hash.h"
 
+/* Whether the load must stop after so many corners or triangles; looks at it now and then. */
+static bool stopped(vlObj *obj, size_t done) {
+  return done % 65536 == 0 && vl_scene_stopped(obj->scene, 1);
+}
+
 /* ---- normals ----------------------------------------------------------------------------------------------------- */
 
 static const float *position(const vlObj *obj, uint32_t v) {
@@ -72,7 +77,8 @@ static bool make_normals(vlObj *obj) {
     vlObjCorner *c = obj->corners.items + 3 * t;
     uint32_t group = obj->triangle_smooth.items[t], flat = 0;
     double n[3];
-    if (c[0].vn && c[1].vn && c[2].vn) continue;
+    fine = !stopped(obj, t);
+    if (!fine || (c[0].vn && c[1].vn && c[2].vn)) continue;
     if (!group && !obj->parts.items[obj->triangle_part.items[t]].normals) continue;
     face_normal(obj, c, n);
     unit(n);
@@ -138,7 +144,8 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
     vl_free(obj->context, table);
     return vl_obj_fail_memory(obj);
   }
-  for (size_t i = 0; i < count; i++) {
+  bool fine = true;
+  for (size_t i = 0; i < count && fine; i++) {
     vlObjCorner c = obj->corners.items[3 * (size_t)order[part->first + i / 3] + i % 3];
     size_t slot = vl_hash3(c.v, c.vt, c.vn) & (size - 1);
     for (;; slot = (slot + 1) & (size - 1)) {
@@ -151,10 +158,11 @@ static bool weld(vlObj *obj, const vlObjPart *part, const uint32_t *order, uint3
       if (k->v == c.v && k->vt == c.vt && k->vn == c.vn) break;
     }
     (*indices)[i] = table[slot] - 1;
+    fine = !stopped(obj, i);
   }
   vl_free(obj->context, table);
   *vertices = (uint32_t)n;
-  return true;
+  return fine;
 }
 
 static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, const vlLabel *label) {

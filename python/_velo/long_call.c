@@ -1,0 +1,200 @@
+/* _velo/long_call.c: calls of the library that take long. Such a call runs on a thread of its own; the thread of Python
+ * waits for it, looks for signals and runs the callbacks. So Ctrl-C stops a call at once (vlCancel), whatever it does.
+ */
+#include <pthread.h>
+#include <semaphore.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "module.h"
+
+_Thread_local const Film *open_film;
+
+enum { NOTHING, PROGRESS, STEP };
+
+struct Waiting {
+  LongCall *call;
+  LongBody *body;
+  void *user;
+  vlResult result;
+  sem_t wake;     /* the call asks, or is done */
+  sem_t answered; /* the callback has answered */
+  atomic_int question;
+  const void *state; /* vlProgress or vlStep of the question */
+  bool answer;
+  atomic_bool done;
+  struct Waiting *next; /* of those that run */
+};
+
+/* The calls of this process, guarded by the GIL. */
+static Waiting *running;
+static long running_pid;
+static bool shutting_down;
+
+/* ---- the thread of the call -------------------------------------------------------------------------------------- */
+
+static void *run_body(void *argument) {
+  Waiting *w = argument;
+  w->result = w->body(w->user);
+  atomic_store(&w->done, true);
+  sem_post(&w->wake);
+  return NULL;
+}
+
+static bool ask(LongCall *call, int question, const void *state) {
+  Waiting *w = call->waiting;
+  w->state = state;
+  atomic_store(&w->question, question);
+  sem_post(&w->wake);
+  while (sem_wait(&w->answered) != 0) {
+  }
+  return w->answer;
+}
+
+bool long_call_progress(void *user, const vlProgress *progress) {
+  return ask(user, PROGRESS, progress);
+}
+
+bool long_call_step(void *user, const vlStep *step) {
+  return ask(user, STEP, step);
+}
+
+/* A thread that gets no signals: they wake the one that waits. */
+static bool start(pthread_t *thread, Waiting *w) {
+  enum { STACK = 8 << 20 };
+  sigset_t all, old;
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return false;
+  pthread_attr_setstacksize(&attributes, STACK);
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &old);
+  bool started = pthread_create(thread, &attributes, run_body, w) == 0;
+  pthread_sigmask(SIG_SETMASK, &old, NULL);
+  pthread_attr_destroy(&attributes);
+  return started;
+}
+
+/* ---- the thread of Python ---------------------------------------------------------------------------------------- */
+
+static PyObject *state_object(const Waiting *w, int question) {
+  if (question == STEP) {
+    const vlStep *s = w->state;
+    return call_package("Step", "(sdd)", s->name, s->fraction, s->elapsed);
+  }
+  const vlProgress *p = w->state;
+  return call_package("Progress", "(IIdddKKO)", p->spp_done, p->spp_total, p->elapsed, p->remaining, p->fraction,
+                      (unsigned long long)p->paths, (unsigned long long)p->rays, p->pass_done ? Py_True : Py_False);
+}
+
+static bool call_back(const Waiting *w, int question) {
+  const Film *film = open_film;
+  if (question == PROGRESS && ((const vlProgress *)w->state)->pass_done) open_film = w->call->film;
+  PyObject *state = state_object(w, question);
+  PyObject *answer = state ? PyObject_CallFunctionObjArgs(w->call->callback, state, NULL) : NULL;
+  bool go_on = answer && answer != Py_False;
+  open_film = film;
+  Py_XDECREF(answer);
+  Py_XDECREF(state);
+  return go_on;
+}
+
+/* Waits for the next event, at most 50 ms: the system may give a signal to another thread. */
+static void wait(Waiting *w) {
+  const long POLL = 50 * 1000000L; /* ns */
+  struct timespec until;
+  clock_gettime(CLOCK_MONOTONIC, &until);
+  until.tv_nsec += POLL;
+  if (until.tv_nsec >= 1000000000L) until.tv_nsec -= 1000000000L, until.tv_sec++;
+  sem_clockwait(&w->wake, CLOCK_MONOTONIC, &until);
+}
+
+/* Until the call is done. False: this is now another process, a child of a callback, where the call does not run. */
+static bool attend(Waiting *w, Call *call) {
+  bool stopped = false;
+  while (!atomic_load(&w->done)) {
+    wait(w);
+    int question = atomic_exchange(&w->question, NOTHING);
+    if (atomic_load(&w->done)) break;
+    PyEval_RestoreThread(call->thread);
+    if (!stopped && !question && PyErr_CheckSignals() != 0) {
+      vl_cancel_request(w->call->cancel);
+      stopped = true;
+    }
+    if (question) {
+      w->answer = !stopped && call_back(w, question);
+      if (!w->answer) stopped = true;
+    }
+    call->thread = PyEval_SaveThread();
+    if (running_pid != (long)getpid()) return false;
+    if (question) sem_post(&w->answered);
+  }
+  return true;
+}
+
+static void forget(Waiting *w) {
+  Waiting **place = &running;
+  while (*place && *place != w) place = &(*place)->next;
+  if (*place) *place = w->next;
+}
+
+bool long_call_begin(LongCall *call, const Context *context, PyObject *callback) {
+  *call = (LongCall){.callback = callback == Py_None ? NULL : callback};
+  if (!context_check(context)) return false;
+  if (call->callback && !PyCallable_Check(call->callback)) return raise_usage("progress must be callable"), false;
+  call->context = context;
+  vlResult result = vl_cancel_create(context->context, &call->cancel);
+  if (result != VL_OK) raise_result(result, NULL);
+  return result == VL_OK;
+}
+
+bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult *result) {
+  Waiting w = {.call = c, .body = body, .user = user};
+  pthread_t thread;
+  Call call;
+  *result = VL_ERROR_MEMORY;
+  c->waiting = &w;
+  if (running_pid != (long)getpid()) running = NULL, running_pid = (long)getpid();
+  if (shutting_down) return raise_usage("the interpreter is shutting down"), false;
+  w.next = running;
+  running = &w;
+  if (!call_begin(&call, c->context, busy)) return forget(&w), false;
+  sem_init(&w.wake, 0, 0);
+  sem_init(&w.answered, 0, 0);
+  bool started = start(&thread, &w);
+  bool here = !started || attend(&w, &call);
+  if (started && here) pthread_join(thread, NULL);
+  call_end(&call);
+  forget(&w);
+  if (!here) {
+    context_check(c->context); /* raises ForkError */
+    return false;
+  }
+  sem_destroy(&w.wake);
+  sem_destroy(&w.answered);
+  *result = w.result;
+  if (!started) raise_result(VL_ERROR_MEMORY, NULL);
+  return !PyErr_Occurred();
+}
+
+void long_call_end(LongCall *call) {
+  if (context_is_ours(call->context)) vl_cancel_destroy(call->cancel);
+}
+
+/* A callback that does not return is not waited for longer than this. */
+PyObject *shut_down(PyObject *module, PyObject *unused) {
+  (void)module, (void)unused;
+  const int MOST = 5000; /* ms */
+  shutting_down = true;
+  if (running_pid != (long)getpid()) running = NULL;
+  for (int i = 0; running && i < MOST; i++) {
+    const struct timespec pause = {0, 1000000};
+    for (Waiting *w = running; w; w = w->next) vl_cancel_request(w->call->cancel);
+    PyThreadState *thread = PyEval_SaveThread();
+    nanosleep(&pause, NULL);
+    PyEval_RestoreThread(thread);
+  }
+  Py_RETURN_NONE;
+}

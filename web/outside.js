@@ -6,14 +6,18 @@ import { byId, make } from "./dom.js";
 
 const fov = 40 * Math.PI / 180; // vertical; as apps/velo/view/engine_outside.c
 const looks = { eye: ["#f5a623", 3], window: ["#f5a623", 2], grid: ["#f5a62366", 0.6], volume: ["#fff", 1], near: ["#7fd1ff", 1.4],
-  far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2],
+  far: ["#7fd1ff", 1.4], distance: ["#f5a623", 1.2], focus: ["#ff7ad1", 1.2], projector: ["#9cff7a", 1.4], axes: ["#e5484d", 2], film: ["#f5a623", 1],
   path: ["#ffd24a", 1.8], leaves: ["#9fb4c8", 1.2, [2, 4]], light: ["#fff3b0", 1.1, [5, 3]], occluded: ["#c0566a", 0.8, [2, 3]] };
+
+// Of the cameras of a trajectory.
+const strings = { volume: ["#8fd3c7", 0.7], window: ["#8fd3c7", 1], eye: ["#8fd3c7", 4], path: ["#8fd3c799", 1.4] };
+const eyeOf = m => [m[3], m[7], m[11]];
 
 export class Outside {
   // stage: the element that it is in; button: shows and hides it; null: none.
   constructor(app, stage = byId("stage"), button = byId("outside-toggle")) {
     this.app = app;
-    this.canvas = make("canvas", { title: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Wheel: nearer, farther" });
+    this.canvas = make("canvas", { title: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Click a camera of the trajectory: go there. Wheel: nearer, farther" });
     this.box = make("div", { id: "outside" }, this.canvas);
     this.box.hidden = true;
     stage.append(this.box);
@@ -28,7 +32,15 @@ export class Outside {
   toggle() {
     this.box.hidden = !this.box.hidden;
     this.button?.setAttribute("aria-pressed", String(!this.box.hidden));
-    if (!this.box.hidden) { this.pose ??= this.start(); this.outline(); this.render(); }
+    if (!this.box.hidden) this.app.ask({ type: "cameras" }, answer => { this.begin(answer); });
+  }
+
+  // The cameras of --trajectory are known: the pane begins with a view of all.
+  begin(answer) {
+    this.string = answer.poses ? answer : { poses: [], lines: [] };
+    this.pose ??= this.start();
+    this.outline();
+    this.render();
   }
 
   // From the side, a little above and behind, so that eye and scene are both seen.
@@ -36,21 +48,27 @@ export class Outside {
     const c = this.app.camera(), arm = sub(c.lookat, c.eye), n = length(arm), forward = unit(arm), up = unit(c.up);
     const right = unit(cross(forward, up)), middle = add(c.eye, scale(arm, 0.5));
     const from = unit(add(add(scale(right, 1), scale(up, 0.55)), scale(forward, -0.35)));
-    return { eye: add(middle, scale(from, 2.1 * n)), lookat: middle, up, world_from_camera: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0] };
+    const others = this.string.poses.map(m => length(sub(eyeOf(m), middle))), reach = Math.max(2.1 * n, 2.6 * Math.max(0, ...others));
+    return { eye: add(middle, scale(from, reach)), lookat: middle, up, world_from_camera: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0] };
   }
 
   // The camera changed: its lines are drawn anew.
-  state() { if (!this.box.hidden) this.outline(); }
+  state() { if (!this.box.hidden && this.pose) this.outline(); }
   // The scene was loaded again.
-  loaded() { if (!this.box.hidden) this.render(); }
+  loaded() { if (!this.box.hidden) this.app.ask({ type: "cameras" }, answer => { this.begin(answer); }); }
 
   outline() {
     if (this.asked) { this.again = true; return; }
     this.asked = true;
-    const set = this.point ? { point: this.point } : {};
+    const set = this.point ? { point: this.point } : {}, d = this.app.camera().d;
+    if (this.scale && typeof d === "number") set.plane = this.scale * d; // the plane is drawn at d, or in its proportion
     this.app.ask({ type: "outline", set }, answer => {
       this.asked = false;
-      if (answer.type === "outline") { this.drawing = answer; this.draw(); }
+      if (answer.type === "outline") {
+        this.drawing = answer;
+        this.scale = answer.plane / d;
+        this.draw();
+      }
       if (this.again) { this.again = false; this.outline(); }
     });
   }
@@ -111,7 +129,7 @@ export class Outside {
   }
 
   draw() {
-    if (this.box.hidden) return;
+    if (this.box.hidden || !this.pose) return;
     const [w, h] = this.size(), g = this.canvas.getContext("2d"), ratio = window.devicePixelRatio || 1, d = this.drawing;
     this.canvas.width = w * ratio, this.canvas.height = h * ratio;
     g.scale(ratio, ratio);
@@ -119,6 +137,7 @@ export class Outside {
     g.fillStyle = "#0006";
     g.fillRect(0, 0, w, h);
     for (const [part, ...n] of d?.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), looks[part] || ["#fff", 1]);
+    for (const [part, ...n] of this.string.lines || []) this.stroke(g, n.slice(0, 3), n.slice(3), strings[part] || strings.volume);
     this.drawPaths(g);
     g.font = "italic 14px serif";
     for (const [text, ...at] of d?.labels || []) {
@@ -151,6 +170,7 @@ export class Outside {
       return p && Math.hypot(p[0] - at[0], p[1] - at[1]) < 14;
     };
     this.grip = near("eye") ? "eye" : near("plane") ? "plane" : "turn";
+    this.moved = false;
     this.last = at;
     this.gesture = 3e6 + Math.floor(Math.random() * 1e6);
   }
@@ -160,6 +180,7 @@ export class Outside {
     const at = this.place(event), dx = at[0] - this.last[0], dy = at[1] - this.last[1], c = this.app.camera();
     const [, h] = this.size(), f = 0.5 * h / Math.tan(fov / 2), a = this.axes();
     this.last = at;
+    this.moved ||= Math.hypot(dx, dy) > 2;
     if (this.grip === "turn") {
       Object.assign(this.pose, orbit(this.pose, dx * 0.01, dy * 0.01));
       this.image = null;
@@ -177,7 +198,19 @@ export class Outside {
     if (typeof c.d === "number") this.app.edit({ d: c.d * Math.max(0.1, 1 + step) }, this.gesture);
   }
 
-  up() { this.grip = null; }
+  up() {
+    if (this.grip === "turn" && !this.moved) this.take();
+    this.grip = null;
+  }
+
+  // A click on an eye of the trajectory: the camera takes its pose, and looks as far as before.
+  take() {
+    const near = m => { const p = this.project(eyeOf(m)); return p[2] > 0 ? Math.hypot(p[0] - this.last[0], p[1] - this.last[1]) : Infinity; };
+    const m = this.string.poses.reduce((a, b) => near(b) < (a ? near(a) : 12) ? b : a, null);
+    if (!m) return;
+    const c = this.app.camera(), eye = eyeOf(m), arm = length(sub(c.lookat, c.eye));
+    this.app.edit({ eye, lookat: add(eye, scale([m[2], m[6], m[10]], arm)), up: [-m[1], -m[5], -m[9]], roll: 0 }, this.gesture);
+  }
 
   wheel(event) {
     event.preventDefault();

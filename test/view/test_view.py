@@ -194,6 +194,23 @@ def test_other_tracer(folder):
     check("other_tracer_ends", view.end()[0] == 0)
 
 
+def test_trajectory(folder):
+    """--trajectory: a string of cameras for the view from outside; the page's camera is still the scene's."""
+    way = os.path.join(folder, "way.tum")
+    open(way, "w").write("".join(f"{i} {40 * i} 30 {500 - 20 * i} 1 0 0 0\n" for i in range(7)))
+    view = View(VELO, SCENE, "--resolution", "64x48", "--trajectory", way, "--spp", "1", cwd=folder)
+    page = Page(view)
+    told = answer(page, "cameras", type="cameras")
+    parts = [line[0] for line in told["lines"]]
+    check("trajectory", len(told["poses"]) == 7 and parts.count("path") == 6 and parts.count("eye") == 7 and
+          parts.count("volume") == 28, parts)
+    check("trajectory_poses", [told["poses"][i][3] for i in range(7)] == [40 * i for i in range(7)])
+    page.close()
+    check("trajectory_ends", view.end()[0] == 0)
+    wrong = subprocess.run([VELO, "view", SCENE, "--no-open", "--trajectory", SCENE + ".no"], capture_output=True, text=True)
+    check("trajectory_missing", wrong.returncode == 4, wrong.stderr)
+
+
 def test_tasks(page):
     picked = answer(page, "picked", type="pick", x=page.wait_camera["width"] / 2, y=page.wait_camera["height"] / 2)
     check("pick", picked["type"] == "picked" and picked["Z"][0] > 0 and picked["object"]["id"] > 0, picked)
@@ -458,6 +475,7 @@ def main():
     check("ends", code == 0, code, errors)
     check("ssh_line", f"ssh -N -L {view.port}:127.0.0.1:{view.port}" in errors, errors)
     test_other_tracer(folder)
+    test_trajectory(folder)
     test_watch(folder)
     test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)

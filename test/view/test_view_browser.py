@@ -3,6 +3,7 @@
 view transforms, edit the file, break it, mend it; light and dark, wide and narrow. Skipped without chromium."""
 import base64
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -202,6 +203,10 @@ def test_panels(b, folder):
     b.wait("velo.screen.frame.channel === 0")
 
 
+def settle(b):
+    b.wait("velo.outside.drawing && !velo.outside.asked && !velo.queued && velo.screen.frame.change === velo.change")
+
+
 def test_outside(b):
     """The second pane: its handles move e and d."""
     b.click_on("#outside-toggle")
@@ -212,19 +217,40 @@ def test_outside(b):
     x, y = handle("eye")
     b.drag(x, y, x + 25, y - 15)
     b.wait(f"Math.hypot(velo.state.camera.eye[0] - {eye[0]}, velo.state.camera.eye[1] - {eye[1]}) > 0.05")
-    check("drag_eye_outside", True)
+    settle(b)
+    check("drag_eye_outside", math.dist(handle("eye"), (x + 25, y - 15)) < 4, handle("eye"), x, y)
     b.click_on("#undo")
     b.wait(f"Math.abs(velo.state.camera.eye[1] - {eye[1]}) < 1e-9")
-    b.wait("velo.outside.drawing && !velo.outside.asked")
+    settle(b)
     x, y = handle("plane")
     towards = b.run("(() => { const o = velo.outside, c = velo.camera(), p = o.project(o.handles.plane), q = o.project(c.lookat);"
                     " const n = Math.hypot(q[0] - p[0], q[1] - p[1]); return [(q[0] - p[0]) / n, (q[1] - p[1]) / n]; })()")
     b.drag(x, y, x + 20 * towards[0], y + 20 * towards[1])
     b.wait(f"velo.state.camera.d > {1.05 * d}")
-    check("drag_plane_outside", True)
+    settle(b)
+    end = (x + 20 * towards[0], y + 20 * towards[1])
+    check("drag_plane_outside", math.dist(handle("plane"), end) < 6, handle("plane"), end)
     shot(b, "outside")
     b.click_on("#undo")
     b.wait(f"Math.abs(velo.state.camera.d - {d}) < 1e-6")
+    parts = "velo.outside.drawing.lines.map(l => l[0])"
+    b.run("velo.edit({f_number: 2, focus_distance: 4})")
+    b.wait(f"{parts}.includes('focus')")
+    b.run("velo.edit({projection: 'equidistant fisheye', fov: 150})")
+    b.wait(f"{parts}.filter(p => p === 'window').length > 100")
+    settle(b)
+    check("bundle_of_a_fisheye", b.run(f"{parts}.filter(p => p === 'volume').length") >= 8)
+    shot(b, "fisheye")
+    b.click_on("#reset")
+    b.wait("velo.state.camera.projection === 'perspective'")
+    settle(b)
+    x, y = b.run("(() => { const o = velo.outside, r = o.canvas.getBoundingClientRect(), m = o.string.poses[1],"
+                 " p = o.project([m[3], m[7], m[11]]); return [r.x + p[0], r.y + p[1]]; })()")
+    b.click(x, y)
+    b.wait("Math.abs(velo.state.camera.eye[0] + 1) < 1e-9 && velo.state.camera.eye[2] === 4")
+    check("click_on_the_trajectory", True)
+    b.click_on("#reset")
+    b.wait(f"Math.abs(velo.state.camera.d - {d}) < 1e-6 && velo.state.camera.eye[2] === 5")
     b.click_on("#outside-toggle")
 
 
@@ -290,7 +316,8 @@ def main():
     folder = tempfile.mkdtemp(prefix="velo-view-")
     open(os.path.join(folder, "things.pbrt"), "w").write(THINGS % "0.7 0.2 0.1")
     open(os.path.join(folder, "shown.pbrt"), "w").write(SCENE)
-    view = View(VELO, os.path.join(folder, "shown.pbrt"), cwd=folder)
+    open(os.path.join(folder, "way.tum"), "w").write("".join(f"{i} {-2 + i} 1.5 4 1 0 0 0\n" for i in range(5)))
+    view = View(VELO, os.path.join(folder, "shown.pbrt"), "--trajectory", "way.tum", cwd=folder)
     try:
         b = Browser()
         try:

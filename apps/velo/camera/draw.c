@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera/poses.h"
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
@@ -32,7 +33,7 @@ enum {
 };
 _Static_assert((int)DRAW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
-enum { MOST_CAMERAS = 200, DEFAULT_POINTS = 2 };
+enum { DEFAULT_POINTS = 2 };
 
 typedef struct State {
   vlContext *context;
@@ -127,27 +128,6 @@ static int read_options(State *s, const Arguments *arguments) {
 
 /* ---- the cameras ------------------------------------------------------------------------------------------------- */
 
-/* The cameras of a trajectory; poses without a camera have the scene's. */
-static int load_trajectory(State *s, const char *path) {
-  vlTrajectory *trajectory = NULL;
-  vlError error = {0};
-  vlResult result = vl_trajectory_load(s->context, path, NULL, &trajectory, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
-  uint32_t frames = vl_trajectory_frames(trajectory), every = (frames + MOST_CAMERAS - 1) / MOST_CAMERAS;
-  s->cameras = calloc((frames + every - 1) / every, sizeof *s->cameras);
-  for (uint32_t i = 0; s->cameras && result == VL_OK && i < frames; i += every) {
-    vlTrajectoryFrame frame;
-    vlCamera base = s->job.camera;
-    result = vl_trajectory_frame(trajectory, i, &frame);
-    if (result == VL_OK && frame.camera != VL_NO_CAMERA)
-      result = vl_camera_make(&vl_trajectory_camera(trajectory, (uint32_t)frame.camera)->camera, &base, NULL, &error);
-    if (result == VL_OK) result = vl_camera_move(&base, frame.world_from_camera, &s->cameras[s->count++], &error);
-  }
-  if (!s->cameras) result = VL_ERROR_MEMORY;
-  vl_trajectory_destroy(trajectory);
-  return result == VL_OK ? -1 : report_error(&error, result, path);
-}
-
 static int load(State *s, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
@@ -161,8 +141,11 @@ static int load(State *s, const Arguments *arguments) {
   vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   status = lens_autofocus(&s->job, s->scene, s->world);
-  if (status < 0 && v[RENDER_TRAJECTORY].given) return load_trajectory(s, v[RENDER_TRAJECTORY].text);
   if (status >= 0) return status;
+  if (v[RENDER_TRAJECTORY].given) {
+    result = poses_load(s->context, v[RENDER_TRAJECTORY].text, &s->job.camera, &s->cameras, &s->count, &error);
+    return result == VL_OK ? -1 : report_error(&error, result, v[RENDER_TRAJECTORY].text);
+  }
   if (v[DRAW_NEAR].given) s->job.camera.near_plane = v[DRAW_NEAR].number;
   if (v[DRAW_FAR].given) s->job.camera.far_plane = v[DRAW_FAR].number;
   s->cameras = malloc(sizeof *s->cameras);
@@ -201,16 +184,8 @@ static void choose_distances(State *s, const OptionValue *v) {
   bool flat = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   s->def.plane = d > 0 && d < 0.8 * nearest ? d : 0.45 * fmin(flat || !seen->count ? nearest : seen->middle, far);
   s->def.reach = seen->count ? fmin(1.02 * seen->far, 1.3 * seen->middle) : 2 * s->def.plane;
-  if (s->count > 1) { /* small cameras on their way */
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0;
-    for (uint32_t i = 0; i < s->count; i++)
-      for (int k = 0; k < 3; k++) {
-        low[k] = fmin(low[k], s->cameras[i].world_from_camera[4 * k + 3]);
-        high[k] = fmax(high[k], s->cameras[i].world_from_camera[4 * k + 3]);
-      }
-    for (int k = 0; k < 3; k++) size = hypot(size, high[k] - low[k]);
-    s->def.plane = size > 0 ? 0.07 * size : s->def.plane;
-  }
+  double small = s->count > 1 ? poses_plane(s->cameras, s->count) : 0;
+  if (small > 0) s->def.plane = small;
   if (v[DRAW_PLANE].given) s->def.plane = v[DRAW_PLANE].number;
   if (v[DRAW_REACH].given) s->def.reach = v[DRAW_REACH].number;
 }

@@ -186,7 +186,7 @@ static void add_task(Engine *e, uint32_t client, const ViewMessage *m, Task *tas
 /* Messages that change nothing that others see. */
 static bool is_harmless(MessageKind kind) {
   return kind == MESSAGE_PICK || kind == MESSAGE_OVERLAY || kind == MESSAGE_OUTLINE || kind == MESSAGE_OUTSIDE ||
-         kind == MESSAGE_PATHS;
+         kind == MESSAGE_PATHS || kind == MESSAGE_CAMERAS;
 }
 
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *m) {
@@ -214,6 +214,7 @@ void engine_message(void *user, uint32_t client, bool steers, const ViewMessage 
       case MESSAGE_FOCUS:
       case MESSAGE_OUTLINE:
       case MESSAGE_OUTSIDE:
+      case MESSAGE_CAMERAS:
       case MESSAGE_OVERLAY: add_task(e, client, m, e->questions, &e->question_count); break;
       case MESSAGE_SEEN:
       case MESSAGE_STEER: break; /* the server's own */

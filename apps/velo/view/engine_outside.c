@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera/poses.h"
 #include "image/display.h"
 #include "view/engine_status.h"
 
@@ -44,8 +45,9 @@ static void put_drawing(Json *json, const vlDrawing *d) {
   json_end(json, ']');
 }
 
-/* The view plane at the lecture's d where that is before what the camera looks at, else nearer. */
-static double plane_distance(const ViewCamera *camera) {
+/* The view plane where the page has it, so that it moves with d while it is dragged; else at the lecture's d, where
+ * that is before what the camera looks at; else nearer. */
+static double plane_distance(const ViewCamera *camera, const MessageField *given) {
   double d = camera->def.view_distance, arm = camera->units.lookat;
   const CameraPose pose = camera_pose(camera);
   if (!camera->def.has_matrix) {
@@ -53,6 +55,7 @@ static double plane_distance(const ViewCamera *camera) {
     for (int i = 0; i < 3; i++) arm += (pose.lookat[i] - pose.eye[i]) * (pose.lookat[i] - pose.eye[i]);
     arm = sqrt(arm);
   }
+  if (given && given->numbers[0] > 0.02 * arm && given->numbers[0] < 4 * arm) return given->numbers[0];
   return d > 0.02 * arm && d < 4 * arm ? d : 0.4 * arm;
 }
 
@@ -65,7 +68,7 @@ void engine_outline(Engine *e, const Task *task) {
   vlDrawing *drawing = NULL;
   vlError error = {0};
   JsonText text;
-  def.plane = plane_distance(&camera);
+  def.plane = plane_distance(&camera, find_field(&task->message, "plane", 1));
   def.reach = fmax(1.3 * camera.units.lookat, 1.05 * def.plane);
   def.points = point ? point->numbers : NULL, def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
@@ -77,6 +80,34 @@ void engine_outline(Engine *e, const Task *task) {
     } else {
       json_text(&text.json, "message", error.message);
     }
+    json_text_post(&text, e->server, task->client);
+  }
+  vl_drawing_destroy(drawing);
+}
+
+void engine_cameras(Engine *e, const Task *task) {
+  const Model *model = &e->model;
+  vlDrawingDef def = vl_default_drawing_def();
+  vlDrawing *drawing = NULL;
+  vlError error = {0};
+  vlResult result = VL_OK;
+  JsonText text;
+  double plane = poses_plane(model->cameras, model->camera_count);
+  def.plane = plane > 0 ? plane : 0.1 * model->lookat;
+  def.parts &= ~(1u << VL_DRAWING_GRID);
+  if (model->camera_count)
+    result = vl_camera_outline(e->def.context, model->cameras, model->camera_count, &def, &drawing, &error);
+  if (json_text_begin(&text, result == VL_OK ? "cameras" : "refused")) {
+    json_integer(&text.json, "id", task->message.id);
+    if (result != VL_OK) json_text(&text.json, "message", error.message);
+    if (drawing) put_drawing(&text.json, drawing);
+    json_begin(&text.json, "poses", '[');
+    for (uint32_t i = 0; i < model->camera_count; i++) {
+      json_begin(&text.json, NULL, '[');
+      put_numbers(&text.json, model->cameras[i].world_from_camera, 16);
+      json_end(&text.json, ']');
+    }
+    json_end(&text.json, ']');
     json_text_post(&text, e->server, task->client);
   }
   vl_drawing_destroy(drawing);

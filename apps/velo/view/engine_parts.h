@@ -107,6 +107,8 @@ void engine_overlay(Engine *engine, const Task *task);
 /* Posts the lines that draw the camera from outside; a small image of the scene from outside. */
 void engine_outline(Engine *engine, const Task *task);
 void engine_outside(Engine *engine, const Task *task);
+/* Posts the cameras of --trajectory, and the lines that draw them. */
+void engine_cameras(Engine *engine, const Task *task);
 /* Adds a pixel whose paths are to be traced, in place of the page's one before; the caller holds the lock. */
 void engine_add_trace(Engine *engine, uint32_t client, const ViewMessage *message);
 /* Drops the pixels of a page, or of all (0), because of `why`; the caller holds the lock. */

@@ -136,7 +136,7 @@ static bool option_is_replaced(int id) {
       VIEW_PORT,       VIEW_LISTEN,        VIEW_NO_OPEN,       RENDER_SPP,      RENDER_FILM,     RENDER_RESOLUTION,
       RENDER_CROP,     RENDER_CAMERA,      RENDER_FRAME,       RENDER_SIZE,     RENDER_SEQUENCE, RENDER_VIEW,
       RENDER_EXPOSURE, RENDER_FOCUS_PIXEL, RENDER_LENS_RADIUS, RENDER_F_NUMBER, RENDER_THREADS,  RENDER_FOCUS_DISTANCE,
-      RENDER_QUIET,    RENDER_MAX_MEMORY,  RENDER_ISO,         RENDER_SECONDS,  RENDER_TURN};
+      RENDER_QUIET,    RENDER_MAX_MEMORY,  RENDER_ISO,         RENDER_SECONDS,  RENDER_TURN,     RENDER_TRAJECTORY};
   for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
     if (replaced[i] == id) return true;
   return false;

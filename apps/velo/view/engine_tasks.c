@@ -124,6 +124,7 @@ void engine_answer(Engine *e, const Task *task) {
     case MESSAGE_OVERLAY: engine_overlay(e, task); break;
     case MESSAGE_OUTLINE: engine_outline(e, task); break;
     case MESSAGE_OUTSIDE: engine_outside(e, task); break;
+    case MESSAGE_CAMERAS: engine_cameras(e, task); break;
     case MESSAGE_PATHS: /* engine_trace answers it */
     case MESSAGE_SEEN:  /* these need no world */
     case MESSAGE_CAMERA:

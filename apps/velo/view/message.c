@@ -5,8 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const kinds[] = {"seen", "camera",  "undo",    "redo",    "reset",   "settings", "pick",  "focus",
-                                    "save", "command", "overlay", "outline", "outside", "paths",    "steer", "scene"};
+static const char *const kinds[] = {"seen",    "camera", "undo",    "redo",    "reset",   "settings",
+                                    "pick",    "focus",  "save",    "command", "overlay", "outline",
+                                    "outside", "paths",  "cameras", "steer",   "scene"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 /* The following functions return false for a value of a wrong type or out of range. A missing value is right. */

@@ -29,6 +29,7 @@ typedef enum MessageKind {
   MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
   MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
+  MESSAGE_CAMERAS,  /* the cameras of --trajectory as lines: id */
   MESSAGE_STEER,    /* the sender wants to steer, if nobody does */
   MESSAGE_SCENE     /* another scene of the lecture: name, change */
 } MessageKind;

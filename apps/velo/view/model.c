@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera/poses.h"
 #include "cli/report.h"
 #include "render/exposure.h"
 #include "view/lecture.h"
@@ -39,6 +40,16 @@ static double find_lookat(const Model *model) {
   return middle > 0 && isfinite(middle) ? middle : 1;
 }
 
+/* The cameras of --trajectory, if it is given. */
+static int load_poses(vlContext *context, const Arguments *arguments, Model *model, FileList *files) {
+  const OptionValue *value = &arguments->values[RENDER_TRAJECTORY];
+  vlError error = {0};
+  if (!value->given) return -1;
+  file_list_add(files, value->text);
+  vlResult result = poses_load(context, value->text, &model->job.camera, &model->cameras, &model->camera_count, &error);
+  return result == VL_OK ? -1 : report_error(&error, result, value->text);
+}
+
 int model_load(vlContext *context, const char *path, const Arguments *arguments, const vlWorld *previous,
                const vlCancel *cancel, Model *model, FileList *files) {
   memset(model, 0, sizeof *model);
@@ -67,6 +78,7 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   for (uint32_t i = 0; (file = vl_context_file(context, i)); i++) file_list_add(files, file->path);
   vl_context_record_files(context, false);
   if (status < 0) status = lens_autofocus(&model->job, model->scene, model->world);
+  if (status < 0) status = load_poses(context, arguments, model, files);
   if (status < 0) status = choose_exposure(context, arguments, model);
   if (status >= 0) {
     model_free(model);
@@ -80,5 +92,6 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
 void model_free(Model *model) {
   vl_world_destroy(model->world);
   vl_scene_destroy(model->scene);
+  free(model->cameras);
   memset(model, 0, sizeof *model);
 }

@@ -12,10 +12,10 @@ typedef struct Model {
   Job job;
   SceneOpening opening;
   vlWorldInfo info;
-  double lookat;  /* distance of what the middle of the image shows, or of the scene's middle */
-  float exposure; /* EV of the first view */
-  char **files;   /* paths of the files that were read */
-  uint32_t file_count;
+  double lookat;     /* distance of what the middle of the image shows, or of the scene's middle */
+  float exposure;    /* EV of the first view */
+  vlCamera *cameras; /* of --trajectory; null: none */
+  uint32_t camera_count;
 } Model;
 
 /* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the paths of the files that

@@ -77,6 +77,8 @@ const Option view_options[] = {
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera and the image size",
      0, 0, NULL},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, if the file of --camera has several", 0, 0, NULL},
+    {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
+     "show the cameras of this trajectory or rig in the view from outside; at most 200 of them", 0, 0, NULL},
     {RENDER_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for a file of --camera that does not give one", 1, 65536,
      NULL},
     {RENDER_SCENE, 0, "scene", OPTION_TEXT, "NAME", "glTF: scene, by name or number from 0", 0, 0, NULL},

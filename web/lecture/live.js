@@ -7,10 +7,18 @@ import { Overlay } from "../overlay.js";
 import { Screen } from "../screen.js";
 
 const WORDS = {
-  en: { steered: "another page steers", away: "velo has ended or cannot be reached; trying again",
-        status: (s) => `${s.spp} of ${s.target} samples per pixel` },
-  it: { steered: "un'altra pagina ha il comando", away: "velo è terminato o non è raggiungibile; nuovo tentativo",
-        status: (s) => `${s.spp} di ${s.target} campioni per pixel` },
+  en: {
+    steered: "another page steers",
+    away: "velo has ended or cannot be reached; trying again",
+    outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
+    status: (s) => `${s.spp} of ${s.target} samples per pixel`,
+  },
+  it: {
+    steered: "un'altra pagina ha il comando",
+    away: "velo è terminato o non è raggiungibile; nuovo tentativo",
+    outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
+    status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
+  },
 };
 const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
 
@@ -41,7 +49,7 @@ export class Live {
     this.words = WORDS.en;
     this.figures = [];    // those of figures.js
     this.element = null;  // the figure that is live
-    this.change = 0;      // the number of the last change; velo gives it back
+    this.change = Math.floor(Date.now() / 1000); // the number of the last change, which velo gives back; no page before had it
     this.gesture = 1;
     this.waiting = new Map();
     this.nextId = 1;
@@ -53,6 +61,9 @@ export class Live {
     this.overlay = new Overlay(document.createElement("div"), this);
     this.screen.onplace = () => this.overlay.draw();
     this.display = { ev: 0 };
+    addEventListener("wheel", (event) => { // over the view from outside it scrolls the page
+      if (!event.ctrlKey && event.target.closest?.(".pane.outside")) event.stopPropagation();
+    }, { capture: true, passive: true });
     this.connection = new Connection({
       text: (message) => this.receive(message),
       frame: (buffer) => this.receiveFrame(buffer),
@@ -142,6 +153,7 @@ export class Live {
     if (pane) {
       pane.replaceChildren();
       this.outside = new Outside(this, pane, null);
+      this.outside.canvas.title = this.words.outside;
       this.outside.pose = this.outsidePose(pane);
       this.outside.toggle();
     }

@@ -73,15 +73,15 @@ class Figure {
       .map((name) => ({ name, line: make("p", { className: "numbers" }) }));
     const reset = make("button", { type: "button", className: "reset", textContent: words.reset });
     reset.addEventListener("click", () => this.first && this.set(this.first, true));
-    this.panel = make("div", { className: "controls", hidden: true }, ...this.rows.map((r) => r.row), reset, ...this.formulas.map((f) => f.line));
+    this.panel = make("div", { className: this.rows.length > 5 ? "controls many" : "controls", hidden: true }, ...this.rows.map((r) => r.row), reset, ...this.formulas.map((f) => f.line));
     this.panel.setAttribute("role", "group");
     this.panel.setAttribute("aria-label", words.sliders);
     this.error = make("p", { className: "error", hidden: true });
     this.error.setAttribute("role", "status");
     const image = element.querySelector("img"), outside = make("div", { className: "pane outside" });
     outside.setAttribute("aria-label", words.outside);
-    this.panes = make("div", { className: "panes" }, make("div", { className: "pane image" }, image), ...(element.dataset.outside ? [outside] : []));
-    element.prepend(this.panes);
+    this.image = make("div", { className: "pane image" }, image);
+    element.prepend(make("div", { className: "panes" }, this.image, ...(element.dataset.outside ? [outside] : [])));
     element.append(this.panel, this.error);
   }
 
@@ -137,7 +137,7 @@ const inSight = (element) => box(element).bottom > 0 && box(element).top < inner
 // Chooses the figure that is live. Returns a function that ends that.
 function chooseLive(figures) {
   let live = null, held = null, timer = null;
-  const distance = ({ panes }) => Math.abs((box(panes).top + box(panes).bottom - innerHeight) / 2);
+  const distance = ({ image }) => Math.abs((box(image).top + box(image).bottom - innerHeight) / 2);
   const choose = () => {
     if (held && ![held.element, ...held.views].some(inSight)) held = null;
     const next = held ?? figures.filter((f) => inSight(f.element)).sort((a, b) => distance(a) - distance(b))[0] ?? null;

@@ -150,20 +150,24 @@ export class Live {
     Object.assign(this.screen.display, { exposure: state.exposure, view: state.view, kind: 0 });
     this.screen.redevelop();
     if (element.dataset.overlay === "vanishing") for (const name of ["vanishing", "horizon"]) this.overlay.toggle(name, true);
-    if (pane) {
-      pane.replaceChildren();
-      this.outside = new Outside(this, pane, null);
-      this.outside.canvas.title = this.words.outside;
-      this.outside.pose = this.outsidePose(pane);
-      this.outside.toggle();
-    }
+    if (pane) this.openOutside(pane, state.camera);
     return this.sent;
   }
 
-  // From so far that eye and scene fit into the pane's width.
-  outsidePose(pane) {
-    const pose = this.outside.start(), box = pane.getBoundingClientRect(), k = Math.max(1, 1.7 * box.height / box.width);
-    return { ...pose, eye: pose.eye.map((x, i) => pose.lookat[i] + k * (x - pose.lookat[i])) };
+  // From so far that the pane's width has room for the eye and for lookat, or for what the middle of the image shows, if
+  // that is farther.
+  openOutside(pane, camera) {
+    pane.replaceChildren();
+    const outside = this.outside = new Outside(this, pane, null), box = pane.getBoundingClientRect();
+    outside.canvas.title = this.words.outside;
+    this.ask({ type: "pick", x: camera.width / 2, y: camera.height / 2 }, ({ distance }) => {
+      if (outside !== this.outside) return;
+      const arm = camera.lookat.map((x, i) => x - camera.eye[i]), depth = distance?.[0] ?? 0;
+      const k = Math.max(1, 0.6 * depth / Math.hypot(...arm)) * Math.max(1, 1.7 * box.height / box.width);
+      const pose = outside.start();
+      outside.pose = { ...pose, eye: pose.lookat.map((x, i) => x + k * (pose.eye[i] - x)) };
+      outside.toggle();
+    });
   }
 
   flush() {

@@ -23,9 +23,11 @@ function make(tag, properties = {}, ...children) {
 }
 
 // Three significant digits are what a slider can set.
+const rounded = (value) => Number(value.toPrecision(Math.abs(value) >= 1000 ? 4 : 3));
+
 function short(value, language) {
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "–";
-  const text = String(Number(value.toPrecision(value >= 1000 ? 4 : 3))).replace("-", "−");
+  const text = String(rounded(value)).replace("-", "−");
   return language === "it" ? text.replace(".", ",") : text;
 }
 
@@ -40,7 +42,7 @@ function sliderRow(slider, language, change) {
     input.setAttribute("aria-valuetext", output.textContent);
   };
   input.addEventListener("input", () => {
-    const value = valueAt(slider, input.value / STEPS);
+    const value = rounded(valueAt(slider, input.value / STEPS));
     write(value);
     change(value);
   });
@@ -71,15 +73,15 @@ class Figure {
       .map((name) => ({ name, line: make("p", { className: "numbers" }) }));
     const reset = make("button", { type: "button", className: "reset", textContent: words.reset });
     reset.addEventListener("click", () => this.first && this.set(this.first, true));
-    this.panel = make("div", { className: "controls", hidden: true }, ...this.rows.map((r) => r.row), reset, ...this.formulas.map((f) => f.line));
+    this.panel = make("div", { className: this.rows.length > 5 ? "controls many" : "controls", hidden: true }, ...this.rows.map((r) => r.row), reset, ...this.formulas.map((f) => f.line));
     this.panel.setAttribute("role", "group");
     this.panel.setAttribute("aria-label", words.sliders);
     this.error = make("p", { className: "error", hidden: true });
     this.error.setAttribute("role", "status");
     const image = element.querySelector("img"), outside = make("div", { className: "pane outside" });
     outside.setAttribute("aria-label", words.outside);
-    this.panes = make("div", { className: "panes" }, make("div", { className: "pane image" }, image), ...(element.dataset.outside ? [outside] : []));
-    element.prepend(this.panes);
+    this.image = make("div", { className: "pane image" }, image);
+    element.prepend(make("div", { className: "panes" }, this.image, ...(element.dataset.outside ? [outside] : [])));
     element.append(this.panel, this.error);
   }
 
@@ -129,17 +131,16 @@ class Figure {
   }
 }
 
+const box = (element) => element.getBoundingClientRect();
+const inSight = (element) => box(element).bottom > 0 && box(element).top < innerHeight;
+
 // Chooses the figure that is live. Returns a function that ends that.
 function chooseLive(figures) {
-  const inSight = new Set();
   let live = null, held = null, timer = null;
-  const distance = (figure) => {
-    const box = figure.panes.getBoundingClientRect();
-    return Math.abs((box.top + box.bottom) / 2 - innerHeight / 2);
-  };
+  const distance = ({ image }) => Math.abs((box(image).top + box(image).bottom - innerHeight) / 2);
   const choose = () => {
-    if (!inSight.has(held)) held = null;
-    const next = held ?? [...inSight].sort((a, b) => distance(a) - distance(b))[0] ?? null;
+    if (held && ![held.element, ...held.views].some(inSight)) held = null;
+    const next = held ?? figures.filter((f) => inSight(f.element)).sort((a, b) => distance(a) - distance(b))[0] ?? null;
     if (next === live && (!live || live.seen)) return;
     live?.stop();
     live = next;
@@ -149,21 +150,13 @@ function chooseLive(figures) {
     clearTimeout(timer);
     timer = setTimeout(choose, CALM);
   };
-  const hold = (event) => {
-    const figure = figures.find((f) => f.element.contains(event.target) || f.views.some((view) => view.contains(event.target)));
+  const hold = ({ target }) => {
+    const figure = figures.find((f) => [f.element, ...f.views].some((element) => element.contains(target)));
     if (!figure) return;
     held = figure;
-    inSight.add(figure);
     choose();
   };
-  const observer = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) {
-      const figure = figures.find((f) => f.element === target);
-      if (isIntersecting) inSight.add(figure);
-      else inSight.delete(figure);
-    }
-    later();
-  });
+  const observer = new IntersectionObserver(later); // figures also come and go without scrolling
   for (const figure of figures) observer.observe(figure.element);
   const listeners = [["scroll", later], ["resize", later], ["pointerdown", hold], ["focusin", hold]];
   for (const [name, action] of listeners) addEventListener(name, action, { passive: true });
@@ -188,18 +181,15 @@ export function attachFigures(root, options) {
       line.hidden = false;
     }
   };
-  const figures = new Map();
-  let last = null;
+  const figures = [];
   for (const element of root.querySelectorAll("figure.live, button.view")) {
+    const figure = figures.at(-1);
     if (element.matches("figure")) {
-      last = new Figure(element, { language: "en", ...options, changed });
-      figures.set(element, last);
-    } else if (last) {
-      const figure = last;
+      figures.push(new Figure(element, { language: "en", ...options, changed }));
+    } else if (figure) {
       figure.views.push(element);
       element.addEventListener("click", () => figure.start(`${figure.folder}${element.dataset.view}.pbrt`, false));
     }
   }
-  const all = [...figures.values()];
-  return { figures: all, close: chooseLive(all) };
+  return { figures, close: chooseLive(figures) };
 }

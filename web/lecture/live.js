@@ -7,10 +7,18 @@ import { Overlay } from "../overlay.js";
 import { Screen } from "../screen.js";
 
 const WORDS = {
-  en: { steered: "another page steers", away: "velo has ended or cannot be reached; trying again",
-        status: (s) => `${s.spp} of ${s.target} samples per pixel` },
-  it: { steered: "un'altra pagina ha il comando", away: "velo è terminato o non è raggiungibile; nuovo tentativo",
-        status: (s) => `${s.spp} di ${s.target} campioni per pixel` },
+  en: {
+    steered: "another page steers",
+    away: "velo has ended or cannot be reached; trying again",
+    outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
+    status: (s) => `${s.spp} of ${s.target} samples per pixel`,
+  },
+  it: {
+    steered: "un'altra pagina ha il comando",
+    away: "velo è terminato o non è raggiungibile; nuovo tentativo",
+    outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
+    status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
+  },
 };
 const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
 
@@ -41,7 +49,7 @@ export class Live {
     this.words = WORDS.en;
     this.figures = [];    // those of figures.js
     this.element = null;  // the figure that is live
-    this.change = 0;      // the number of the last change; velo gives it back
+    this.change = Math.floor(Date.now() / 1000); // the number of the last change, which velo gives back; no page before had it
     this.gesture = 1;
     this.waiting = new Map();
     this.nextId = 1;
@@ -53,6 +61,9 @@ export class Live {
     this.overlay = new Overlay(document.createElement("div"), this);
     this.screen.onplace = () => this.overlay.draw();
     this.display = { ev: 0 };
+    addEventListener("wheel", (event) => { // over the view from outside it scrolls the page
+      if (!event.ctrlKey && event.target.closest?.(".pane.outside")) event.stopPropagation();
+    }, { capture: true, passive: true });
     this.connection = new Connection({
       text: (message) => this.receive(message),
       frame: (buffer) => this.receiveFrame(buffer),
@@ -139,19 +150,24 @@ export class Live {
     Object.assign(this.screen.display, { exposure: state.exposure, view: state.view, kind: 0 });
     this.screen.redevelop();
     if (element.dataset.overlay === "vanishing") for (const name of ["vanishing", "horizon"]) this.overlay.toggle(name, true);
-    if (pane) {
-      pane.replaceChildren();
-      this.outside = new Outside(this, pane, null);
-      this.outside.pose = this.outsidePose(pane);
-      this.outside.toggle();
-    }
+    if (pane) this.openOutside(pane, state.camera);
     return this.sent;
   }
 
-  // From so far that eye and scene fit into the pane's width.
-  outsidePose(pane) {
-    const pose = this.outside.start(), box = pane.getBoundingClientRect(), k = Math.max(1, 1.7 * box.height / box.width);
-    return { ...pose, eye: pose.eye.map((x, i) => pose.lookat[i] + k * (x - pose.lookat[i])) };
+  // From so far that the pane's width has room for the eye and for lookat, or for what the middle of the image shows, if
+  // that is farther.
+  openOutside(pane, camera) {
+    pane.replaceChildren();
+    const outside = this.outside = new Outside(this, pane, null), box = pane.getBoundingClientRect();
+    outside.canvas.title = this.words.outside;
+    this.ask({ type: "pick", x: camera.width / 2, y: camera.height / 2 }, ({ distance }) => {
+      if (outside !== this.outside) return;
+      const arm = camera.lookat.map((x, i) => x - camera.eye[i]), depth = distance?.[0] ?? 0;
+      const k = Math.max(1, 0.6 * depth / Math.hypot(...arm)) * Math.max(1, 1.7 * box.height / box.width);
+      const pose = outside.start();
+      outside.pose = { ...pose, eye: pose.lookat.map((x, i) => x + k * (pose.eye[i] - x)) };
+      outside.toggle();
+    });
   }
 
   flush() {

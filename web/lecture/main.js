@@ -10,7 +10,7 @@ let lecture = null;
 
 // The heading that is being read, as its number and its place on the screen: both languages have the same headings.
 function readingPlace() {
-  const headings = [...document.querySelectorAll("#page :is(h1, h2, h3)")];
+  const headings = [...document.querySelectorAll("#page > :is(h1, h2, h3)")];
   const index = Math.max(0, headings.findLastIndex((h) => h.getBoundingClientRect().top < innerHeight / 3));
   return { index, top: headings[index]?.getBoundingClientRect().top ?? 0 };
 }
@@ -27,7 +27,7 @@ async function open(language, place) {
   const [other, name] = OTHER[language];
   Object.assign(byId("language"), { textContent: name, lang: other, hreflang: other, href: `?language=${other}` });
   await Promise.all([...root.querySelectorAll("img")].map((image) => image.decode().catch(() => 0)));
-  const heading = place && root.querySelectorAll(":is(h1, h2, h3)")[place.index];
+  const heading = place && root.querySelectorAll(":scope > :is(h1, h2, h3)")[place.index];
   if (heading) scrollBy(0, heading.getBoundingClientRect().top - place.top);
   else if (location.hash) document.getElementById(decodeURIComponent(location.hash.slice(1)))?.scrollIntoView();
 }

@@ -20,6 +20,7 @@ export class Outside {
     this.canvas = make("canvas", { title: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Click a camera of the trajectory: go there. Wheel: nearer, farther" });
     this.box = make("div", { id: "outside" }, this.canvas);
     this.box.hidden = true;
+    this.string = { poses: [], lines: [] };
     stage.append(this.box);
     this.button = button;
     if (button) button.onclick = () => this.toggle();
@@ -120,7 +121,7 @@ export class Outside {
 
   // The paths of the picked pixel; the chosen one is stronger.
   drawPaths(g) {
-    for (const [kind, chosen, from, to] of this.app.paths.lines) {
+    for (const [kind, chosen, from, to] of this.app.paths?.lines ?? []) {
       const [colour, width, dash] = looks[kind];
       this.stroke(g, from, to, [colour, chosen ? width : 0.6 * width, dash], chosen ? 1 : 0.4);
       if (chosen && kind === "path") this.stroke(g, to, to, [colour, 5]);

@@ -123,6 +123,10 @@ class Stage:
         scene.add_instance(group, place(((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)))
         return _Loaded(scene, name, low, high, scene.world())
 
+    def model(self, number: int) -> Any:
+        """The scene (velo.Scene) that has model `number`, from 0, alone, in the file's own space and units."""
+        return self._solo[number].scene
+
     # ---- plans
 
     def plan(self, frame: int) -> Plan:

@@ -216,6 +216,7 @@ PyObject *scene_set(Scene *self, PyObject *arguments);
 PyObject *scene_show(Scene *self, PyObject *arguments);
 PyObject *scene_remove(Scene *self, PyObject *handle);
 PyObject *scene_handles(Scene *self, PyObject *family);
+PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[];

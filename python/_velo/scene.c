@@ -172,6 +172,7 @@ static PyMethodDef scene_methods[] = {
     {"_show", (PyCFunction)scene_show, METH_VARARGS, "Shows or hides a light, a shape or an instance."},
     {"_remove", (PyCFunction)scene_remove, METH_O, "Removes an instance."},
     {"_handles", (PyCFunction)scene_handles, METH_O, "The handles of a family."},
+    {"_mesh", (PyCFunction)scene_mesh, METH_O, "The arrays of a mesh."},
     {"_instance", (PyCFunction)scene_instance, METH_O, "An instance's group, pose, whether it moves and is shown."},
     {"_camera", (PyCFunction)scene_camera, METH_NOARGS, "The scene's camera."},
     {"_set_camera", (PyCFunction)scene_set_camera, METH_O, "Sets the scene's camera and image size."},

@@ -263,6 +263,30 @@ static PyObject *handle_name(Handle *self, void *unused) {
   return PyUnicode_DecodeUTF8(name, (Py_ssize_t)strlen(name), "replace");
 }
 
+static PyObject *copy_array(const void *data, size_t size) {
+  void *to = NULL;
+  PyObject *bytes = make_bytes(size, &to);
+  if (bytes && size) memcpy(to, data, size);
+  return bytes;
+}
+
+/* _mesh(handle): (positions, indices, number of corners of a face, 16 numbers) */
+PyObject *scene_mesh(Scene *self, PyObject *object) {
+  uint32_t index;
+  int family = family_of(self, object, &index);
+  if (family < 0) return NULL;
+  const vlShapeDef *d = family == SHAPES ? vl_scene_shape(self->scene, (vlShapeId){index}) : NULL;
+  if (!d || (d->kind != VL_SHAPE_TRIANGLES && d->kind != VL_SHAPE_BILINEAR) || !d->positions || !d->indices)
+    return raise_usage("this is not a mesh of triangles or bilinear patches");
+  const int corners = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
+  PyObject *matrix = PyTuple_New(16);
+  for (int i = 0; matrix && i < 16; i++) PyTuple_SetItem(matrix, i, PyFloat_FromDouble(d->group_from_shape[i]));
+  return matrix ? Py_BuildValue("(NNiN)", copy_array(d->positions, (size_t)d->vertices * 3 * sizeof(float)),
+                                copy_array(d->indices, (size_t)d->faces * (size_t)corners * sizeof(uint32_t)), corners,
+                                matrix)
+                : NULL;
+}
+
 /* _instance(handle): (group, 16 numbers, moves, shown) */
 PyObject *scene_instance(Scene *self, PyObject *object) {
   uint32_t index;

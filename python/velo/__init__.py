@@ -19,7 +19,7 @@ from velo._errors import (CancelledError, Error, ForkError, MissingFileError, Ou
 from velo.camera import Camera, Projection, Rays, TrajectoryFrame, read_camera, read_trajectory
 from velo.film import Film, merge_films, read_film
 from velo.image import Image, read_image
-from velo.scene import Handle, Model, Scene, World, load, settings_names
+from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
 from velo.spectrum import Spectrum, blackbody, named, rgb, sampled, spectrum_names
 
 __version__: str = _velo.version()
@@ -42,7 +42,7 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 
 
 __all__ = [
-    "Camera", "CancelledError", "Context", "Error", "Film", "ForkError", "Handle", "Image", "MissingFileError", "Model",
+    "Camera", "CancelledError", "Context", "Error", "Film", "ForkError", "Handle", "Image", "Mesh", "MissingFileError", "Model",
     "OutOfMemoryError", "OutputError", "Progress", "Projection", "Rays", "Scene", "SceneError", "Spectrum", "Step",
     "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody", "channel_names", "default_context", "kinds",
     "load", "merge_films", "named", "read_camera", "read_film", "read_image", "read_trajectory", "rgb", "sampled",

@@ -54,6 +54,13 @@ class Model(NamedTuple):
     first_object: int  #: id.object of the first shape; the others follow
 
 
+class Mesh(NamedTuple):
+    """The arrays of a mesh."""
+    positions: Any  #: n x 3, float32, scene units, in the shape's own space
+    indices: Any  #: m x 3 or, of bilinear patches, m x 4, uint32: numbers of positions, from 0
+    group_from_shape: Any  #: 4 x 4
+
+
 def _as_image(value: Any, encoding: Optional[str] = None) -> Image:
     return value if isinstance(value, Image) else Image(value, encoding=encoding)
 
@@ -221,6 +228,12 @@ class Scene(_velo.Scene):
         """Removes an instance for good."""
         self._changed = True
         self._remove(instance)
+
+    def mesh(self, shape: Handle) -> Mesh:
+        """A copy of a mesh: positions n x 3, scene units; indices m x 3 or m x 4. Other shapes are a UsageError."""
+        positions, indices, corners, matrix = self._mesh(shape)
+        return Mesh(_arrays.from_bytes(positions, "f", (len(positions) // 12, 3)),
+                    _arrays.from_bytes(indices, "I", (len(indices) // (4 * corners), corners)), _arrays.from_rows(matrix, 4, 4))
 
     def transform(self, instance: Handle) -> Any:
         """An instance's pose, 4 x 4, world from group; of a moving one that at its first time."""

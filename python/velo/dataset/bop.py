@@ -11,6 +11,7 @@ import numpy
 
 from velo.dataset.files import write_bytes, write_json
 from velo.dataset.geometry import multiply
+from velo.dataset.models import diameter, ply, triangles
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer, box_of, display
@@ -19,7 +20,7 @@ MM = 1000.0
 
 
 class BopWriter(Writer):
-    """OUT/bop: models/models_info.json, camera.json, and a scene for each camera: train_pbr/000000."""
+    """OUT/bop: models/models_info.json, models/obj_000001.ply, ..., camera.json, and a scene for each camera: train_pbr/000000."""
 
     def __init__(self, stage: Stage, folder: str, depth_scale: float = 0.1) -> None:
         super().__init__(stage, os.path.join(folder, "bop"))
@@ -27,7 +28,10 @@ class BopWriter(Writer):
         info = {}
         for number, (low, high) in enumerate(stage.boxes):
             size = [(b - a) * MM for a, b in zip(low, high)]
-            info[str(number + 1)] = {"name": stage.names[number], "diameter": sum(s * s for s in size) ** 0.5,
+            points, faces = triangles(stage.model(number), stage.recipe.models[number].scale * MM)
+            write_bytes(os.path.join(self.folder, "models", f"obj_{number + 1:06d}.ply"), ply(points, faces))
+            info[str(number + 1)] = {"name": stage.names[number],
+                                     "diameter": diameter(points) or sum(s * s for s in size) ** 0.5,
                                      **{f"min_{axis}": value * MM for axis, value in zip("xyz", low)},
                                      **{f"size_{axis}": value for axis, value in zip("xyz", size)}}
         write_json(os.path.join(self.folder, "models", "models_info.json"), info)

@@ -104,6 +104,9 @@ class Stage:
             raise UsageError("the recipe has no models")
         self.recipe = recipe
         self._context = context
+        self._world: Any = None  # of the last frame
+        self._build = {name: recipe.render[name] for name in ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
+                       if name in recipe.render}
         self._cameras = Cameras(recipe)
         self._solo = [self._load(model) for model in recipe.models]
         names = [solo.name for solo in self._solo]
@@ -119,6 +122,10 @@ class Stage:
         group, name, low, high = _load_model(scene, model, self.recipe.folder)
         scene.add_instance(group, place(((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)))
         return _Loaded(scene, name, low, high, scene.world())
+
+    def model(self, number: int) -> Any:
+        """The scene (velo.Scene) that has model `number`, from 0, alone, in the file's own space and units."""
+        return self._solo[number].scene
 
     # ---- plans
 
@@ -258,6 +265,8 @@ class Stage:
         """The images of a frame, one for each camera."""
         plan = self.plan(frame)
         with self.scene(plan) as scene:
+            # Meshes and images are those of the last frame's world. The bits do not depend on it.
+            self._world = scene.world(previous=self._world, **self._build)
             return [self._render_view(scene, plan, view) for view in plan.views]
 
     def _render_view(self, scene: Any, plan: Plan, view: View) -> Frame:
@@ -265,8 +274,7 @@ class Stage:
         channels = ["Z", "N", "id.instance"]
         channels += [name for name in recipe.channels if name not in channels]
         image = scene.render(camera=view.camera, spp=recipe.spp, seed=plan.seed, channels=channels, **recipe.render)
-        total = len(scene.world(**{name: recipe.render[name] for name in ("color", "light_sampler", "regularize", "bits")
-                                   if name in recipe.render}).ids("instance"))
+        total = len(scene.world(**self._build).ids("instance"))
         ids, first = image["id.instance"], total - len(plan.objects) + 1
         instances = []
         for k, item in enumerate(plan.objects):

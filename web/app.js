@@ -16,9 +16,9 @@ import { byId, make, metric } from "./dom.js";
 import { addHelp } from "./help.js";
 
 const app = {
-  tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gesture: 1,
+  tool: "orbit", change: 0, state: null, local: null, waiting: new Map(), nextId: 1, gesture: 1, sent: [],
 
-  // The camera as the page has it: velo's last answer and the edits on their way.
+  // The camera as the page has it: velo's last answer and the edits on their way (`sent`, then `queued`).
   camera: () => app.local,
 
   // Edits the camera. Several edits within one frame of the screen are sent as one.
@@ -33,7 +33,8 @@ const app = {
     cancelAnimationFrame(app.timer);
     app.timer = null;
     if (!app.queued) return;
-    app.connection.send({ type: "camera", change: ++app.change, gesture: app.queued.gesture, set: app.queued.set });
+    app.sent.push({ change: ++app.change, set: app.queued.set });
+    app.connection.send({ type: "camera", change: app.change, gesture: app.queued.gesture, set: app.queued.set });
     app.queued = null;
   },
 
@@ -104,13 +105,19 @@ new Pointer(byId("stage"), app);
 
 // ---- messages of velo ----
 
+function expect() {
+  app.local = Object.assign(structuredClone(app.state.camera), ...app.sent.map(edit => edit.set), app.queued?.set);
+}
+
 function showState(state) {
   const first = !app.state;
   app.state = state;
-  if (first || !app.queued) app.local = structuredClone(state.camera);
+  app.change = Math.max(app.change, state.change);
+  app.sent = app.sent.filter(edit => edit.change > state.change);
+  expect();
   const size = Math.hypot(...[0, 1, 2].map(i => state.bounds[i + 3] - state.bounds[i]));
   panel.accepted();
-  panel.show(app.queued ? { ...state.camera, ...app.queued.set } : state.camera, size);
+  panel.show(app.local, size);
   display.show(state, first);
   byId("scene").textContent = state.scene.split("/").pop();
   document.title = `${state.scene.split("/").pop()} – velo`;
@@ -146,6 +153,8 @@ const handlers = {
   },
   refused(message) {
     if (message.id && app.waiting.has(message.id)) return answered(message);
+    app.sent = app.sent.filter(edit => edit.change > message.change);
+    if (app.state) expect();
     if (!panel.refused(message.field, message.message)) app.notice(message.message);
   },
   loading: () => { byId("status").textContent = "a file changed: loading"; },

@@ -3,10 +3,10 @@ import { byId, make, row, short } from "./dom.js";
 import { fromHalf } from "./half.js";
 
 const kinds = { Z: 1, distance: 1, P: 3, N: 2, Ng: 2, uv: 4, albedo: 5, ray: 2, "id.object": 6, "id.material": 6,
-  "id.instance": 6, "id.primitive": 6, samples: 1, film: 4, error: 1 };
+  "id.instance": 6, "id.primitive": 6, samples: 1, film: 4, error: 8, forward: 7 };
 const names = { image: "image", Z: "depth", distance: "distance", P: "position", N: "normals", Ng: "geometric normals",
   uv: "uv", albedo: "albedo", ray: "ray directions", "id.object": "objects", "id.material": "materials",
-  "id.instance": "instances", "id.primitive": "faces", error: "standard error" };
+  "id.instance": "instances", "id.primitive": "faces", error: "standard error", forward: "flow" };
 const left = ["samples", "film"];
 
 export class Display {
@@ -21,11 +21,13 @@ export class Display {
     for (const [i, name] of ["standard", "neutral", "agx", "raw"].entries()) this.view.append(make("option", { value: i, textContent: name }));
     this.spp = make("input", { type: "text", id: "spp", inputMode: "numeric", onchange: () => app.settings({ spp: Math.max(1, Math.round(Number(this.spp.value)) || 1) }) });
     this.histogram = make("canvas", { id: "histogram", width: 256, height: 64, title: "histogram of the display values" });
+    this.mark = make("button", { id: "mark", textContent: "Flow to this view", title: "flow leads from each later view to this one; at first to the scene's",
+      onclick: () => app.settings({ mark: true, change: ++app.change }) });
     const label = (text, id) => make("label", { textContent: text, htmlFor: id });
     this.number.style.width = "58px";
     this.number.style.flex = "none";
     root.append(row(label("show", "channel"), this.channel), row(label("exposure EV", "exposure"), this.exposure, this.number),
-      row(label("view", "view"), this.view), row(label("samples", "spp"), this.spp), this.histogram);
+      row(label("view", "view"), this.view), row(label("samples", "spp"), this.spp), make("div", { class: "buttons" }, this.mark), this.histogram);
   }
 
   lists(message) {
@@ -41,7 +43,7 @@ export class Display {
     }
     this.channel.value = this.channels[state.channel] || "image";
     if (document.activeElement !== this.spp) this.spp.value = state.spp;
-    for (const input of [this.channel, this.spp]) input.disabled = !this.app.steers;
+    for (const input of [this.channel, this.spp, this.mark]) input.disabled = !this.app.steers;
   }
 
   expose(step) { this.exposure.value = Number(this.exposure.value) + step; this.set(); }
@@ -71,12 +73,16 @@ export class Display {
     if (d.kind === 3) {
       const b = this.app.state.bounds;
       d.low = b.slice(0, 3), d.high = b.slice(3);
-    } else if (d.kind === 1) {
+    } else if ([1, 7, 8].includes(d.kind)) {
       const values = [];
-      for (let i = 0; i < data.length; i += n * Math.max(1, Math.floor(data.length / n / 20000))) if (Number.isFinite(data[i])) values.push(data[i]);
+      for (let i = 0; i < data.length; i += n * Math.max(1, Math.floor(data.length / n / 20000))) {
+        const v = d.kind === 7 ? Math.hypot(data[i], data[i + 1]) : d.kind === 8 ? Math.max(data[i], data[i + 1], data[i + 2]) : data[i];
+        if (Number.isFinite(v)) values.push(v);
+      }
       values.sort((a, b) => a - b);
       const at = share => values[Math.min(values.length - 1, Math.floor(share * values.length))] ?? 0;
-      d.low = [at(0.005), 0, 0], d.high = [Math.max(at(0.995), at(0.005) + 1e-9), 1, 1];
+      d.low = [d.kind === 7 ? 0 : at(0.005), 0, 0];
+      d.high = [Math.max(at(0.995), d.low[0] + (d.kind === 7 ? 1e-3 : 1e-9)), 1, 1];
     }
     this.legend(name, d);
   }
@@ -89,6 +95,10 @@ export class Display {
     if (box.hidden) return;
     box.replaceChildren(make("strong", { textContent: names[name] || name }));
     if (text) { box.append(make("div", { class: "hint", textContent: text })); return; }
+    if (d.kind === 7) {
+      box.append(wheel(), make("div", { class: "hint", textContent: `rim: ${short(d.high[0], 3)} pixels; dark: hidden or outside in the other view` }));
+      return;
+    }
     const bar = make("canvas", { width: 128, height: 1 }), context = bar.getContext("2d");
     for (let x = 0; x < 128; x++) { context.fillStyle = viridis(x / 127); context.fillRect(x, 0, 1, 1); }
     box.append(bar, make("div", { class: "ends" }, make("span", { textContent: short(d.low[0], 4) }), make("span", { textContent: short(d.high[0], 4) })));
@@ -113,6 +123,19 @@ export class Display {
       for (let x = 0; x < 256; x++) { const h = 62 * Math.min(1, Math.sqrt(bin[x] / most)); g.fillRect(x, 64 - h, 1, h); }
     });
   }
+}
+
+// The colours of flow: the direction is the hue, the length the saturation; as in shaders.js.
+function wheel() {
+  const n = 64, canvas = make("canvas", { width: n, height: n, class: "wheel" }), g = canvas.getContext("2d"), image = g.createImageData(n, n);
+  for (let i = 0; i < n * n; i++) {
+    const x = (i % n + 0.5) / n * 2 - 1, y = (Math.floor(i / n) + 0.5) / n * 2 - 1, r = Math.hypot(x, y), hue = (Math.atan2(y, x) / 2 / Math.PI + 1) % 1;
+    if (r > 1) continue;
+    const c = [0, 2, 1].map(k => 1 - r * (1 - Math.max(0, Math.min(1, Math.abs((hue + k / 3) % 1 * 6 - 3) - 1))));
+    image.data.set([...c.map(v => 255 * v), 255], 4 * i);
+  }
+  g.putImageData(image, 0, 0);
+  return canvas;
 }
 
 function viridis(t) {

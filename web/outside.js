@@ -33,6 +33,7 @@ export class Outside {
   toggle() {
     this.box.hidden = !this.box.hidden;
     this.button?.setAttribute("aria-pressed", String(!this.box.hidden));
+    this.drawing = null; // it is not of the present camera
     if (!this.box.hidden) this.app.ask({ type: "cameras" }, answer => { this.begin(answer); });
   }
 
@@ -61,13 +62,13 @@ export class Outside {
   outline() {
     if (this.asked) { this.again = true; return; }
     this.asked = true;
-    const set = this.point ? { point: this.point } : {}, d = this.app.camera().d;
-    if (this.scale && typeof d === "number") set.plane = this.scale * d; // the plane is drawn at d, or in its proportion
+    const set = this.point ? { point: this.point } : {}, { d, projection } = this.app.camera();
+    if (this.projection === projection && typeof d === "number") set.plane = this.scale * d; // the plane is drawn at d, or in its proportion
     this.app.ask({ type: "outline", set }, answer => {
       this.asked = false;
       if (answer.type === "outline") {
         this.drawing = answer;
-        this.scale = answer.plane / d;
+        this.scale = answer.plane / d, this.projection = projection;
         this.draw();
       }
       if (this.again) { this.again = false; this.outline(); }

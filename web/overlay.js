@@ -1,10 +1,10 @@
 // Drawings over the image: the rectangle of a crop, axes and vanishing points, horizon, ground grid, boxes of objects.
-import { byId, make } from "./dom.js";
+import { byId, make, short } from "./dom.js";
 
 const NS = "http://www.w3.org/2000/svg";
 const colours = ["#e5484d", "#46a758", "#3e7bfa"];
 const choices = [["axes", "axes at lookat"], ["vanishing", "vanishing points"], ["horizon", "horizon"],
-  ["grid", "ground grid"], ["boxes", "boxes and names"], ["centre", "principal point"]];
+  ["grid", "ground grid"], ["distortion", "distortion field"], ["boxes", "boxes and names"], ["centre", "principal point"]];
 
 function element(tag, properties, text) {
   const e = document.createElementNS(NS, tag);
@@ -30,19 +30,27 @@ export class Overlay {
     this.draw();
   }
 
-  // The camera changed: what velo computes is asked for again, once the changes pause.
+  // The camera changed: what velo computes is asked for again. Boxes need a pass over the scene: they wait until the
+  // changes pause.
   state(state) {
     this.camera = state.camera;
     this.bounds = state.bounds;
-    this.answer = null;
+    if (this.straight) this.answer = null;
+    else if (this.answer) this.answer.boxes = null;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.ask(), 150);
+    if (!this.straight) this.ask(false);
     this.draw();
   }
-  ask() {
-    if (!["vanishing", "horizon", "boxes"].some(name => this.on.has(name))) return;
-    this.app.ask({ type: "overlay", boxes: this.on.has("boxes") }, answer => {
+  ask(boxes = true) {
+    if (![...this.on].some(name => name !== "centre")) return;
+    if (this.asked) { this.again = true; return; }
+    this.asked = true;
+    const message = { type: "overlay", boxes: boxes && this.on.has("boxes"), curves: !this.straight, field: this.on.has("distortion") };
+    this.app.ask(message, answer => {
+      this.asked = false;
       if (answer.type === "overlay") { this.answer = answer; this.draw(); }
+      if (this.again) { this.again = false; this.ask(); }
     });
   }
 
@@ -92,8 +100,22 @@ export class Overlay {
 
   get size() { return Math.hypot(...[0, 1, 2].map(i => Math.min(1e4, this.bounds[i + 3] - this.bounds[i]))); }
 
+  // Curves that velo computed: names and the points of each.
+  curves(list, style) {
+    for (const [name, ...points] of list || []) {
+      const place = points.map((v, i) => i % 2 ? this.app.screen.toPage(points[i - 1], v) : null).filter(Boolean);
+      this.svg.append(element("polyline", { points: place.map(p => p.map(v => v.toFixed(1)).join(",")).join(" "), fill: "none", "stroke-width": 1.5, ...style(name) }));
+    }
+  }
+  axisStyle(name) { return { stroke: colours["xyz".indexOf(name)] }; }
+
   axes() {
-    if (!this.straight) return;
+    if (!this.straight) {
+      const list = this.answer?.curves?.axes || [];
+      this.curves(list, name => ({ ...this.axisStyle(name), "stroke-width": 2 }));
+      for (const curve of list) this.label(curve.slice(-2), curve[0]);
+      return;
+    }
     const o = this.camera.lookat, n = 0.25 * Math.hypot(...[0, 1, 2].map(i => o[i] - this.camera.eye[i]));
     for (let i = 0; i < 3; i++) {
       const end = o.map((v, k) => v + (k === i ? n : 0)), at = this.project(end);
@@ -103,7 +125,7 @@ export class Overlay {
   }
 
   grid() {
-    if (!this.straight) return;
+    if (!this.straight) return this.curves(this.answer?.curves?.grid, name => ({ stroke: "#fff8", "stroke-width": name === "middle" ? 1.4 : 0.8 }));
     const up = this.camera.up.map(Math.abs), k = up.indexOf(Math.max(...up)), [i, j] = [0, 1, 2].filter(n => n !== k);
     const reach = Math.hypot(...[0, 1, 2].map(n => this.camera.lookat[n] - this.camera.eye[n])) * 2;
     const step = 10 ** Math.round(Math.log10(reach / 12)), level = this.bounds[this.camera.up[k] > 0 ? k : k + 3];
@@ -120,22 +142,38 @@ export class Overlay {
   }
 
   vanishing() {
+    if (!this.straight) this.curves(this.answer?.curves?.vanishing, name => ({ ...this.axisStyle(name), "stroke-width": 0.8, "stroke-dasharray": "3 4" }));
     const f = this.app.screen.frame, centre = [f.width / 2, f.height / 2];
     (this.answer?.vanishing || []).forEach((p, i) => {
       if (p.kind !== "finite") return;
       const at = [p.x, p.y], [x, y] = this.app.screen.toPage(...at);
       this.svg.append(element("circle", { cx: x, cy: y, r: 5, fill: colours[i], stroke: "#fff" }));
-      for (const from of [[0, 0], [f.width, 0], [0, f.height], [f.width, f.height], centre])
+      if (this.straight) for (const from of [[0, 0], [f.width, 0], [0, f.height], [f.width, f.height], centre])
         this.line(from, at, { stroke: colours[i], "stroke-width": 0.8, "stroke-dasharray": "3 4" });
       this.label(at, "xyz"[i], colours[i]);
     });
   }
 
   horizon() {
+    if (!this.straight) return this.curves(this.answer?.curves?.horizon, () => ({ stroke: "#f5a623" }));
     const h = this.answer?.horizon, f = this.app.screen.frame;
     if (!h || Math.abs(h[1]) < 1e-9 && Math.abs(h[0]) < 1e-9) return;
     const at = Math.abs(h[1]) > Math.abs(h[0]) ? x => [x, -(h[0] * x + h[2]) / h[1]] : y => [-(h[1] * y + h[2]) / h[0], y];
     this.line(at(-9 * f.width), at(10 * f.width), { stroke: "#f5a623" });
+  }
+
+  // From where a pinhole would show a point to where the lens shows it.
+  distortion() {
+    const field = this.answer?.field;
+    if (!field) return;
+    const f = this.app.screen.frame, most = this.answer.greatest;
+    for (const [x0, y0, x, y] of field) {
+      const share = Math.hypot(x - x0, y - y0) / (most || 1), stroke = `hsl(${240 - 240 * Math.min(1, share)} 90% 60%)`;
+      this.line([x0, y0], [x, y], { stroke, "stroke-width": 1.2 });
+      const [cx, cy] = this.app.screen.toPage(x, y);
+      this.svg.append(element("circle", { cx, cy, r: 1.8, fill: stroke }));
+    }
+    this.label([0.02 * f.width, 0.97 * f.height], `distortion: up to ${short(most, 3)} pixels, blue to red; dots: where the lens shows a point`);
   }
 
   boxes() {

@@ -181,7 +181,7 @@ export class Screen {
   develop(layer) {
     const d = this.display, f = layer.frame;
     if (!f) return;
-    const kind = f.channel === 0 ? 0 : d.kind || 6, view = kind === 0 ? d.view : 0, key = 8 * view + kind;
+    const kind = f.channel === 0 ? 0 : d.kind || 6, view = kind === 0 ? d.view : 0, key = 16 * view + kind;
     if (!this.programs.has(key)) this.programs.set(key, compile(this.gl, develop(view, kind)));
     layer.develop(this.programs.get(key), d);
   }

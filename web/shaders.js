@@ -60,8 +60,9 @@ vec3 idColour(float id) {
   return id == 0.0 ? vec3(0.08) : light * mix(vec3(1), c, 0.6);
 }
 vec3 falseColour(vec3 v) {
-#if KIND == 1
-  return any(isinf(v)) || any(isnan(v)) ? vec3(0.13) : viridis(clamp((v.x - low.x) / (high.x - low.x), 0.0, 1.0));
+#if KIND == 1 || KIND == 8
+  float s = KIND == 1 ? v.x : max(v.x, max(v.y, v.z));
+  return any(isinf(v)) || any(isnan(v)) ? vec3(0.13) : viridis(clamp((s - low.x) / (high.x - low.x), 0.0, 1.0));
 #elif KIND == 2
   return v == vec3(0) ? vec3(0.13) : 0.5 + 0.5 * v;
 #elif KIND == 3
@@ -70,12 +71,16 @@ vec3 falseColour(vec3 v) {
   return vec3(fract(v.xy), 0.25);
 #elif KIND == 5
   return srgbCurve(v);
+#elif KIND == 7
+  float r = min(length(v.xy) / high.x, 1.0), hue = r > 0.0 ? fract(atan(v.y, v.x) / 6.28318531 + 1.0) : 0.0;
+  vec3 c = mix(vec3(1), clamp(abs(fract(hue + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0), r);
+  return v.z == 0.0 ? c : v.z == 3.0 ? vec3(0.13) : 0.45 * c;
 #else
   return idColour(v.x);
 #endif
 }`;
 
-// Develops a frame. kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids. Each combination is a
+// Develops a frame. kind: 0 colours, 1 scalar, 2 direction, 3 position, 4 uv, 5 albedo, 6 ids, 7 flow, 8 standard error. Each combination is a
 // program of its own, so that none computes what it does not show.
 export const develop = (view, kind) => `#version 300 es
 precision highp float;

@@ -52,7 +52,7 @@ class Browser:
             message["sessionId"] = self.session
         self.socket.send_raw(1, json.dumps(message).encode())
         while True:
-            answer = self.socket.receive(60)
+            answer = self.socket.receive(120)
             if isinstance(answer, tuple):
                 raise ConnectionError(answer)
             if answer.get("id") == self.next:
@@ -71,7 +71,7 @@ class Browser:
             raise RuntimeError(result["exceptionDetails"].get("exception", {}).get("description", "error"))
         return result["result"].get("value")
 
-    def wait(self, script, seconds=30):
+    def wait(self, script, seconds=90):
         """Waits until the expression is true."""
         until = time.monotonic() + seconds
         while time.monotonic() < until:

@@ -121,7 +121,7 @@ class Page:
         data, self.buffer = self.buffer[:n], self.buffer[n:]
         return data
 
-    def receive(self, seconds=20):
+    def receive(self, seconds=60):
         """The next message: a dict, a Frame, or ("closed", code, reason)."""
         until, whole, kind = time.monotonic() + seconds, b"", 0
         while True:
@@ -160,7 +160,7 @@ class Page:
                 at = ((y + row) * frame.columns + x) * size
                 self.pixels[at:at + w * size] = data[row * w * size:(row + 1) * w * size]
 
-    def wait(self, test, seconds=30):
+    def wait(self, test, seconds=90):
         """The next message for which the test holds."""
         until = time.monotonic() + seconds
         while time.monotonic() < until:
@@ -171,10 +171,10 @@ class Page:
                 return message
         raise TimeoutError
 
-    def wait_text(self, kind, seconds=30):
+    def wait_text(self, kind, seconds=90):
         return self.wait(lambda m: isinstance(m, dict) and m["type"] == kind, seconds)
 
-    def wait_frame(self, test=lambda f: True, seconds=30):
+    def wait_frame(self, test=lambda f: True, seconds=90):
         return self.wait(lambda m: isinstance(m, Frame) and test(m), seconds)
 
     def close(self):

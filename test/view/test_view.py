@@ -3,6 +3,7 @@
 malformed messages, pages that come and go."""
 import base64
 import json
+import math
 import os
 import random
 import shlex
@@ -185,6 +186,70 @@ def test_paths(page):
     state_after(page, type="undo")
 
 
+def test_curves(page):
+    """Overlays of distorted lenses and fisheyes, against the models' own formulas."""
+    state_after(page, type="reset")
+    c = edit(page, distortion="opencv", coefficients=[-0.2, 0.03, 0, 0, 0])["camera"]
+    told = answer(page, "overlay", type="overlay", curves=True, field=True)
+    worst = 0
+    for x0, y0, x, y in told["field"]:
+        u, v = (x0 - c["cx"]) / c["fx"], (y0 - c["cy"]) / c["fy"]
+        r = u * u + v * v
+        k = 1 - 0.2 * r + 0.03 * r * r
+        worst = max(worst, abs(c["fx"] * k * u + c["cx"] - x), abs(c["fy"] * k * v + c["cy"] - y))
+    check("distortion_field", len(told["field"]) > 300 and worst < 0.02 and told["greatest"] > 1, worst, told["greatest"])
+    axes = {curve[0]: curve for curve in told["curves"]["axes"]}
+    check("axes_of_a_lens", set(axes) == {"x", "y", "z"} and abs(axes["x"][1] - c["cx"]) < 0.02 and abs(axes["x"][2] - c["cy"]) < 0.02,
+          axes)
+    check("grid_of_a_lens", len(told["curves"]["grid"]) > 5 and len(told["curves"]["grid"][0]) > 6)
+    check("vanishing_lines", {curve[0] for curve in told["curves"]["vanishing"]} == {"x", "y", "z"})
+    c = edit(page, distortion="none", projection="equidistant fisheye", fov=150, up=[0, 1, 0])["camera"]
+    told = answer(page, "overlay", type="overlay", curves=True)
+    m, worst, count = c["world_from_camera"], 0, 0
+    for name, *numbers in told["curves"]["horizon"]:
+        for x, y in zip(numbers[::2], numbers[1::2]):
+            u, v = (x - c["cx"]) / c["fx"], (y - c["cy"]) / c["fy"]
+            t = math.hypot(u, v)
+            s = math.sin(t) / t if t else 1
+            worst, count = max(worst, abs(m[4] * u * s + m[5] * v * s + m[6] * math.cos(t))), count + 1
+    check("horizon_of_a_fisheye", count > 50 and worst < 3e-4, worst, count)
+    state_after(page, type="reset")
+
+
+def test_flow(page):
+    """Flow leads to the view that was marked: checked with the position that a pixel sees. The standard error follows
+    the samples."""
+    mark = state_after(page, type="settings", mark=True)["camera"]
+    eye = mark["eye"]
+    edit(page, eye=[eye[0] + 30, eye[1], eye[2] - 10])
+    state_after(page, type="settings", channel="forward")
+    frame = page.wait_frame(lambda f: f.channel == 16)
+    x, y = 81, 60
+    p = answer(page, "picked", type="pick", x=x, y=y)["P"] + [1]
+    w = mark["camera_from_world"]
+    q = [sum(w[4 * i + k] * p[k] for k in range(4)) for i in range(3)]
+    there = mark["fx"] * q[0] / q[2] + mark["cx"] - x - 0.5, mark["fy"] * q[1] / q[2] + mark["cy"] - y - 0.5
+    flow = struct.unpack_from("<3f", page.pixels, 12 * (y * frame.columns + x))
+    check("flow", frame.channels == 3 and max(abs(flow[i] - there[i]) for i in range(2)) < 0.01, flow, there)
+    state_after(page, type="settings", channel="error")
+    first = page.wait_frame(lambda f: f.channel == 15)
+    values = struct.unpack(f"<{len(page.pixels) // 4}f", page.pixels)
+    check("error_channel", first.format == 1 and first.channels == 3 and first.spp >= 2 and 0 < sum(values) < math.inf, vars(first))
+    state_after(page, type="settings", channel="Z")
+    edit(page, eye=eye)
+    page.wait_frame(lambda f: f.channel == 1)
+    time.sleep(0.3)
+    page.send(type="pick", id=7777, x=1, y=1)
+    count = 0
+    while True:
+        message = page.receive()
+        if isinstance(message, dict) and message.get("id") == 7777:
+            break
+        count += 1
+    check("channel_rests", count < 20, count)
+    state_after(page, type="reset")
+
+
 def test_other_tracer(folder):
     view = View(VELO, SCENE, "--resolution", "64x48", "--tracer", "sppm", "--spp", "1", cwd=folder)
     page = Page(view)
@@ -225,7 +290,9 @@ def test_tasks(page):
                      set={"eye": [900, 500, 0], "lookat": [0, 0, 0], "up": [0, 1, 0]})
     check("outside", base64.b64decode(image["data"])[:2] == b"\xff\xd8", image)
     check("outside_refused", answer(page, "outside", type="outside", set={"eye": [0, 0, 0], "lookat": [0, 0, 0]})["type"] == "refused")
-    for channel in ("Z", "N", "P", "uv", "albedo", "id.object"):
+    test_curves(page)
+    test_flow(page)
+    for channel in ("Z", "distance", "N", "Ng", "P", "uv", "albedo", "id.object", "id.material", "id.instance"):
         state_after(page, type="settings", channel=channel)
         frame = page.wait_frame(lambda f: f.channel > 0)
         check("channel_" + channel, frame.format == 1 and frame.columns == frame.width, vars(frame))

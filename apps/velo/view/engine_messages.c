@@ -130,7 +130,7 @@ static bool set_channel(Engine *e, const char *name) {
     e->wanted.channel = 0;
     return true;
   }
-  for (uint32_t i = 0; i <= 14; i++)
+  for (uint32_t i = 0; i < CHANNEL_FLOW; i++)
     if (strcmp(name, vl_channel_name(i)) == 0) {
       e->wanted.channel = i + 1;
       return true;
@@ -158,9 +158,13 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
     else
       post_refusal(e, client, m, "the rectangle is not inside the image");
   }
+  if (m->mark) {
+    e->wanted.mark = e->wanted.camera.made;
+    e->wanted.generation += e->wanted.channel == CHANNEL_FLOW;
+  }
   if (m->has_spp) e->wanted.spp = m->spp;
   if (m->has_paused) e->wanted.paused = m->paused;
-  if (m->has_crop || m->has_channel || e->wanted.paused) vl_cancel_request(e->stop);
+  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused) vl_cancel_request(e->stop);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
 }

@@ -64,6 +64,8 @@ void engine_overlay(Engine *e, const Task *task) {
   json_integer(&text.json, "id", task->message.id);
   json_integer(&text.json, "change", change);
   put_vanishing(&text.json, &camera.made, pose.up);
+  if (task->message.curves || task->message.field)
+    engine_put_curves(&text.json, &camera, &e->model.info, task->message.field);
   if (task->message.boxes) put_boxes(&text.json, e, &camera.made);
   json_text_post(&text, e->server, task->client);
 }

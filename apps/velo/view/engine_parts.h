@@ -8,6 +8,8 @@
 #include "view/engine.h"
 
 enum { MOST_TASKS = 32, HISTORY = 256 };
+/* Values of Wanted.channel that are not plain ground truth: the standard error needs the film, flow needs a camera. */
+enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
 
 /* What the pages ask for. A new generation makes the image begin anew. */
 typedef struct Wanted {
@@ -18,6 +20,7 @@ typedef struct Wanted {
   bool paused;
   uint32_t crop[4]; /* pixels */
   uint32_t channel; /* 1 + index of a ground truth channel; 0: the image */
+  vlCamera mark;    /* to which flow leads */
 } Wanted;
 
 /* Cameras before the present one, for undo and redo. */
@@ -65,6 +68,7 @@ struct Engine {
   Model model;
   Wanted now; /* what is being rendered */
   vlFilm *film;
+  bool failed;            /* the image cannot be rendered */
   uint32_t serial;        /* of the last frame */
   double pixel_seconds;   /* time of one sample of one pixel; 0: not known */
   double publish_seconds; /* time to make a frame */
@@ -102,7 +106,7 @@ void *engine_answer_questions(void *engine);
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */
 void engine_command(Engine *engine, const Task *task);
-/* Posts vanishing points, horizon and, if asked for, the boxes of objects. */
+/* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of engine_put_curves. */
 void engine_overlay(Engine *engine, const Task *task);
 /* Posts the lines that draw the camera from outside; a small image of the scene from outside. */
 void engine_outline(Engine *engine, const Task *task);
@@ -117,6 +121,9 @@ void engine_drop_traces(Engine *engine, uint32_t client, const char *why);
 void *engine_trace(void *engine);
 /* Posts why a message is not answered. */
 void engine_refuse(Engine *engine, const Task *task, const char *why);
+/* Writes the drawings over the image as curves in pixels, for every projection and distortion; field: also where a
+ * pinhole would show the same things. */
+void engine_put_curves(Json *json, const ViewCamera *camera, const vlWorldInfo *info, bool field);
 /* The server's calls. */
 void engine_greet(void *user, uint32_t client);
 void engine_message(void *user, uint32_t client, bool steers, const ViewMessage *message);

@@ -105,6 +105,49 @@ static bool render_coarse_images(Engine *e) {
   return true;
 }
 
+/* ---- ground truth ------------------------------------------------------------------------------------------------ */
+
+/* Flow and whether the other camera sees the point, in one image. Null: no memory. */
+static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage *hidden) {
+  const uint32_t width = vl_image_width(flow), height = vl_image_height(flow);
+  vlImageDef def = vl_default_image_def(width, height, 3);
+  vlImage *image = NULL;
+  def.type = VL_PIXEL_F32;
+  if (vl_image_create(context, &def, &image) != VL_OK) return NULL;
+  float *to = vl_image_pixels(image);
+  const float *from = vl_image_const_pixels(flow);
+  const uint32_t *ids = vl_image_const_pixels(hidden);
+  for (size_t i = 0; i < (size_t)width * height; i++) {
+    to[3 * i] = from[2 * i], to[3 * i + 1] = from[2 * i + 1];
+    to[3 * i + 2] = (float)ids[i];
+  }
+  return image;
+}
+
+static void render_channel(Engine *e) {
+  vlChannelsDef def = vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
+  vlImage *floats = NULL, *ids = NULL;
+  vlError error = {0};
+  def.forward = e->now.channel == CHANNEL_FLOW ? &e->now.mark : NULL;
+  def.channels = 1u << (e->now.channel - 1);
+  def.space = e->model.job.defs->film.space;
+  memcpy(def.crop, e->now.crop, sizeof def.crop);
+  def.render = &e->model.job.defs->render;
+  def.film = e->film;
+  def.exposure = e->model.job.defs->develop.exposure;
+  def.cancel = e->stop;
+  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return;
+  vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
+  vlImage *flow = def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids) : NULL;
+  const vlImage *image = flow ? flow : floats ? floats : ids;
+  if (result == VL_OK && image)
+    engine_publish(e, image, FRAME_FLOAT, vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
+  if (result != VL_OK && result != VL_CANCELLED) status_error(e, &error, result);
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+  vl_image_destroy(flow);
+}
+
 /* ---- the whole image --------------------------------------------------------------------------------------------- */
 
 static void make_film(Engine *e) {
@@ -133,7 +176,10 @@ static void publish_if_due(Engine *e) {
   bool last = vl_film_spp(e->film) >= e->now.spp;
   if (share < publish_share) share = publish_share;
   if (!last && vl_film_spp(e->film) > 1 && now - e->published < e->publish_seconds / share) return;
-  publish_film(e, e->film, 1);
+  if (e->now.channel == CHANNEL_ERROR)
+    render_channel(e);
+  else
+    publish_film(e, e->film, 1);
 }
 
 static void tell_if_due(Engine *e, bool always) {
@@ -159,7 +205,7 @@ static void render_film(Engine *e) {
     if (result == VL_CANCELLED) return;
     if (result != VL_OK) {
       status_error(e, &error, result);
-      e->now.spp = 0; /* until the next change */
+      e->failed = true; /* until the next change */
       return;
     }
     e->rendered += seconds;
@@ -168,29 +214,6 @@ static void render_film(Engine *e) {
     publish_if_due(e);
     tell_if_due(e, vl_film_spp(e->film) >= e->now.spp);
   }
-}
-
-/* ---- ground truth ------------------------------------------------------------------------------------------------ */
-
-static void render_channel(Engine *e) {
-  vlChannelsDef def = vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
-  vlImage *floats = NULL, *ids = NULL;
-  vlError error = {0};
-  def.channels = 1u << (e->now.channel - 1);
-  def.space = e->model.job.defs->film.space;
-  memcpy(def.crop, e->now.crop, sizeof def.crop);
-  def.render = &e->model.job.defs->render;
-  def.film = e->film;
-  def.exposure = e->model.job.defs->develop.exposure;
-  def.cancel = e->stop;
-  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return;
-  vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
-  const vlImage *image = floats ? floats : ids;
-  if (result == VL_OK && image)
-    engine_publish(e, image, FRAME_FLOAT, vl_image_channels(image) < 3 ? vl_image_channels(image) : 3, 1);
-  if (result != VL_OK && result != VL_CANCELLED) status_error(e, &error, result);
-  vl_image_destroy(floats);
-  vl_image_destroy(ids);
 }
 
 /* ---- the thread -------------------------------------------------------------------------------------------------- */
@@ -204,6 +227,7 @@ static bool take_wanted(Engine *e) {
   if (!e->quit && !e->next) vl_cancel_clear(e->stop);
   pthread_mutex_unlock(&e->lock);
   if (!anew) return channel;
+  e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
   e->paths = 0;
@@ -218,7 +242,8 @@ static bool take_wanted(Engine *e) {
 static bool wait_for_work(Engine *e) {
   pthread_mutex_lock(&e->lock);
   for (;;) {
-    bool unfinished = !e->film || vl_film_spp(e->film) < e->wanted.spp;
+    bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
+    bool unfinished = samples && !e->failed && (!e->film || vl_film_spp(e->film) < e->wanted.spp);
     bool changed = e->wanted.channel != e->now.channel || e->wanted.spp != e->now.spp;
     if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed))) break;
     if (e->clients && e->wanted.channel != e->now.channel) break;
@@ -258,7 +283,7 @@ static void *run(void *user) {
       tell_if_due(e, true);
       continue;
     }
-    if (e->now.channel == 0 || e->now.channel == 15) render_film(e);
+    if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed) render_film(e);
     tell_if_due(e, true);
   }
   return NULL;
@@ -271,6 +296,7 @@ int engine_take_model(Engine *e) {
   vlResult result = camera_take(&defs->camera, &e->model.job.camera, e->model.lookat, &w->camera, &error);
   if (result != VL_OK) return report_error(&error, result, e->def.path);
   e->scene_camera = w->camera;
+  w->mark = w->camera.made;
   memcpy(w->crop, defs->film.crop, sizeof w->crop);
   w->spp = defs->render.spp;
   w->generation++;

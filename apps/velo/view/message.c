@@ -117,7 +117,8 @@ static bool read_members(const json_t *object, ViewMessage *m, const char **why)
                  read_count(object, "spp", 1 << 24, &m->spp, &m->has_spp) && (!m->has_spp || m->spp > 0);
   if (!numbers) return *why = "a number is of a wrong type or out of range", false;
   bool rest = read_bool(object, "paused", &m->paused, &m->has_paused) && read_bool(object, "boxes", &m->boxes, NULL) &&
-              read_bool(object, "by_sample", &m->by_sample, NULL) &&
+              read_bool(object, "curves", &m->curves, NULL) && read_bool(object, "field", &m->field, NULL) &&
+              read_bool(object, "mark", &m->mark, NULL) && read_bool(object, "by_sample", &m->by_sample, NULL) &&
               read_counts(object, "crop", 4, m->crop, &m->has_crop) &&
               read_counts(object, "size", 2, m->size, &m->has_size);
   if (!rest) return *why = "a setting is of a wrong type or out of range", false;

@@ -20,12 +20,12 @@ typedef enum MessageKind {
   MESSAGE_UNDO,     /* the camera before the last gesture */
   MESSAGE_REDO,     /* the camera before the last undo */
   MESSAGE_RESET,    /* the camera of the scene */
-  MESSAGE_SETTINGS, /* spp, paused, crop, channel, size: those that are given */
+  MESSAGE_SETTINGS, /* spp, paused, crop, channel, mark: those that are given */
   MESSAGE_PICK,     /* what a pixel sees: id, x, y */
   MESSAGE_FOCUS,    /* focus on a pixel: x, y */
   MESSAGE_SAVE,     /* write a file: id, what, name, dialect, exposure, view */
   MESSAGE_COMMAND,  /* write the camera and tell the command: id, exposure, view */
-  MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes: id, boxes */
+  MESSAGE_OVERLAY,  /* vanishing points, horizon, boxes, curves: id, boxes, curves, field */
   MESSAGE_OUTLINE,  /* the camera as lines: id, fields: point */
   MESSAGE_OUTSIDE,  /* the scene from outside: id, size, exposure, fields: eye, lookat, up */
   MESSAGE_PATHS,    /* the paths of a pixel: id, x, y, samples, show, by_sample */
@@ -52,7 +52,7 @@ typedef struct ViewMessage {
   bool has_spp, has_paused, has_crop, has_channel, has_size; /* of settings */
   uint32_t spp;
   uint32_t samples, show; /* numbers of paths; 0: not given */
-  bool paused, boxes, by_sample;
+  bool paused, boxes, curves, field, mark, by_sample;
   uint32_t crop[4]; /* all 0: none */
   uint32_t size[2]; /* pixels */
   char channel[MESSAGE_NAME], what[MESSAGE_NAME], name[MESSAGE_NAME], dialect[MESSAGE_NAME], view[MESSAGE_NAME];

@@ -53,7 +53,7 @@ char *state_lists(void) {
   for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) json_text(json, NULL, vl_projection_name((vlProjection)i));
   json_end(json, ']');
   json_begin(json, "channels", '[');
-  for (uint32_t i = 0; i <= 14; i++) json_text(json, NULL, vl_channel_name(i));
+  for (uint32_t i = 0; i <= 15; i++) json_text(json, NULL, vl_channel_name(i));
   json_end(json, ']');
   return json_text_end(&text);
 }

@@ -47,7 +47,26 @@ typedef enum vlCameraDialect {
   VL_CAMERA_DIALECT_MVSNET,     /**< MVSNet's cam.txt */
   VL_CAMERA_DIALECT_BUNDLER,    /**< Bundler's bundle.out */
   VL_CAMERA_DIALECT_OPENMVG,    /**< OpenMVG's sfm_data.json */
-  VL_CAMERA_DIALECT_COUNT       /**< number of dialects */
+  VL_CAMERA_DIALECT_REALITYCAPTURE, /**< RealityCapture's XMP and CSV */
+  VL_CAMERA_DIALECT_NERFSTUDIO,     /**< nerfstudio's camera_path.json */
+  VL_CAMERA_DIALECT_VISUALSFM,      /**< VisualSFM's .nvm */
+  VL_CAMERA_DIALECT_ZED,            /**< the .conf of ZED stereo cameras */
+  VL_CAMERA_DIALECT_COLLADA,        /**< COLLADA's .dae */
+  VL_CAMERA_DIALECT_DSO,            /**< camera.txt of DSO, LSD-SLAM, TUM monoVO */
+  VL_CAMERA_DIALECT_LLFF,           /**< LLFF's poses_bounds.npy */
+  VL_CAMERA_DIALECT_RECORD3D,       /**< Record3D's metadata */
+  VL_CAMERA_DIALECT_POLYCAM,        /**< Polycam's JSON of a keyframe */
+  VL_CAMERA_DIALECT_SCANNER3D,      /**< 3D Scanner App's frame JSON */
+  VL_CAMERA_DIALECT_DEPTHAI,        /**< calibration JSON of OAK cameras */
+  VL_CAMERA_DIALECT_KINECT,         /**< calibration JSON of Azure Kinect */
+  VL_CAMERA_DIALECT_REALSENSE,      /**< RealSense's intrinsics as JSON */
+  VL_CAMERA_DIALECT_CALIBIO,        /**< calib.io's JSON */
+  VL_CAMERA_DIALECT_NUSCENES,       /**< nuScenes' calibrated_sensor.json */
+  VL_CAMERA_DIALECT_PANOPTIC,       /**< calibration JSON of CMU Panoptic */
+  VL_CAMERA_DIALECT_NERFIES,        /**< camera JSON of Nerfies and HyperNeRF */
+  VL_CAMERA_DIALECT_THREEJS,        /**< three.js' JSON of a camera */
+  VL_CAMERA_DIALECT_MATRIX,         /**< a matrix of numbers alone in a text file */
+  VL_CAMERA_DIALECT_COUNT           /**< number of dialects */
 } vlCameraDialect;
 
 /** "velo", "opencv", ...; a constant string; null outside the range. */

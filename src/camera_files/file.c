@@ -58,7 +58,7 @@ static vlResult no_kind(const vlCameraFile *file, const char *text, size_t size)
   if (size >= 6 && memcmp(text, "\x93NUMPY", 6) == 0)
     return vl_camera_wrong(file, "a NumPy array, which does not say what its numbers mean");
   if (memchr(text, 0, size)) return vl_camera_wrong(file, "no camera: a binary file of no known kind");
-  return vl_camera_wrong(file, "no camera of a known dialect (docs/camera-files.md has the table)");
+  return vl_camera_wrong_at(file, 1, 1, "no camera of a known dialect (docs/camera-files.md has the table)");
 }
 
 /* The text or the tree of a file that is being read; one of the two is null. */

@@ -100,6 +100,12 @@ const char *vl_camera_text(const json_t *object, const char *key);
 /* Returns whether the camera or pose with this index and name is the requested one. The name may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
 void vl_camera_name(vlCameraRecord *record, const char *name);
+/* Reports that the requested camera is not among the `count` cameras of the file. */
+vlResult vl_camera_no_frame(const vlCameraFile *file, uint32_t count);
+/* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel is (0, 0). It is an error
+ * at object[key] if the matrix is not fx skew cx, 0 fy cy, 0 0 1. */
+vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],
+                         vlCameraDef *def);
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
@@ -208,7 +214,11 @@ extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_
     vl_format_d3d, vl_format_mitsuba, vl_format_exr, vl_format_usd, vl_format_euroc, vl_format_camodocal,
     vl_format_basalt, vl_format_orbslam, vl_format_okvis, vl_format_svo, vl_format_kitti, vl_format_bop,
     vl_format_gaussians, vl_format_metashape, vl_format_meshroom, vl_format_opensfm, vl_format_open3d, vl_format_visp,
-    vl_format_middlebury, vl_format_mvsnet, vl_format_bundler, vl_format_openmvg;
+    vl_format_middlebury, vl_format_mvsnet, vl_format_bundler, vl_format_openmvg, vl_format_realitycapture,
+    vl_format_nerfstudio, vl_format_visualsfm, vl_format_zed, vl_format_collada, vl_format_dso, vl_format_llff,
+    vl_format_record3d, vl_format_polycam, vl_format_scanner3d, vl_format_depthai, vl_format_kinect,
+    vl_format_realsense, vl_format_calibio, vl_format_nuscenes, vl_format_panoptic, vl_format_nerfies,
+    vl_format_threejs, vl_format_matrix;
 
 /* The first returns whether an object has the key. The second returns whether the value at the key has the second key;
  * if that value is a list, its first item is tested. */

@@ -197,14 +197,16 @@ static vlResult read_euroc_header(Csv *csv, char *line) {
   return read_header(csv, fields, count);
 }
 
-/* Sets the columns of a file without header from the count of numbers per line. */
+/* Sets the columns of a file without header from the count of numbers per line. 16 numbers are a matrix with its last
+ * row (Replica). */
 static bool headless(Csv *csv, int count) {
   static const int tum[8] = {TIME, TX, TY, TZ, QX, QY, QZ, QW};
-  if (count != 8 && count != 12) return false;
+  if (count != 8 && count != 12 && count != 16) return false;
   csv->header = true;
   csv->columns = count;
   for (int i = 0; i < count; i++) {
-    csv->of[i] = count == 8 ? tum[i] : M00 + i;
+    csv->of[i] = count == 8 ? tum[i] : i < 12 ? M00 + i : IGNORED;
+    if (csv->of[i] == IGNORED) continue;
     csv->has[csv->of[i]] = true;
   }
   return true;
@@ -272,7 +274,7 @@ static vlResult read_line(Csv *csv, char *line) {
       return wrong(
           csv, 0,
           "%snumbers without a header: lists of TUM have 8 in a line (seconds, tx ty tz, qx qy qz qw), those of "
-          "KITTI 12 (three rows of a matrix)",
+          "KITTI 12 (three rows of a matrix), those of Replica 16 (four rows)",
           "");
   }
   vlFramePlace place = {NULL, csv->line, (uint32_t)csv->trajectory->frames.count, NULL};

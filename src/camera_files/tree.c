@@ -250,6 +250,20 @@ void vl_camera_name(vlCameraRecord *record, const char *name) {
   snprintf(record->name, sizeof record->name, "%s", name ? name : "");
 }
 
+vlResult vl_camera_no_frame(const vlCameraFile *file, uint32_t count) {
+  return vl_camera_wrong(file, "%s: there is no camera \"%.60s\" among the %u", file->dialect,
+                         file->def->frame ? file->def->frame : "0", count);
+}
+
+vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],
+                         vlCameraDef *def) {
+  if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
+    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" must be fx skew cx, 0 fy cy, 0 0 1", file->dialect, key);
+  vl_camera_set_centred(def, k[0], k[4], k[2], k[5]);
+  def->skew = k[1];
+  return VL_OK;
+}
+
 void vl_camera_put(vlCameraText *text, const char *format, ...) {
   va_list list;
   va_start(list, format);

@@ -1,0 +1,218 @@
+/* camera_files/collada.c: COLLADA's cameras (.dae, versions 1.4 and 1.5): nodes of the visual scenes with
+ * <instance_camera>. Camera axes: x right, y up, z back; the node's transforms in their order, world from camera,
+ * column vectors; the axes of the world stay those of the file (<up_axis>). Angles are in degrees. There are no pixels:
+ * the image's size comes from the aspect ratio; xmag and ymag are half the image's sides, as in glTF. */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/elementary.h"
+#include "math/transform.h"
+
+enum { MOST_DEPTH = 30 };
+static const double degree = 3.14159265358979323846 / 180.0;
+
+static bool has_tag(const json_t *element, const char *tag) {
+  const char *own = vl_camera_text(element, "<");
+  return own && strcmp(own, tag) == 0;
+}
+
+/* <lookat>: eye, the point that is looked at, up. */
+static bool look_at(const double v[9], vlMat4 *m) {
+  double x[3], y[3], z[3], length = 0.0;
+  for (int i = 0; i < 3; i++) z[i] = v[i] - v[3 + i];
+  length = vl_precise_hypot(vl_precise_hypot(z[0], z[1]), z[2]);
+  for (int i = 0; i < 3; i++) z[i] /= length;
+  for (int i = 0; i < 3; i++) x[i] = v[6 + (i + 1) % 3] * z[(i + 2) % 3] - v[6 + (i + 2) % 3] * z[(i + 1) % 3];
+  length = vl_precise_hypot(vl_precise_hypot(x[0], x[1]), x[2]);
+  for (int i = 0; i < 3; i++) x[i] /= length;
+  for (int i = 0; i < 3; i++) y[i] = z[(i + 1) % 3] * x[(i + 2) % 3] - z[(i + 2) % 3] * x[(i + 1) % 3];
+  *m = vl_mat4_identity();
+  for (int i = 0; i < 3; i++)
+    m->m[4 * i] = x[i], m->m[4 * i + 1] = y[i], m->m[4 * i + 2] = z[i], m->m[4 * i + 3] = v[i];
+  return vl_mat4_is_finite(*m);
+}
+
+/* Multiplies the node's transforms from the right. */
+static vlResult add_transforms(const vlCameraFile *file, const json_t *node, vlMat4 *world) {
+  const json_t *child;
+  size_t i;
+  json_array_foreach(json_object_get(node, "/"), i, child) {
+    vlMat4 step = vl_mat4_identity();
+    double v[9];
+    vlResult result = VL_OK;
+    if (has_tag(child, "matrix")) {
+      result = vl_camera_element_numbers(file, child, step.m, 16);
+    } else if (has_tag(child, "translate")) {
+      result = vl_camera_element_numbers(file, child, v, 3);
+      if (result == VL_OK) step = vl_mat4_translate(v[0], v[1], v[2]);
+    } else if (has_tag(child, "scale")) {
+      result = vl_camera_element_numbers(file, child, v, 3);
+      if (result == VL_OK) step = vl_mat4_scale(v[0], v[1], v[2]);
+    } else if (has_tag(child, "rotate")) {
+      result = vl_camera_element_numbers(file, child, v, 4);
+      if (result == VL_OK && (v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0))
+        step = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
+    } else if (has_tag(child, "lookat")) {
+      result = vl_camera_element_numbers(file, child, v, 9);
+      if (result == VL_OK && !look_at(v, &step))
+        return vl_camera_wrong_element(file, child, "<lookat> gives no direction");
+    } else if (has_tag(child, "skew")) {
+      return vl_camera_wrong_element(file, child, "<skew> is not read");
+    } else {
+      continue;
+    }
+    if (result != VL_OK) return result;
+    *world = vl_mat4_multiply(*world, step);
+  }
+  return VL_OK;
+}
+
+typedef struct {
+  const json_t *camera;            /* <instance_camera> of the chosen node */
+  const json_t *stops[MOST_DEPTH]; /* the nodes down to it */
+  int depth;
+  const char *name;
+  uint32_t count;
+} Search;
+
+static vlResult search(const vlCameraFile *file, const json_t *node, const json_t **stops, int depth, Search *s) {
+  const json_t *child;
+  size_t i;
+  if (depth == MOST_DEPTH) return vl_camera_wrong_element(file, node, "nested too deeply for a camera");
+  stops[depth] = node;
+  const char *name = vl_camera_text(node, "name");
+  if (!name) name = vl_camera_text(node, "id");
+  json_array_foreach(json_object_get(node, "/"), i, child) {
+    if (has_tag(child, "instance_camera") && !s->camera && vl_camera_is_frame(file, s->count, name)) {
+      s->camera = child, s->depth = depth + 1, s->name = name;
+      memcpy(s->stops, stops, sizeof s->stops);
+    }
+    s->count += has_tag(child, "instance_camera");
+    if (!has_tag(child, "node")) continue;
+    vlResult result = search(file, child, stops, depth + 1, s);
+    if (result != VL_OK) return result;
+  }
+  return VL_OK;
+}
+
+static const json_t *find_camera(const json_t *tree, const char *url) {
+  const json_t *library = vl_camera_child(tree, "library_cameras"), *camera;
+  size_t i;
+  json_array_foreach(json_object_get(library, "/"), i, camera) {
+    const char *id = vl_camera_text(camera, "id");
+    if (has_tag(camera, "camera") && id && url && *url == '#' && strcmp(id, url + 1) == 0) return camera;
+  }
+  return NULL;
+}
+
+/* Half the width and height of the image: at distance 1, or for parallel projections in the world's unit. */
+static vlResult read_sides(const vlCameraFile *file, const json_t *lens, bool flat, double half[2]) {
+  const char *const tags[2] = {flat ? "xmag" : "xfov", flat ? "ymag" : "yfov"};
+  double aspect = VL_UNSET;
+  vlResult result = vl_camera_child_number(file, lens, "aspect_ratio", false, &aspect);
+  for (int i = 0; i < 2 && result == VL_OK; i++) {
+    half[i] = VL_UNSET;
+    result = vl_camera_child_number(file, lens, tags[i], false, &half[i]);
+    if (result != VL_OK || vl_is_unset(half[i])) continue;
+    half[i] = fabs(half[i]);
+    if (!(half[i] > 0.0) || (!flat && half[i] >= 180.0))
+      return vl_camera_wrong_element(file, vl_camera_child(lens, tags[i]), "<%s> gives no image", tags[i]);
+    if (!flat) half[i] = vl_precise_tan(0.5 * degree * half[i]);
+  }
+  if (result != VL_OK) return result;
+  if (vl_is_unset(half[0]) && vl_is_unset(half[1]))
+    return vl_camera_wrong_element(file, lens, "there is neither <%s> nor <%s>", tags[0], tags[1]);
+  if (!vl_is_unset(half[0]) && !vl_is_unset(half[1])) return VL_OK;
+  if (vl_is_unset(aspect) && file->def->width && file->def->height)
+    aspect = (double)file->def->width / file->def->height;
+  if (!(aspect > 0.0))
+    return vl_camera_wrong_element(file, lens, "there is no <aspect_ratio>; give a size: --size WIDTHxHEIGHT");
+  if (vl_is_unset(half[0])) half[0] = half[1] * aspect;
+  if (vl_is_unset(half[1])) half[1] = half[0] / aspect;
+  return VL_OK;
+}
+
+static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *scenes = vl_camera_child(tree, "library_visual_scenes"), *scene, *node, *stops[MOST_DEPTH] = {NULL};
+  vlCameraDef *d = &record->camera;
+  Search s = {.camera = NULL};
+  vlMat4 world = vl_mat4_identity();
+  double half[2];
+  size_t i, k;
+  vlResult result = VL_OK;
+  json_array_foreach(json_object_get(scenes, "/"), i, scene) {
+    json_array_foreach(json_object_get(scene, "/"), k, node) {
+      if (result == VL_OK && has_tag(node, "node")) result = search(file, node, stops, 0, &s);
+    }
+  }
+  if (result != VL_OK) return result;
+  record->frames = s.count;
+  if (!s.camera) return vl_camera_no_frame(file, s.count);
+  const json_t *camera = find_camera(tree, vl_camera_text(s.camera, "url"));
+  if (!camera) return vl_camera_wrong_element(file, s.camera, "the node names a camera that does not exist");
+  const json_t *common = vl_camera_child(vl_camera_child(camera, "optics"), "technique_common");
+  const json_t *lens = vl_camera_child(common, "perspective");
+  bool flat = !lens;
+  if (flat) lens = vl_camera_child(common, "orthographic");
+  if (!lens) return vl_camera_wrong_element(file, camera, "the camera is neither perspective nor orthographic");
+  for (int depth = 0; depth < s.depth && result == VL_OK; depth++)
+    result = add_transforms(file, s.stops[depth], &world);
+  if (result == VL_OK) result = read_sides(file, lens, flat, half);
+  if (result == VL_OK) result = vl_camera_child_number(file, lens, "znear", false, &d->near_plane);
+  if (result == VL_OK) result = vl_camera_child_number(file, lens, "zfar", false, &d->far_plane);
+  if (result == VL_OK) result = vl_camera_size(file, half[0] / half[1], record);
+  if (result != VL_OK) return result;
+  if (flat) d->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  d->fx = 0.5 * d->width / half[0], d->fy = 0.5 * d->height / half[1];
+  d->has_matrix = true;
+  vl_camera_flip_axes(world.m, d->world_from_camera);
+  vl_camera_name(record, s.name);
+  return VL_OK;
+}
+
+static bool is_collada(const json_t *tree) {
+  return has_tag(tree, "COLLADA");
+}
+
+static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], m[16];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result != VL_OK) return result;
+  bool flat = c.projection == VL_PROJECTION_ORTHOGRAPHIC;
+  if (!flat && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
+  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  if (result != VL_OK) return result;
+  double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
+  const char *kind = flat ? "orthographic" : "perspective", side = flat ? 'm' : 'f';
+  const char *rest = flat ? "ag" : "ov";
+  if (!flat) x = 2.0 / degree * vl_precise_atan(x), y = 2.0 / degree * vl_precise_atan(y);
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(
+      text,
+      "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
+      "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
+      "  <asset><created>1970-01-01T00:00:00</created><modified>1970-01-01T00:00:00</modified>"
+      "<unit name=\"meter\" meter=\"1\"/><up_axis>Y_UP</up_axis></asset>\n"
+      "  <library_cameras>\n    <camera id=\"camera-lens\" name=\"camera\">\n      <optics><technique_common>\n"
+      "        <%s>\n          <x%c%s>%.17g</x%c%s>\n          <y%c%s>%.17g</y%c%s>\n"
+      "          <znear>%.17g</znear>\n          <zfar>%.17g</zfar>\n        </%s>\n"
+      "      </technique_common></optics>\n    </camera>\n  </library_cameras>\n",
+      kind, side, rest, x, side, rest, side, rest, y, side, rest, c.near_plane > 0.0 || flat ? c.near_plane : 0.01,
+      isinf(c.far_plane) ? 10000.0 : c.far_plane, kind);
+  vl_camera_put(text,
+                "  <library_visual_scenes>\n    <visual_scene id=\"scene\" name=\"scene\">\n"
+                "      <node id=\"camera\" name=\"camera\" type=\"NODE\">\n        <matrix sid=\"transform\">");
+  for (int i = 0; i < 16; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", m[i] + 0.0);
+  vl_camera_put(text,
+                "</matrix>\n        <instance_camera url=\"#camera-lens\"/>\n      </node>\n    </visual_scene>\n"
+                "  </library_visual_scenes>\n  <scene><instance_visual_scene url=\"#scene\"/></scene>\n</COLLADA>\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_collada = {
+    .name = "collada", .is_tree = is_collada, .read = read_collada, .write = write_collada};

@@ -1,0 +1,109 @@
+/* camera_files/dso.c: camera.txt of DSO, LSD-SLAM and the TUM monoVO dataset: a line with the model's name (without
+ * one: FOV), fx fy cx cy and the lens, a line with the image's size, then the rectification, which is ignored. There is
+ * no pose. The first pixel's centre is (0, 0). If cx and cy are below 1, the four numbers are shares of the image's
+ * sides, which begins at (-0.5, -0.5). */
+#include <math.h>
+#include <string.h>
+
+#include "camera_files/lines.h"
+
+static const struct {
+  const char *name;
+  uint32_t count; /* of the lens */
+} models[] = {{"FOV", 1}, {"Pinhole", 1}, {"RadTan", 4}, {"EquiDistant", 4}, {"KannalaBrandt", 4}};
+enum { FOV, PINHOLE, RADTAN, EQUIDISTANT, KANNALA_BRANDT, MODELS };
+
+/* Returns the model of the first line and where its numbers begin; MODELS: the line is another one. */
+static int model_of(const char *line, const char **numbers) {
+  for (int i = 0; i < MODELS; i++) {
+    size_t length = strlen(models[i].name);
+    *numbers = line + length;
+    if (strncmp(line, models[i].name, length) == 0 && (line[length] == ' ' || line[length] == '\t')) return i;
+  }
+  *numbers = line;
+  return FOV;
+}
+
+static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  vlCameraDef *d = &record->camera;
+  const char *numbers;
+  double v[8] = {0.0}, sides[2] = {0.0};
+  uint32_t count, most;
+  vl_camera_next_line(&lines);
+  int model = model_of(lines.text, &numbers);
+  most = 4 + models[model].count;
+  vlResult result = vl_camera_line_numbers(file, &lines, numbers, v, model == PINHOLE ? 4 : most, most, &count);
+  if (result != VL_OK) return result;
+  const double *k = v + 4;
+  if (!vl_camera_next_line(&lines)) return vl_camera_wrong(file, "dso: the image's size is missing");
+  result = vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count);
+  for (int i = 0; i < 2 && result == VL_OK; i++)
+    if (!(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
+      result = vl_camera_wrong_line(file, &lines, lines.text, "the image's size must be two whole numbers of pixels");
+  if (result != VL_OK) return result;
+  d->width = (uint32_t)sides[0], d->height = (uint32_t)sides[1];
+  bool shares = v[2] < 1.0 && v[3] < 1.0;
+  if (shares)
+    d->fx = v[0] * sides[0], d->fy = v[1] * sides[1], d->cx = v[2] * sides[0], d->cy = v[3] * sides[1];
+  else
+    vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
+  if (model == FOV && k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+  if (model == RADTAN) vl_camera_set_opencv(d, k, 4);
+  if (model == EQUIDISTANT || model == KANNALA_BRANDT) vl_camera_set_fisheye(d, k);
+  vl_camera_set_origin(d);
+  return VL_OK;
+}
+
+/* Counts the words of a line, and those that are numbers. */
+static void count_words(const char *line, int *words, int *numbers) {
+  for (*words = *numbers = 0; *line; line += strspn(line, " \t")) {
+    char *end;
+    vl_camera_parse(line, &end);
+    size_t length = strcspn(line, " \t");
+    *numbers += end == line + length;
+    line += length;
+    ++*words;
+  }
+}
+
+/* A model's name, or a line of five words and one of two, which are numbers or precede a word about rectification. */
+static bool is_dso(const char *text, size_t size) {
+  vlCameraLines lines = {.at = text, .end = text + size};
+  const char *rest;
+  int words[2], numbers[2];
+  if (!vl_camera_next_line(&lines)) return false;
+  model_of(lines.text, &rest);
+  if (rest != lines.text) return true;
+  count_words(lines.text, &words[0], &numbers[0]);
+  if (words[0] != 5 || !vl_camera_next_line(&lines)) return false;
+  count_words(lines.text, &words[1], &numbers[1]);
+  if (words[1] != 2) return false;
+  if (numbers[0] == 5 && numbers[1] == 2) return true;
+  return vl_camera_next_line(&lines) &&
+         (strcmp(lines.text, "crop") == 0 || strcmp(lines.text, "full") == 0 || strcmp(lines.text, "none") == 0);
+}
+
+static vlResult write_dso(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  bool fisheye = family == VL_LENS_FISHEYE, bent = family == VL_LENS_OPENCV, fov = family == VL_LENS_FOV;
+  if ((!fisheye && !bent && !fov && family != VL_LENS_PINHOLE) || n > 4)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_put(text, "%s %.17g %.17g %.17g %.17g",
+                fisheye ? "KannalaBrandt"
+                : bent  ? "RadTan"
+                : fov   ? "FOV"
+                        : "Pinhole",
+                c.fx, c.fy, c.cx - 0.5, c.cy - 0.5);
+  if (fov) k[0] = c.shape[0];
+  for (int i = 0; i < (fisheye || bent ? 4 : 1); i++) vl_camera_put(text, " %.17g", k[i] + 0.0);
+  vl_camera_put(text, "\n%u %u\nfull\n%u %u\n", c.width, c.height, c.width, c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_dso = {.name = "dso", .is_text = is_dso, .read_text = read_dso, .write = write_dso};

@@ -1,0 +1,79 @@
+/* camera_files/nerfstudio.c: nerfstudio's camera_path.json: the cameras of a film, each with camera_to_world (16
+ * numbers by rows) and the vertical fov in degrees. Camera axes: x right, y up, z back. The principal point is the
+ * image's middle. */
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/elementary.h"
+
+static const double degree = 3.14159265358979323846 / 180.0;
+
+static vlResult read_type(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
+  const char *type = vl_camera_text(tree, "camera_type");
+  if (!type || strcmp(type, "perspective") == 0) return VL_OK;
+  if (strcmp(type, "fisheye") == 0)
+    d->projection = VL_PROJECTION_EQUIDISTANT;
+  else if (strcmp(type, "equirectangular") == 0)
+    d->projection = VL_PROJECTION_EQUIRECTANGULAR;
+  else
+    return vl_camera_wrong_in(file, tree, "camera_type",
+                              "nerfstudio: camera_type \"%s\" is none of velo; there are perspective, fisheye, "
+                              "equirectangular",
+                              vl_short_text(type).text);
+  return VL_OK;
+}
+
+static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *path = json_object_get(tree, "camera_path"), *camera = NULL;
+  vlCameraDef *d = &record->camera;
+  double m[16], fov = 0.0;
+  record->frames = (uint32_t)json_array_size(path);
+  for (uint32_t i = 0; i < record->frames && !camera; i++)
+    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(path, i);
+  if (!camera) return vl_camera_no_frame(file, record->frames);
+  vlResult result = vl_camera_sides(file, tree, "render_width", "render_height", record);
+  if (result == VL_OK) result = read_type(file, tree, d);
+  if (result == VL_OK) result = vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL);
+  if (result == VL_OK && d->projection != VL_PROJECTION_EQUIRECTANGULAR)
+    result = vl_camera_number(file, camera, "fov", &fov);
+  if (result != VL_OK) return result;
+  d->has_matrix = true;
+  vl_camera_flip_axes(m, d->world_from_camera);
+  if (d->projection == VL_PROJECTION_EQUIRECTANGULAR) return VL_OK;
+  if (!(fov > 0.0 && fov < 180.0))
+    return vl_camera_wrong_in(file, camera, "fov", "nerfstudio: \"fov\" is %g; it must be between 0 and 180 degrees",
+                              fov);
+  d->fx = d->fy = 0.5 * d->height / vl_precise_tan(0.5 * degree * fov);
+  return VL_OK;
+}
+
+static bool is_nerfstudio(const json_t *tree) {
+  return vl_camera_has_in(tree, "camera_path", "camera_to_world");
+}
+
+static vlResult write_nerfstudio(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], m[16];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
+  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK) return result;
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(
+      text,
+      "{\n  \"camera_type\": \"perspective\",\n  \"render_width\": %u,\n  \"render_height\": %u,\n"
+      "  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": [],\n  \"camera_path\": [\n    {\"camera_to_world\": [",
+      c.width, c.height);
+  vl_camera_put_numbers(text, m, 16);
+  vl_camera_put(text, "],\n     \"fov\": %.17g, \"aspect\": %.17g}\n  ]\n}\n",
+                2.0 / degree * vl_precise_atan(0.5 * c.height / c.fy), (double)c.width / c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_nerfstudio = {
+    .name = "nerfstudio", .is_tree = is_nerfstudio, .read = read_nerfstudio, .write = write_nerfstudio};

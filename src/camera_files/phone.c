@@ -1,0 +1,121 @@
+/* camera_files/phone.c: the JSON of phone scanners, whose poses are ARKit's: world from camera, camera axes x right, y
+ * up, z back; the first pixel's centre is (0.5, 0.5). Record3D: metadata of a recording, with K by columns and poses
+ * (qx qy qz qw x y z). Polycam: keyframes/cameras/N.json, with t_00 to t_23 by rows. 3D Scanner App: frame_N.json, with
+ * cameraPoseARFrame and intrinsics by rows; the size is that of the image beside it. */
+#include <stdio.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static void set_arkit_pose(const double m[16], vlCameraDef *d) {
+  d->has_matrix = true;
+  vl_camera_flip_axes(m, d->world_from_camera);
+}
+
+/* ---- Record3D ---------------------------------------------------------------------------------------------------- */
+
+static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *poses = json_object_get(tree, "poses"), *own = json_object_get(tree, "perFrameIntrinsicCoeffs");
+  vlCameraDef *d = &record->camera;
+  const json_t *pose = NULL, *coefficients = NULL;
+  double v[7], k[9], r[9], f[4];
+  record->frames = (uint32_t)json_array_size(poses);
+  for (uint32_t i = 0; i < record->frames && !pose; i++)
+    if (vl_camera_is_frame(file, i, NULL)) pose = json_array_get(poses, i), coefficients = json_array_get(own, i);
+  if (!pose) return vl_camera_no_frame(file, record->frames);
+  json_t *holder = json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
+  if (!holder) return vl_fail_memory(file->error);
+  vlResult result = vl_camera_numbers(file, holder, "poses", v, 7, 7, NULL);
+  bool single = vl_camera_has(holder, "perFrameIntrinsicCoeffs");
+  if (result == VL_OK && single) result = vl_camera_numbers(file, holder, "perFrameIntrinsicCoeffs", f, 4, 4, NULL);
+  json_decref(holder);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "K", k, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_sides(file, tree, "w", "h", record);
+  if (result != VL_OK) return result;
+  const double q[4] = {v[3], v[0], v[1], v[2]};
+  if (!vl_rotation_from_quaternion(q, r))
+    return vl_camera_wrong_in(file, pose, NULL, "record3d: the quaternion of \"poses\" is no rotation");
+  const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5], r[6], r[7], r[8], v[6], 0, 0, 0, 1};
+  set_arkit_pose(m, d);
+  d->fx = single ? f[0] : k[0], d->fy = single ? f[1] : k[4];
+  d->cx = single ? f[2] : k[6], d->cy = single ? f[3] : k[7];
+  return VL_OK;
+}
+
+static bool is_record3d(const json_t *tree) {
+  return vl_camera_has(tree, "poses") && vl_camera_has(tree, "K") && json_is_array(json_object_get(tree, "poses"));
+}
+
+const vlCameraFormat vl_format_record3d = {.name = "record3d",
+                                           .is_tree = is_record3d,
+                                           .read = read_record3d,
+                                           .not_written = "it describes a recording of a phone"};
+
+/* ---- Polycam ----------------------------------------------------------------------------------------------------- */
+
+static vlResult read_polycam(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double m[16] = {[15] = 1.0};
+  vlResult result = vl_camera_side(file, tree, "width", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, tree, "height", &d->height);
+  if (result == VL_OK) result = vl_camera_number(file, tree, "fx", &d->fx);
+  if (result == VL_OK) result = vl_camera_number(file, tree, "fy", &d->fy);
+  if (result == VL_OK) result = vl_camera_number(file, tree, "cx", &d->cx);
+  if (result == VL_OK) result = vl_camera_number(file, tree, "cy", &d->cy);
+  for (int i = 0; i < 12 && result == VL_OK; i++) {
+    const char key[] = {'t', '_', (char)('0' + i / 4), (char)('0' + i % 4), 0};
+    result = vl_camera_number(file, tree, key, &m[i]);
+  }
+  if (result == VL_OK) set_arkit_pose(m, d);
+  return result;
+}
+
+static bool is_polycam(const json_t *tree) {
+  return vl_camera_has(tree, "t_00") && vl_camera_has(tree, "t_23") && vl_camera_has(tree, "fx");
+}
+
+static vlResult write_polycam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], m[16];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  if (result != VL_OK) return result;
+  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_flip_axes(c.world_from_camera, m);
+  vl_camera_put(text,
+                "{\n  \"width\": %u, \"height\": %u,\n  \"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g",
+                c.width, c.height, c.fx, c.fy, c.cx, c.cy);
+  for (int i = 0; i < 12; i++)
+    vl_camera_put(text, ",%s\"t_%d%d\": %.17g", i % 4 ? " " : "\n  ", i / 4, i % 4, m[i] + 0.0);
+  vl_camera_put(text, "\n}\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_polycam = {
+    .name = "polycam", .is_tree = is_polycam, .read = read_polycam, .write = write_polycam};
+
+/* ---- 3D Scanner App ---------------------------------------------------------------------------------------------- */
+
+static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double m[16], k[9];
+  char image[300];
+  const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *dot = strrchr(name, '.');
+  vlResult result = vl_camera_numbers(file, tree, "cameraPoseARFrame", m, 16, 16, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "intrinsics", k, 9, 9, NULL);
+  if (result != VL_OK) return result;
+  snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
+  set_arkit_pose(m, d);
+  d->fx = k[0], d->fy = k[4], d->cx = k[2], d->cy = k[5];
+  return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
+}
+
+static bool is_scanner(const json_t *tree) {
+  return vl_camera_has(tree, "cameraPoseARFrame") && vl_camera_has(tree, "intrinsics");
+}
+
+const vlCameraFormat vl_format_scanner3d = {.name = "scanner3d",
+                                            .is_tree = is_scanner,
+                                            .read = read_scanner,
+                                            .not_written = "it describes a recording of a phone"};

@@ -1,0 +1,236 @@
+/* camera_files/rigs.c: JSON of rigs and datasets. Axes: x right, y down, z forward. calib.io: Calibration.cameras with
+ * OpenCV's lens by name and camera from world (rotation vector, translation); fy = f ar; first pixel's centre (0, 0).
+ * nuScenes: a list of calibrated_sensor, world (the vehicle's) from camera, quaternion w x y z; no image size; (0, 0).
+ * CMU Panoptic: cameras with K, distCoef, R, t, camera from world, in centimetres; (0, 0). Nerfies: orientation, camera
+ * from world, and position, the camera's centre; (0.5, 0.5). */
+#include <string.h>
+
+#include "camera_files/files.h"
+
+static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
+  while (count && k[count - 1] == 0.0) count--;
+  vl_camera_set_opencv(d, k, count);
+}
+
+/* Sets camera from world by the rotation and the camera's centre. */
+static void set_centre(const double r[9], const double c[3], vlCameraDef *d) {
+  double t[3];
+  for (int i = 0; i < 3; i++) t[i] = 0.0 - (r[3 * i] * c[0] + r[3 * i + 1] * c[1] + r[3 * i + 2] * c[2]);
+  vl_camera_set_pose(d, r, t);
+}
+
+/* ---- calib.io ---------------------------------------------------------------------------------------------------- */
+
+static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key, bool needed,
+                           double *value) {
+  const json_t *field = json_object_get(parameters, key);
+  if (!field && !needed) return VL_OK;
+  if (!json_is_object(field)) return vl_camera_number(file, parameters, key, value);
+  return vl_camera_number(file, field, "val", value);
+}
+
+static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  static const char *const lens[] = {"k1", "k2", "p1", "p2", "k3", "k4",   "k5",
+                                     "k6", "s1", "s2", "s3", "s4", "tauX", "tauY"};
+  static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
+  const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"), *camera = NULL;
+  vlCameraDef *d = &record->camera;
+  double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0}, v[3] = {0.0}, t[3] = {0.0}, r[9];
+  record->frames = (uint32_t)json_array_size(list);
+  for (uint32_t i = 0; i < record->frames && !camera; i++)
+    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(list, i);
+  if (!camera) return vl_camera_no_frame(file, record->frames);
+  const json_t *model, *parameters, *transform = json_object_get(camera, "transform");
+  vlResult result = vl_camera_field(file, camera, "model", &model);
+  if (result != VL_OK) return result;
+  const char *name = vl_camera_text(model, "polymorphic_name");
+  if (name && strcmp(name, "libCalib::CameraModelOpenCV") != 0)
+    return vl_camera_wrong_in(file, model, "polymorphic_name",
+                              "calibio: unknown polymorphic_name \"%s\"; there is libCalib::CameraModelOpenCV",
+                              vl_short_text(name).text);
+  const json_t *data = json_object_get(json_object_get(model, "ptr_wrapper"), "data");
+  const json_t *base = json_object_get(data, "CameraModelCRT");
+  if (!base) base = json_object_get(data, "CameraModelCRTP");
+  const json_t *size = json_object_get(json_object_get(base, "CameraModelBase"), "imageSize");
+  result = vl_camera_sides(file, size, "width", "height", record);
+  if (result == VL_OK) result = vl_camera_field(file, data, "parameters", &parameters);
+  if (result == VL_OK) result = read_value(file, parameters, "f", true, &f);
+  if (result == VL_OK) result = read_value(file, parameters, "ar", false, &aspect);
+  if (result == VL_OK) result = read_value(file, parameters, "cx", true, &cx);
+  if (result == VL_OK) result = read_value(file, parameters, "cy", true, &cy);
+  for (int i = 0; i < 14 && result == VL_OK; i++) result = read_value(file, parameters, lens[i], false, &k[i]);
+  for (int i = 0; i < 3 && transform && result == VL_OK; i++) {
+    result = vl_camera_number(file, json_object_get(transform, "rotation"), turns[i], &v[i]);
+    if (result == VL_OK) result = vl_camera_number(file, json_object_get(transform, "translation"), shifts[i], &t[i]);
+  }
+  if (result != VL_OK) return result;
+  vl_camera_set_centred(d, f, f * aspect, cx, cy);
+  set_lens(k, 14, d);
+  vl_rotation_from_vector(v, r);
+  vl_camera_set_pose(d, r, t);
+  return VL_OK;
+}
+
+static bool is_calibio(const json_t *tree) {
+  return vl_camera_has_in(json_object_get(tree, "Calibration"), "cameras", "model");
+}
+
+const vlCameraFormat vl_format_calibio = {.name = "calibio",
+                                          .is_tree = is_calibio,
+                                          .read = read_calibio,
+                                          .not_written = "it is the result of a calibration, with its statistics"};
+
+/* ---- nuScenes ---------------------------------------------------------------------------------------------------- */
+
+static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *list = json_object_get(tree, "[]"), *item, *chosen = NULL;
+  vlCameraDef *d = &record->camera;
+  double k[9], q[4], t[3], r[9], m[16] = {[15] = 1.0};
+  size_t i;
+  record->frames = 0;
+  json_array_foreach(list, i, item) {
+    if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0) continue; /* lidar and radar */
+    const char *token = vl_camera_text(item, "token");
+    if (!chosen && vl_camera_is_frame(file, record->frames, token)) chosen = item, vl_camera_name(record, token);
+    record->frames++;
+  }
+  if (!chosen) return vl_camera_no_frame(file, record->frames);
+  vlResult result = vl_camera_numbers(file, chosen, "camera_intrinsic", k, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "rotation", q, 4, 4, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "translation", t, 3, 3, NULL);
+  if (result == VL_OK) result = vl_camera_set_k(file, chosen, "camera_intrinsic", k, d);
+  if (result != VL_OK) return result;
+  if (!vl_rotation_from_quaternion(q, r))
+    return vl_camera_wrong_in(file, chosen, "rotation", "nuscenes: the quaternion \"rotation\" is no rotation");
+  for (int j = 0; j < 12; j++) m[j] = j % 4 < 3 ? r[3 * (j / 4) + j % 4] : t[j / 4];
+  vl_camera_set_matrix(d, m, false);
+  return vl_camera_size_beside(file, NULL, record);
+}
+
+static bool is_nuscenes(const json_t *tree) {
+  return vl_camera_has_in(tree, "[]", "camera_intrinsic") && vl_camera_has_in(tree, "[]", "rotation");
+}
+
+const vlCameraFormat vl_format_nuscenes = {.name = "nuscenes",
+                                           .is_tree = is_nuscenes,
+                                           .read = read_nuscenes,
+                                           .not_written = "it is a table of a dataset, with keys of other tables"};
+
+/* ---- CMU Panoptic ------------------------------------------------------------------------------------------------ */
+
+static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *list = json_object_get(tree, "cameras"), *item, *chosen = NULL;
+  vlCameraDef *d = &record->camera;
+  double k[9], lens[5], r[9], t[3];
+  size_t i;
+  record->frames = (uint32_t)json_array_size(list);
+  json_array_foreach(list, i, item) {
+    if (chosen || !vl_camera_is_frame(file, (uint32_t)i, vl_camera_text(item, "name"))) continue;
+    chosen = item;
+    vl_camera_name(record, vl_camera_text(item, "name"));
+  }
+  if (!chosen) return vl_camera_no_frame(file, record->frames);
+  vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "K", k, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "distCoef", lens, 5, 5, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "R", r, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "t", t, 3, 3, NULL);
+  if (result == VL_OK) result = vl_camera_set_k(file, chosen, "K", k, d);
+  if (result != VL_OK) return result;
+  set_lens(lens, 5, d);
+  vl_camera_set_pose(d, r, t);
+  return VL_OK;
+}
+
+static bool is_panoptic(const json_t *tree) {
+  return vl_camera_has_in(tree, "cameras", "distCoef") && vl_camera_has_in(tree, "cameras", "K");
+}
+
+static void put_list(vlCameraText *text, const char *key, const double *values, uint32_t count) {
+  vl_camera_put(text, ",\n   \"%s\": [", key);
+  for (uint32_t i = 0; i < count; i++)
+    vl_camera_put(text, "%s%.17g%s", i % 3 ? ", " : i ? ", [" : "[", values[i] + 0.0, i % 3 == 2 ? "]" : "");
+  vl_camera_put(text, "]");
+}
+
+static vlResult write_panoptic(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], r[9], t[3];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_get_pose(&c, r, t);
+  vl_camera_put(text, "{\"cameras\": [\n  {\"name\": ");
+  vl_camera_put_string(text, record->name[0] ? record->name : "00_00");
+  vl_camera_put(text, ", \"type\": \"hd\", \"resolution\": [%u, %u], \"panel\": 0, \"node\": 0", c.width, c.height);
+  put_list(text, "K", (double[]){c.fx, c.skew, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);
+  vl_camera_put(text, ",\n   \"distCoef\": [");
+  vl_camera_put_numbers(text, k, 5);
+  vl_camera_put(text, "]");
+  put_list(text, "R", r, 9);
+  vl_camera_put(text, ",\n   \"t\": [[%.17g], [%.17g], [%.17g]]}\n]}\n", t[0], t[1], t[2]);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_panoptic = {
+    .name = "panoptic", .is_tree = is_panoptic, .read = read_panoptic, .write = write_panoptic};
+
+/* ---- Nerfies ----------------------------------------------------------------------------------------------------- */
+
+static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double r[9], p[3], f, c[2], aspect = 1.0, radial[3] = {0.0}, tangential[2] = {0.0};
+  vlResult result = vl_camera_side_pair(file, tree, "image_size", record);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "orientation", r, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "position", p, 3, 3, NULL);
+  if (result == VL_OK) result = vl_camera_number(file, tree, "focal_length", &f);
+  if (result == VL_OK) result = vl_camera_numbers(file, tree, "principal_point", c, 2, 2, NULL);
+  if (result == VL_OK) result = vl_camera_optional(file, tree, "skew", &d->skew);
+  if (result == VL_OK) result = vl_camera_optional(file, tree, "pixel_aspect_ratio", &aspect);
+  if (result == VL_OK && vl_camera_has(tree, "radial_distortion"))
+    result = vl_camera_numbers(file, tree, "radial_distortion", radial, 0, 3, NULL);
+  if (result == VL_OK && vl_camera_has(tree, "tangential_distortion"))
+    result = vl_camera_numbers(file, tree, "tangential_distortion", tangential, 0, 2, NULL);
+  if (result != VL_OK) return result;
+  d->fx = f, d->fy = f * aspect, d->cx = c[0], d->cy = c[1];
+  set_lens((double[]){radial[0], radial[1], tangential[0], tangential[1], radial[2]}, 5, d);
+  set_centre(r, p, d);
+  return VL_OK;
+}
+
+static bool is_nerfies(const json_t *tree) {
+  return vl_camera_has(tree, "orientation") && vl_camera_has(tree, "focal_length") &&
+         vl_camera_has(tree, "principal_point");
+}
+
+static vlResult write_nerfies(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], r[9], t[3];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  const double *m = c.world_from_camera;
+  vl_camera_get_pose(&c, r, t);
+  vl_camera_put(text, "{\n  \"orientation\": [");
+  for (int i = 0; i < 3; i++) {
+    vl_camera_put(text, "%s[", i ? ", " : "");
+    vl_camera_put_numbers(text, r + 3 * i, 3);
+    vl_camera_put(text, "]");
+  }
+  vl_camera_put(
+      text,
+      "],\n  \"position\": [%.17g, %.17g, %.17g],\n  \"focal_length\": %.17g,\n  \"principal_point\": [%.17g, "
+      "%.17g],\n  \"skew\": %.17g,\n  \"pixel_aspect_ratio\": %.17g,\n  \"radial_distortion\": [%.17g, %.17g, "
+      "%.17g],\n  \"tangential_distortion\": [%.17g, %.17g],\n  \"image_size\": [%u, %u]\n}\n",
+      m[3], m[7], m[11], c.fx, c.cx, c.cy, c.skew, c.fy / c.fx, k[0], k[1], k[4], k[2], k[3], c.width, c.height);
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_nerfies = {
+    .name = "nerfies", .is_tree = is_nerfies, .read = read_nerfies, .write = write_nerfies};

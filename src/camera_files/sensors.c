@@ -1,0 +1,243 @@
+/* camera_files/sensors.c: the factory calibrations of depth cameras, as JSON. Axes: x right, y down, z forward; the
+ * first pixel's centre is (0, 0). DepthAI (OAK): cameraData, a list of (socket, camera), OpenCV's lenses; the world is
+ * the space of the camera that points to no other one, in centimetres. Azure Kinect: CalibrationInformation; numbers
+ * are shares of the image's sides, which begin at (-0.5, -0.5); the world is the depth camera's space, in metres.
+ * RealSense: the fields of rs2_intrinsics; no pose. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/transform.h"
+
+static bool all_zero(const double *k, uint32_t count) {
+  for (uint32_t i = 0; i < count; i++)
+    if (k[i] != 0.0) return false;
+  return true;
+}
+
+/* Sets OpenCV's distortion with as few coefficients as the values need. */
+static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
+  while (count && k[count - 1] == 0.0) count--;
+  vl_camera_set_opencv(d, k, count);
+}
+
+static vlMat4 rigid(const double r[9], const double t[3]) {
+  vlMat4 m = vl_mat4_identity();
+  for (int i = 0; i < 9; i++) m.m[4 * (i / 3) + i % 3] = r[i];
+  for (int i = 0; i < 3; i++) m.m[4 * i + 3] = t[i];
+  return m;
+}
+
+/* ---- DepthAI ----------------------------------------------------------------------------------------------------- */
+
+static const json_t *depthai_camera(const json_t *list, double socket) {
+  const json_t *pair;
+  size_t i;
+  json_array_foreach(list, i, pair) {
+    const json_t *own = json_array_get(pair, 0);
+    if (json_is_number(own) && json_number_value(own) == socket) return json_array_get(pair, 1);
+  }
+  return NULL;
+}
+
+/* Follows extrinsics.toCameraSocket: the camera's space to that of the next one. */
+static vlResult depthai_pose(const vlCameraFile *file, const json_t *list, const json_t *camera, vlMat4 *world) {
+  *world = vl_mat4_identity();
+  for (int steps = 0; camera && steps < 16; steps++) {
+    const json_t *extrinsics = json_object_get(camera, "extrinsics"),
+                 *shift = json_object_get(extrinsics, "translation");
+    double socket = -1.0, r[9], t[3] = {0.0};
+    vlResult result = vl_camera_optional(file, extrinsics, "toCameraSocket", &socket);
+    if (result != VL_OK || socket < 0.0) return result;
+    result = vl_camera_numbers(file, extrinsics, "rotationMatrix", r, 9, 9, NULL);
+    if (result == VL_OK) result = vl_camera_number(file, shift, "x", &t[0]);
+    if (result == VL_OK) result = vl_camera_number(file, shift, "y", &t[1]);
+    if (result == VL_OK) result = vl_camera_number(file, shift, "z", &t[2]);
+    if (result != VL_OK) return result;
+    *world = vl_mat4_multiply(rigid(r, t), *world);
+    camera = depthai_camera(list, socket);
+  }
+  return camera ? vl_camera_wrong(file, "depthai: the sockets of \"extrinsics\" go in a circle") : VL_OK;
+}
+
+static vlResult read_depthai(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *list = json_object_get(tree, "cameraData"), *pair, *camera = NULL;
+  vlCameraDef *d = &record->camera;
+  double k[9], lens[14] = {0.0}, type = 0.0;
+  uint32_t count = 0;
+  size_t i;
+  vlMat4 world;
+  record->frames = 0;
+  json_array_foreach(list, i, pair) {
+    const json_t *one = json_array_get(pair, 1);
+    char name[32];
+    if (json_number_value(json_object_get(one, "width")) < 1.0) continue; /* a socket that is not used */
+    snprintf(name, sizeof name, "socket%g", json_number_value(json_array_get(pair, 0)));
+    if (!camera && vl_camera_is_frame(file, record->frames, name)) camera = one, vl_camera_name(record, name);
+    record->frames++;
+  }
+  if (!camera) return vl_camera_no_frame(file, record->frames);
+  vlResult result = vl_camera_side(file, camera, "width", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
+  if (result == VL_OK) result = vl_camera_numbers(file, camera, "intrinsicMatrix", k, 9, 9, NULL);
+  if (result == VL_OK && vl_camera_has(camera, "distortionCoeff"))
+    result = vl_camera_numbers(file, camera, "distortionCoeff", lens, 0, 14, &count);
+  if (result == VL_OK) result = vl_camera_optional(file, camera, "cameraType", &type);
+  if (result == VL_OK) result = vl_camera_set_k(file, camera, "intrinsicMatrix", k, d);
+  if (result == VL_OK) result = depthai_pose(file, list, camera, &world);
+  if (result != VL_OK) return result;
+  if (type != 0.0 && type != 1.0)
+    return vl_camera_wrong_in(file, camera, "cameraType",
+                              "depthai: \"cameraType\" %g is no model of velo; there are 0 (perspective), 1 (fisheye)",
+                              type);
+  if (type == 1.0)
+    vl_camera_set_fisheye(d, lens);
+  else
+    set_lens(lens, count, d);
+  vl_camera_set_matrix(d, world.m, false);
+  return VL_OK;
+}
+
+static bool is_depthai(const json_t *tree) {
+  const json_t *first = json_array_get(json_object_get(tree, "cameraData"), 0);
+  return vl_camera_has(json_array_get(first, 1), "intrinsicMatrix");
+}
+
+const vlCameraFormat vl_format_depthai = {.name = "depthai",
+                                          .is_tree = is_depthai,
+                                          .read = read_depthai,
+                                          .not_written = "it is the factory calibration of a device"};
+
+/* ---- Azure Kinect ------------------------------------------------------------------------------------------------ */
+
+static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *list = json_object_get(json_object_get(tree, "CalibrationInformation"), "Cameras"), *one,
+               *camera = NULL;
+  vlCameraDef *d = &record->camera;
+  double v[14], r[9], t[3];
+  size_t i;
+  record->frames = (uint32_t)json_array_size(list);
+  json_array_foreach(list, i, one) {
+    const char *name = vl_camera_text(one, "Location");
+    if (name && strncmp(name, "CALIBRATION_CameraLocation", 26) == 0) name += 26; /* D0, PV0 */
+    if (camera || !vl_camera_is_frame(file, (uint32_t)i, name)) continue;
+    camera = one;
+    vl_camera_name(record, name);
+  }
+  if (!camera) return vl_camera_no_frame(file, record->frames);
+  const json_t *intrinsics, *pose;
+  vlResult result = vl_camera_side(file, camera, "SensorWidth", &d->width);
+  if (result == VL_OK) result = vl_camera_side(file, camera, "SensorHeight", &d->height);
+  if (result == VL_OK) result = vl_camera_field(file, camera, "Intrinsics", &intrinsics);
+  if (result == VL_OK) result = vl_camera_field(file, camera, "Rt", &pose);
+  if (result == VL_OK) result = vl_camera_numbers(file, intrinsics, "ModelParameters", v, 14, 14, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, pose, "Rotation", r, 9, 9, NULL);
+  if (result == VL_OK) result = vl_camera_numbers(file, pose, "Translation", t, 3, 3, NULL);
+  if (result != VL_OK) return result;
+  const char *model = vl_camera_text(intrinsics, "ModelType");
+  if (model && !strstr(model, "BrownConrady"))
+    return vl_camera_wrong_in(file, intrinsics, "ModelType", "kinect: unknown ModelType \"%s\"; there is BrownConrady",
+                              vl_short_text(model).text);
+  if (!all_zero(v + 10, 2))
+    return vl_camera_wrong_in(file, intrinsics, "ModelParameters", "kinect: the centre of the distortion must be 0, 0");
+  d->cx = v[0] * d->width, d->cy = v[1] * d->height, d->fx = v[2] * d->width, d->fy = v[3] * d->height;
+  set_lens((double[]){v[4], v[5], v[13], v[12], v[6], v[7], v[8], v[9]}, 8, d);
+  vl_camera_set_pose(d, r, t);
+  return VL_OK;
+}
+
+static bool is_kinect(const json_t *tree) {
+  return vl_camera_has(json_object_get(tree, "CalibrationInformation"), "Cameras");
+}
+
+const vlCameraFormat vl_format_kinect = {.name = "kinect",
+                                         .is_tree = is_kinect,
+                                         .read = read_kinect,
+                                         .not_written = "it is the factory calibration of a device"};
+
+/* ---- RealSense --------------------------------------------------------------------------------------------------- */
+
+static bool is_stream(const json_t *object) {
+  return vl_camera_has(object, "ppx") && vl_camera_has(object, "ppy") && vl_camera_has(object, "fx");
+}
+
+static vlResult read_stream(const vlCameraFile *file, const json_t *stream, vlCameraRecord *record) {
+  vlCameraDef *d = &record->camera;
+  double fx, fy, cx, cy, k[5] = {0.0};
+  uint32_t count = 0;
+  const char *model = vl_camera_text(stream, "model");
+  vlResult result = vl_camera_sides(file, stream, "width", "height", record);
+  if (result == VL_OK) result = vl_camera_number(file, stream, "fx", &fx);
+  if (result == VL_OK) result = vl_camera_number(file, stream, "fy", &fy);
+  if (result == VL_OK) result = vl_camera_number(file, stream, "ppx", &cx);
+  if (result == VL_OK) result = vl_camera_number(file, stream, "ppy", &cy);
+  if (result == VL_OK && vl_camera_has(stream, "coeffs"))
+    result = vl_camera_numbers(file, stream, "coeffs", k, 0, 5, &count);
+  if (result != VL_OK) return result;
+  vl_camera_set_centred(d, fx, fy, cx, cy);
+  vl_camera_set_origin(d);
+  if (all_zero(k, 5)) return VL_OK;
+  char lower[64] = "";
+  for (size_t i = 0; model && model[i] && i < sizeof lower - 1; i++)
+    lower[i] = model[i] == ' ' ? '_' : (char)(model[i] >= 'A' && model[i] <= 'Z' ? model[i] + 32 : model[i]);
+  if (strstr(lower, "kannala")) {
+    vl_camera_set_fisheye(d, k);
+  } else if (strstr(lower, "brown") && !strstr(lower, "inverse") &&
+             (!strstr(lower, "modified") || all_zero(k + 2, 2))) {
+    set_lens(k, 5, d);
+  } else {
+    return vl_camera_wrong_in(
+        file, stream, vl_camera_has(stream, "model") ? "model" : "coeffs",
+        "realsense: the model \"%s\" with these \"coeffs\" is none of velo; there are Brown Conrady "
+        "and Kannala Brandt",
+        vl_short_text(model ? model : "").text);
+  }
+  return VL_OK;
+}
+
+/* One stream, or an object with several by name. */
+static vlResult read_realsense(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *chosen = NULL;
+  const char *name;
+  json_t *stream;
+  if (is_stream(tree)) return read_stream(file, tree, record);
+  record->frames = 0;
+  json_object_foreach((json_t *)tree, name, stream) {
+    if (!is_stream(stream)) continue;
+    if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = stream, vl_camera_name(record, name);
+    record->frames++;
+  }
+  return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, record->frames);
+}
+
+static bool is_realsense(const json_t *tree) {
+  const char *name;
+  json_t *stream;
+  if (is_stream(tree)) return true;
+  json_object_foreach((json_t *)tree, name, stream) if (is_stream(stream)) return true;
+  return false;
+}
+
+static vlResult write_realsense(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, 0, &c);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  bool fisheye = family == VL_LENS_FISHEYE;
+  if ((!fisheye && family != VL_LENS_OPENCV && family != VL_LENS_PINHOLE) || n > 5)
+    return vl_camera_no_model(file, &record->camera);
+  vl_camera_put(
+      text,
+      "{\n  \"width\": %u, \"height\": %u,\n  \"ppx\": %.17g, \"ppy\": %.17g,\n  \"fx\": %.17g, \"fy\": %.17g,\n"
+      "  \"model\": \"distortion.%s\",\n  \"coeffs\": [",
+      c.width, c.height, c.cx - 0.5, c.cy - 0.5, c.fx, c.fy, fisheye ? "kannala_brandt4" : "brown_conrady");
+  vl_camera_put_numbers(text, k, 5);
+  vl_camera_put(text, "]\n}\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_realsense = {
+    .name = "realsense", .is_tree = is_realsense, .read = read_realsense, .write = write_realsense};

@@ -1,0 +1,87 @@
+/* camera_files/threejs.c: three.js' JSON of a camera (Object3D.toJSON): object with type PerspectiveCamera (fov:
+ * vertical, degrees; aspect; zoom) or OrthographicCamera (left, right, top, bottom), and matrix, world from camera, 16
+ * numbers by columns. Camera axes: x right, y up, z back. There are no pixels. */
+#include <string.h>
+
+#include "camera_files/files.h"
+#include "math/elementary.h"
+
+static const double degree = 3.14159265358979323846 / 180.0;
+
+static bool is_camera(const json_t *object) {
+  const char *type = vl_camera_text(object, "type");
+  return type && (strcmp(type, "PerspectiveCamera") == 0 || strcmp(type, "OrthographicCamera") == 0);
+}
+
+static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCameraRecord *record) {
+  static const char *const sides[4] = {"left", "right", "top", "bottom"};
+  vlCameraDef *d = &record->camera;
+  double fov = 0.0, aspect = 1.0, zoom = 1.0, s[4];
+  bool flat = strcmp(vl_camera_text(object, "type"), "OrthographicCamera") == 0;
+  vlResult result = vl_camera_optional(file, object, "zoom", &zoom);
+  if (result == VL_OK && !flat) result = vl_camera_number(file, object, "fov", &fov);
+  if (result == VL_OK && !flat) result = vl_camera_number(file, object, "aspect", &aspect);
+  for (int i = 0; i < 4 && flat && result == VL_OK; i++) result = vl_camera_number(file, object, sides[i], &s[i]);
+  if (result == VL_OK) result = vl_camera_optional(file, object, "near", &d->near_plane);
+  if (result == VL_OK) result = vl_camera_optional(file, object, "far", &d->far_plane);
+  if (result != VL_OK) return result;
+  if (flat) aspect = (s[1] - s[0]) / (s[2] - s[3]);
+  if (!(zoom > 0.0 && aspect > 0.0) || (!flat && !(fov > 0.0 && fov < 180.0)))
+    return vl_camera_wrong_in(file, object, flat ? "left" : "fov", "threejs: these sides, fov or zoom give no image");
+  result = vl_camera_size(file, aspect, record);
+  if (result != VL_OK) return result;
+  if (flat) {
+    d->projection = VL_PROJECTION_ORTHOGRAPHIC;
+    d->fx = zoom * d->width / (s[1] - s[0]), d->fy = zoom * d->height / (s[2] - s[3]);
+    d->cx = 0.5 * d->width - 0.5 * d->fx * (s[0] + s[1]), d->cy = 0.5 * d->height + 0.5 * d->fy * (s[2] + s[3]);
+  } else {
+    d->fy = 0.5 * d->height * zoom / vl_precise_tan(0.5 * degree * fov);
+    d->fx = d->fy * d->width / (aspect * d->height);
+  }
+  return VL_OK;
+}
+
+static vlResult read_threejs(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
+  const json_t *object = json_object_get(tree, "object");
+  double c[16], m[16];
+  vlResult result = vl_camera_numbers(file, object, "matrix", c, 16, 16, NULL);
+  if (result == VL_OK) result = read_lens(file, object, record);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 16; i++) m[i] = c[4 * (i % 4) + i / 4];
+  record->camera.has_matrix = true;
+  vl_camera_flip_axes(m, record->camera.world_from_camera);
+  vl_camera_name(record, vl_camera_text(object, "name"));
+  return VL_OK;
+}
+
+static bool is_threejs(const json_t *tree) {
+  return vl_camera_has(tree, "metadata") && is_camera(json_object_get(tree, "object"));
+}
+
+static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  vlCamera c;
+  double k[14], m[16], columns[16];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result != VL_OK) return result;
+  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    return vl_camera_no_model(file, &record->camera);
+  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
+  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  if (result != VL_OK) return result;
+  vl_camera_flip_axes(c.world_from_camera, m);
+  for (int i = 0; i < 16; i++) columns[i] = m[4 * (i % 4) + i / 4];
+  vl_camera_put(
+      text,
+      "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n  \"object\": "
+      "{\"type\": \"PerspectiveCamera\", \"fov\": %.17g, \"zoom\": 1, \"aspect\": %.17g,\n    \"near\": %.17g, "
+      "\"far\": %.17g,\n    \"matrix\": [",
+      2.0 / degree * vl_precise_atan(0.5 * c.height / c.fy), c.width / c.fx * c.fy / c.height,
+      c.near_plane > 0.0 ? c.near_plane : 0.01, c.far_plane < 1e30 ? c.far_plane : 10000.0);
+  vl_camera_put_numbers(text, columns, 16);
+  vl_camera_put(text, "]}\n}\n");
+  return VL_OK;
+}
+
+const vlCameraFormat vl_format_threejs = {
+    .name = "threejs", .is_tree = is_threejs, .read = read_threejs, .write = write_threejs};

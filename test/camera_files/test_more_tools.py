@@ -1,0 +1,253 @@
+#!/usr/bin/python3
+"""As test_tools.py, for the dialects of scanners, datasets, devices and content tools: the numbers of each file are
+written by hand from the tool's published equations."""
+import json
+import math
+import struct
+import sys
+
+from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL, FX, FY, GL, IDENTITY, K9, PLAIN,
+                        QUATERNION, R, RAD, RAD5, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
+                        rotation_vector, rows)
+
+SUFFIXES = {"velo": ".json", "realitycapture": ".xmp", "nerfstudio": ".json", "visualsfm": ".nvm", "collada": ".dae", "dso": ".txt",
+                 "polycam": ".json", "realsense": ".json", "panoptic": ".json", "nerfies": ".json", "threejs": ".json",
+                 "matrix": ".txt"}
+
+
+def measured(r):
+    """VisualSFM: the ray is (1 + r m^2) m, solved for m."""
+    def plane(X, Y, Z):
+        u = math.hypot(X, Y) / Z
+        m = u
+        for _ in range(50):
+            m -= (m + r * m**3 - u) / (1 + 3 * r * m * m)
+        return radial(X / Z, Y / Z, m / u if u else 1.0)
+    return plane
+
+
+def degrees(tangent):
+    return 2 * math.degrees(math.atan(tangent))
+
+
+def xmp(model, k):
+    return """<x:xmpmeta xmlns:x="adobe:ns:meta/">
+  <rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">
+    <rdf:Description xcr:Version="3" xcr:PosePrior="initial" xcr:Coordinates="absolute"
+       xcr:DistortionModel="%s" xcr:FocalLength35mm="%r" xcr:Skew="0" xcr:AspectRatio="1"
+       xcr:PrincipalPointU="%r" xcr:PrincipalPointV="%r" xcr:InTexturing="1"
+       xmlns:xcr="http://www.capturingreality.com/ns/xcr/1.1#">
+      <xcr:Rotation>%s</xcr:Rotation>
+      <xcr:Position>%s</xcr:Position>
+      <xcr:DistortionCoeficients>%s</xcr:DistortionCoeficients>
+    </rdf:Description>
+  </rdf:RDF>
+</x:xmpmeta>
+""" % (model, FX * 36 / 640, (CX + 0.5 - 320) / 640, (CY + 0.5 - 240) / 640, join(sum(R, []), " "), join(C, " "), join(k, " "))
+
+
+# Rz(-heading) Rx(pitch) Ry(roll) has the columns right, up, back
+PITCH = math.degrees(math.asin(GL[2][1]))
+ROLL = math.degrees(math.atan2(-GL[2][0], GL[2][2]))
+HEADING = -math.degrees(math.atan2(-GL[0][1], GL[1][1]))
+REALITY_CSV = ("#cameras 3\n#name,x,y,alt,heading,pitch,roll,f,px,py,k1,k2,k3,k4,t1,t2\n"
+               "east.jpg,1,2,3,90,90,0,%r,0,0,0,0,0,0,0,0\nb.jpg,%s,%r,%r,%r,%r,%r,%r,-0.2,0.05,0.01,0,0.001,-0.002\n"
+               % (FX * 36 / 640, join(C, ","), HEADING, PITCH, ROLL, FX * 36 / 640, (CX + 0.5 - 320) / 640,
+                  (CY + 0.5 - 240) / 640))
+EAST = ([[0, -1.0, 0], [0, 0, -1.0], [1.0, 0, 0]], [2.0, 3.0, -1.0])  # x south, y down, z east; at (1, 2, 3)
+CAMERA_PATH = json.dumps({"keyframes": [], "camera_type": "perspective", "render_height": 480, "render_width": 640, "fps": 24,
+                          "seconds": 4, "camera_path": [
+                              {"camera_to_world": rows(IDENTITY), "fov": 50, "aspect": 1},
+                              {"camera_to_world": rows(GL, C), "fov": degrees(240 / FX), "aspect": 4 / 3}]}, indent=1)
+NVM = 'NVM_V3%s\n\n2\n"a b.jpg"\t400 1 0 0 0 0 0 0 0 0\nb.jpg\t%r %s %s %r 0\n\n1\n1 2 3 255 0 0 1 0 5 1.5 2.5\n\n0\n'
+ZED = """[LEFT_CAM_HD]
+fx=700
+fy=700
+cx=640
+cy=360
+k1=0
+k2=0
+
+[RIGHT_CAM_HD]
+fx=500
+fy=510
+cx=315.25
+cy=245.5
+k1=-0.2
+k2=0.05
+p1=0.001
+p2=-0.002
+k3=0.01
+
+[STEREO]
+Baseline=-1
+TY=-2
+TZ=-3
+CV_HD=%r
+RX_HD=%r
+RZ_HD=%r
+""" % tuple(rotation_vector()[i] for i in (1, 0, 2))
+DAE = """<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><up_axis>Z_UP</up_axis></asset>
+  <library_cameras>
+    <camera id="lens" name="Lens">
+      <optics><technique_common>
+        <perspective>
+          <xfov sid="xfov">%r</xfov>
+          %s
+          <znear sid="znear">0.1</znear>
+          <zfar sid="zfar">1000</zfar>
+        </perspective>
+      </technique_common></optics>
+    </camera>
+  </library_cameras>
+  <library_visual_scenes>
+    <visual_scene id="Scene">
+      <node id="lamp"/>
+      <node id="turned" name="turned">
+        <translate>0 0 5</translate>
+        <rotate>0 1 0 180</rotate>
+        <instance_camera url="#lens"/>
+      </node>
+      <node id="parent">
+        <translate>%s</translate>
+        <node id="Camera" name="Camera">
+          <matrix sid="transform">%s</matrix>
+          <instance_camera url="#lens"/>
+        </node>
+      </node>
+      <node id="eye" name="eye">
+        <lookat>1 2 3  1 2 0  0 1 0</lookat>
+        <instance_camera url="#lens"/>
+      </node>
+    </visual_scene>
+  </library_visual_scenes>
+</COLLADA>
+""" % (degrees(320 / FX), "%s", join(C, " "), join(rows(GL), " "))
+
+
+def npy(values, count):
+    header = "{'descr': '<f8', 'fortran_order': False, 'shape': (%d, 17), }" % count
+    header += " " * (117 - len(header)) + "\n"
+    return b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode() + struct.pack("<%dd" % len(values), *values)
+
+
+def llff(r, c):
+    """down, right, back, centre, (height, width, focal length); near and far depth"""
+    hwf = [480.0, 640.0, FX]
+    return [x for i in range(3) for x in (r[i][1], r[i][0], -r[i][2], c[i], hwf[i])] + [0.1, 9.0]
+
+
+K_CORNER = [FX, 0, CX + 0.5, 0, FY, CY + 0.5, 0, 0, 1]
+POLYCAM = dict({"t_%d%d" % (i, j): (GL[i] + [C[i]])[j] for i in range(3) for j in range(4)}, fx=FX, fy=FY, cx=CX + 0.5,
+               cy=CY + 0.5, width=640, height=480, blur_score=99.5, timestamp=1234)
+ORDER = ["k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"]
+
+
+def oak(k, kind, extrinsics):
+    return {"cameraType": kind, "distortionCoeff": list(k) + [0.0] * (14 - len(k)), "extrinsics": extrinsics, "width": 640,
+            "height": 480, "intrinsicMatrix": [K9[:3], K9[3:6], K9[6:]], "lensPosition": 0, "specHfovDeg": 71.8}
+
+
+def socket(to, r, t):
+    return {"rotationMatrix": r, "toCameraSocket": to, "translation": dict(zip("xyz", t))}
+
+
+OAK = json.dumps({"boardName": "OAK-D", "version": 6, "cameraData": [
+    [1, oak(FISHEYE, 1, socket(-1, IDENTITY, [0, 0, 0]))], [0, oak(FULL, 0, socket(1, RT, C))],
+    [3, dict(oak([], 0, {}), width=0)]]}, indent=1)
+KINECT = json.dumps({"CalibrationInformation": {"Cameras": [
+    {"Location": "CALIBRATION_CameraLocation" + name, "Intrinsics": {
+        "ModelParameterCount": 14, "ModelType": "CALIBRATION_LensDistortionModelBrownConrady", "ModelParameters":
+            [(CX + 0.5) / 640, (CY + 0.5) / 480, FX / 640, FY / 480, FULL[0], FULL[1], *FULL[4:8], 0, 0, FULL[3], FULL[2]]},
+     "Rt": {"Rotation": sum(r, []), "Translation": t}, "SensorWidth": 640, "SensorHeight": 480}
+    for name, r, t in (("D0", IDENTITY, [0, 0, 0]), ("PV0", R, T))]}}, indent=1)
+REALSENSE = dict(width=640, height=480, fx=FX, fy=FY, ppx=CX, ppy=CY)
+CALIBIO = json.dumps({"Calibration": {"cameras": [{"model": {
+    "polymorphic_id": 2147483649, "polymorphic_name": "libCalib::CameraModelOpenCV", "ptr_wrapper": {"valid": 1, "data": {
+        "parameters": dict({a: {"val": b, "state": 2} for a, b in zip(ORDER, FULL)}, f={"val": FX}, ar={"val": FY / FX},
+                           cx={"val": CX}, cy={"val": CY}),
+        "CameraModelCRT": {"CameraModelBase": {"imageSize": {"width": 640, "height": 480}}}}}},
+    "transform": {"rotation": dict(zip(("rx", "ry", "rz"), rotation_vector())), "translation": dict(zip("xyz", T))}}]}}, indent=1)
+NUSCENES = json.dumps([
+    {"token": "lidar", "sensor_token": "a", "translation": [0, 0, 0], "rotation": [1, 0, 0, 0], "camera_intrinsic": []},
+    {"token": "front", "sensor_token": "b", "translation": C, "rotation": [0.8, -0.2, 0.4, 0.4],
+     "camera_intrinsic": [K9[:3], K9[3:6], K9[6:]]}], indent=1)
+PANOPTIC = json.dumps({"calibDataSource": "x", "cameras": [
+    {"name": "01_01", "type": "vga", "resolution": [64, 48], "K": IDENTITY, "distCoef": [0] * 5, "R": IDENTITY, "t": [[0]] * 3},
+    {"name": "00_03", "type": "hd", "resolution": [640, 480], "panel": 0, "node": 3, "K": [K9[:3], K9[3:6], K9[6:]],
+     "distCoef": FIVE, "R": R, "t": [[v] for v in T]}]}, indent=1)
+NERFIES = json.dumps({"orientation": R, "position": C, "focal_length": FX, "principal_point": [CX + 0.5, CY + 0.5], "skew": 0.0,
+                      "pixel_aspect_ratio": FY / FX, "radial_distortion": [-0.2, 0.05, 0.01],
+                      "tangential_distortion": [0.001, -0.002], "image_size": [640, 480]}, indent=1)
+THREEJS = json.dumps({"metadata": {"version": 4.6, "type": "Object"}, "object": {
+    "uuid": "x", "type": "PerspectiveCamera", "name": "main", "fov": degrees(120 / FX), "zoom": 0.5, "near": 0.1, "far": 2000,
+    "focus": 10, "aspect": 4 / 3, "filmGauge": 35, "matrix": by_columns(rows(GL, C), 4)}}, indent=1)
+P_MATRIX = "\n".join(join([-2 * v for v in P], " ") for P in (
+    [[sum(K9[3 * i + k] * (R[k] + [T[k]])[j] for k in range(3)) for j in range(4)] for i in range(3)]))
+ROWS3 = "\n".join(join(K9[i:i + 3], " ") for i in (0, 3, 6)) + "\n"
+SCANNET = {"pose/7.txt": "\n".join(join(rows(RT, C)[i:i + 4], " ") for i in (0, 4, 8, 12)) + "\n",
+           "intrinsic/intrinsic_color.txt": "500 0 315.25 0\n0 510 245.5 0\n0 0 1 0\n0 0 0 1\n", "color/7.jpg": jpeg(640, 480)}
+
+
+def own(dialect, *other):
+    return dict(targets=[dialect, "velo", *other])
+
+
+CASES = [
+    # RealityCapture
+    Case("IMG_1.xmp", {"IMG_1.xmp": xmp("brown3t2", [-0.2, 0.05, 0.01, 0, 0.001, -0.002]), "IMG_1.png": png(640, 480)},
+         "realitycapture", k=(FX, FX, CX, CY), **RAD5, **own("realitycapture")),
+    Case("plain.xmp", xmp("perspective", [0.0] * 6), "realitycapture", options=SIZE, k=(FX, FX, CX, CY), **PLAIN,
+         **own("realitycapture", "visualsfm")),
+    Case("export.csv", REALITY_CSV, "realitycapture", options=SIZE, frame="b.jpg", k=(FX, FX, CX, CY), **RAD5, **own("x")),
+    Case("east.csv", REALITY_CSV, "realitycapture", options=SIZE, pose=EAST, k=CENTRED, **PLAIN, **own("nerfstudio"),
+         damage=False),
+    Case("camera_path.json", CAMERA_PATH, "nerfstudio", frame="1", k=CENTRED, **PLAIN, **own("nerfstudio", "threejs")),
+    Case("model.nvm", NVM % ("", FX, QUATERNION, join(C, " "), 0.04), "visualsfm", options=SIZE, frame="b.jpg", k=CENTRED,
+         plane=measured(0.04), **own("x")),
+    Case("fixed.nvm", NVM % (" FixedK %r %r %r %r" % (FX, CX + 0.5, FY, CY + 0.5), 1, QUATERNION, join(C, " "), 0),
+         "visualsfm", options=SIZE, frame="1", **PLAIN, **own("visualsfm")),
+    Case("SN123.conf", ZED, "zed", frame="RIGHT_CAM_HD", size=(1280, 720), **RAD5, **own("x")),
+    Case("left.conf", ZED, "zed", size=(1280, 720), pose=AT_ORIGIN, k=(700, 700, 640, 360), **PLAIN, **own("x"), damage=False),
+    Case("camera.dae", DAE % "<yfov>%r</yfov>" % degrees(240 / FX), "collada", options=SIZE, frame="Camera", k=CENTRED, **PLAIN,
+         **own("collada")),
+    Case("turned.dae", DAE % "<aspect_ratio>1.3333333333333333</aspect_ratio>", "collada", options=SIZE,
+         pose=([[-1.0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]], [0, 0, -5.0]), k=CENTRED, **PLAIN, **own("collada"), damage=False),
+    Case("eye.dae", DAE % "", "collada", options=SIZE, frame="eye",
+         pose=([[1.0, 0, 0], [0, -1.0, 0], [0, 0, -1.0]], [-1.0, 2.0, 3.0]), k=CENTRED, **PLAIN, **own("collada"), damage=False),
+    Case("camera.txt", "RadTan 500 510 315.25 245.5 -0.2 0.05 0.001 -0.002\n640 480\ncrop\n320 240\n", "dso", pose=AT_ORIGIN,
+         **RAD, **own("dso")),
+    Case("shares.txt", "%r %r %r %r 0.93\n640 480\nnone\n640 480\n" % (FX / 640, FY / 480, (CX + 0.5) / 640, (CY + 0.5) / 480),
+         "dso", pose=AT_ORIGIN, plane=fov(0.93), **own("dso")),
+    Case("fisheye.txt", "KannalaBrandt 500 510 315.25 245.5 %s\n640 480\nfull\n640 480\n" % join(FISHEYE, " "), "dso",
+         pose=AT_ORIGIN, **FISH, **own("dso", "realsense")),
+    Case("poses_bounds.npy", npy(llff(IDENTITY, [0.0] * 3) + llff(RT, C), 2), "llff", frame="1", k=CENTRED, **PLAIN, **own("x")),
+    Case("metadata", json.dumps({"w": 640, "h": 480, "fps": 60, "K": by_columns(K_CORNER, 3), "poses": [
+        [0, 0, 0, 1, 0, 0, 0], [0.8, 0.4, -0.4, 0.2, *C]]}, indent=1), "record3d", frame="1", **PLAIN, **own("x")),
+    Case("keyframe.json", json.dumps(POLYCAM, indent=1), "polycam", **PLAIN, **own("polycam")),
+    Case("frame_00001.json", {"frame_00001.json": json.dumps(dict(cameraPoseARFrame=rows(GL, C), intrinsics=K_CORNER, time=1.5),
+                                                             indent=1), "frame_00001.jpg": jpeg(640, 480)}, "scanner3d",
+         **PLAIN, **own("x")),
+    Case("oak.json", OAK, "depthai", frame="socket0", plane=opencv(FULL), judge=("opencv", FULL), **own("x")),
+    Case("oak_fisheye.json", OAK, "depthai", pose=AT_ORIGIN, **FISH, **own("x"), damage=False),
+    Case("k4a.json", KINECT, "kinect", frame="PV0", plane=opencv(FULL), judge=("opencv", FULL), **own("x")),
+    Case("realsense.json", json.dumps({"depth": dict(REALSENSE, fx=9), "color": dict(
+        REALSENSE, model="distortion.brown_conrady", coeffs=FIVE)}, indent=1), "realsense", frame="color", pose=AT_ORIGIN,
+        **RAD5, **own("realsense")),
+    Case("inverse.json", json.dumps(dict(REALSENSE, model="Inverse Brown Conrady", coeffs=[0.0] * 5)), "realsense",
+         pose=AT_ORIGIN, **PLAIN, **own("realsense")),
+    Case("calibio.json", CALIBIO, "calibio", plane=opencv(FULL), judge=("opencv", FULL), **own("x")),
+    Case("calibrated_sensor.json", NUSCENES, "nuscenes", options=SIZE, frame="front", **PLAIN, **own("x")),
+    Case("calibration_panoptic.json", PANOPTIC, "panoptic", frame="00_03", **RAD5, **own("panoptic")),
+    Case("nerfies.json", NERFIES, "nerfies", **RAD5, **own("nerfies")),
+    Case("three.json", THREEJS, "threejs", options=SIZE, k=CENTRED, **PLAIN, **own("threejs")),
+    Case("K.txt", ROWS3, "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("matrix")),
+    Case("camera_matrix.csv", ROWS3.replace(" ", ","), "matrix", options=SIZE, pose=AT_ORIGIN, **PLAIN, **own("x"), damage=False),
+    Case("scannet", SCANNET, "matrix", path="pose/7.txt", **PLAIN, **own("x")),
+    Case("projection.txt", P_MATRIX, "matrix", options=SIZE, **PLAIN, **own("matrix"), damage=False),
+]
+
+if __name__ == "__main__":
+    sys.exit(main(CASES, SUFFIXES, ()))

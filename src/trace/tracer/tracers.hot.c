@@ -13,6 +13,7 @@ static void start_paths(vlTracing *t) {
     float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
     if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
     for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
+    if (t->def->two_way && t->def->two_way->connect > 0.0f) vl_stage_groups(t, padded, t->s->shade.u0);
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)
       color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->shade.u0, b->lambda, b->inv_pdf);

@@ -70,7 +70,7 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
     float cosine = vl_abs(vl_dot(d, vl_lane3(f->gx, f->gy, f->gz, i))), inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
     r->cosine[i] = cosine;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] * inv;
-    r->b[i] = 0.0f;
+    r->b[i] = depth > 0 && vl_is_inner_end(t, i) ? r->link[lane] * f->t[i] * f->t[i] * inv : 0.0f;
     const vlCameraView *eye = vl_eye_of(t, lane);
     if (depth > 0 || !eye->sees) continue;
     float pixel = vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
@@ -165,6 +165,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
     float pdf = r->pdf[i];
     uint32_t lane = s->a.lane[k], *smooth = &r->smooth[lane];
+    r->link[lane] = !(sh->flags[i] & VL_SAMPLED_SPECULAR) && pdf > 0.0f ? way->connect / pdf : 0.0f;
     if (way->apart && s->a.specular[k] && *smooth == depth && depth < t->def->max_depth) *smooth = depth + 1;
     r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
                          ? r->a[i] * cosine
@@ -197,6 +198,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t d
   for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
   arrive(t, n, depth);
   direct_light(t, n, depth, dimension);
+  if (t->def->two_way->inner.paths) vl_stage_connect(t, n, depth);
   if (t->def->two_way->merge) vl_stage_merge(t, n, depth);
   return scatter(t, n, depth, dimension);
 }

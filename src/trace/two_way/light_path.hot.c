@@ -37,6 +37,8 @@ static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   float *const inv_pdf[4] = {r->rows[8], r->rows[9], r->rows[10], r->rows[11]};
   t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
   for (uint32_t i = 0; way->shared >= 0.0f && i < VL_PAD(b->n); i++) u[i] = way->shared;
+  for (uint32_t i = 0; way->connect > 0.0f && i < VL_PAD(b->n); i++)
+    u[i] = vl_group_wavelength(way, (b->first + i) % way->inner.groups);
   vl_color_kernels(t->def->isa)->visible_wavelengths(b->n, u, lambda, inv_pdf);
 }
 
@@ -114,7 +116,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
     float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
     r->cosine[i] = cosine;
-    r->b[i] = 0.0f;
+    r->b[i] = depth > 0 ? r->link[lane] * f->t[i] * f->t[i] * inv : 0.0f;
     if (depth == 0) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
@@ -151,6 +153,33 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   if (count) b->store(b->user, count, r->photons);
 }
 
+/* ---- vertices that camera paths connect to ----------------------------------------------------------------------- */
+
+static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
+  const vlTwoWay *way = t->def->two_way;
+  const vlPaths *p = &t->s->b;
+  const vlSurface *f = &t->s->surface;
+  const vlShade *sh = &t->s->shade;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i], path = b->first + lane;
+    if (path >= way->inner.paths || !vl_is_inner_end(t, i) || !(r->cosine[i] > 0.0f)) continue;
+    vlLightVertex *x = &r->vertices[count];
+    float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI, sum = 0.0f;
+    x->p[0] = f->px[i], x->p[1] = f->py[i], x->p[2] = f->pz[i];
+    x->g[0] = f->gx[i], x->g[1] = f->gy[i], x->g[2] = f->gz[i];
+    x->n[0] = side * f->nx[i], x->n[1] = side * f->ny[i], x->n[2] = side * f->nz[i];
+    for (int c = 0; c < 4; c++)
+      sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * sh->reflectance[c][i] * rev / r->cosine[i];
+    x->back = r->a[i] * rev + r->b[i] + way->merged;
+    x->offset = f->offset[i];
+    x->path = path & 0x7fffffu, x->bounce = (depth + 1) & 255u;
+    x->alone = vl_hero_only(p, i);
+    count += sum > 0.0f && sum < VL_INFINITY;
+  }
+  if (count) b->leave(b->user, count, r->vertices);
+}
+
 /* ---- the next vertex --------------------------------------------------------------------------------------------- */
 
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
@@ -169,7 +198,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
     ns[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
   }
   vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
-  float merged = t->def->two_way->merged;
+  float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k], lane = s->a.lane[k];
     float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
@@ -177,6 +206,8 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
     r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
                          ? r->a[i] * cosine
                          : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
+    bool inner = !(sh->flags[i] & VL_SAMPLED_SPECULAR) && vl_is_inner_end(t, i) && pdf > 0.0f;
+    r->link[lane] = inner ? connect / pdf : 0.0f;
     float turn = r->cosine[i] > 0.0f ? ns[i] * cosine / r->cosine[i] * sh->eta_scale[i] : 0.0f;
     for (int c = 0; c < 4; c++) s->a.beta[c][k] *= turn;
     s->a.eta_scale[k] = 1.0f;
@@ -193,6 +224,7 @@ static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint
   for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
+  if (t->def->two_way->inner.paths && !last) leave_vertices(t, r, b, n, depth);
   vl_connect_to_camera(t, r, b, n, depth, dimension);
   return last ? 0 : scatter(t, r, n, depth, dimension);
 }

@@ -12,8 +12,11 @@ enum { VL_MERGE_PAIRS = 4 * VL_BATCH };
 /* Working memory of the two-way tracers. The first rows are indexed by lane, the path's element of the batch, which
  * sorting does not change. */
 typedef struct vlTwoWayRows {
-  VL_ROW float carry[VL_ROW_SIZE];     /* (S + H) cos / fwd of the previous vertex; two_way.h */
-  VL_ROW float flux[4][VL_ROW_SIZE];   /* initial flux of a light path; its beta starts from 1 */
+  VL_ROW float carry[VL_ROW_SIZE];   /* (S + H) cos / fwd of the previous vertex; two_way.h */
+  VL_ROW float flux[4][VL_ROW_SIZE]; /* initial flux of a light path; its beta starts from 1 */
+  VL_ROW float
+      link[VL_ROW_SIZE]; /* C / fwd of the previous vertex, or 0 if the edge from there cannot be a connection */
+  VL_ROW uint32_t group[VL_ROW_SIZE];  /* of a camera path: group of its wavelengths; vlLightVertices */
   VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
   VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its light is in `light` */
   VL_ROW uint32_t light[VL_ROW_SIZE];
@@ -31,7 +34,10 @@ typedef struct vlTwoWayRows {
       rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each; also wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
   uint32_t pair[VL_MERGE_PAIRS]; /* photon indices, grouped by lane */
-  vlPhoton photons[VL_BATCH];
+  union {
+    vlPhoton photons[VL_BATCH];
+    vlLightVertex vertices[VL_BATCH];
+  };
 } vlTwoWayRows;
 
 void vl_bidirectional_tracer(vlTracing *t);
@@ -40,6 +46,10 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
 /* Adds the radiance of the photons near the n shaded lanes. depth: bounces of the camera path so far. */
 void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
+/* Assigns camera paths to groups by the numbers u that sample their wavelengths, and replaces u by the group's. */
+void vl_stage_groups(vlTracing *t, uint32_t n, float *u);
+/* Connects each of the n shaded lanes to a vertex of a light path. */
+void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
@@ -104,6 +114,11 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
     case VL_SMOOTH_ALWAYS: return true;
   }
   return false;
+}
+
+/* Whether camera paths connect to a light path's vertex on the surface of lane i. */
+static inline bool vl_is_inner_end(const vlTracing *t, uint32_t i) {
+  return t->world->materials.items[t->s->hits_b.material[i]].bsdf == VL_BSDF_DIFFUSE;
 }
 
 static inline bool vl_has_media(const vlTracing *t) {

@@ -1,18 +1,25 @@
-/* trace/two_way/two_way.h: the two-way tracers: light paths connect to the camera (splats) and merge with camera paths
- * at surfaces and in media (Georgiev et al. 2012, Hachisuka et al. 2012). This file has the declarations that both
- * sides share; src/render runs the passes.
+/* trace/two_way/two_way.h: the two-way tracers: light paths connect to the camera (splats), to inner vertices of camera
+ * paths, and merge with camera paths at surfaces and in media (Veach 1997, Georgiev et al. 2012, Hachisuka et al.
+ * 2012). This file has the declarations that both sides share; src/render runs the passes.
  *
  *   light paths (one pass) -> splats (film points, radiance) and photons -> vlPhotonMap -> camera paths -> radiance
  *
  * Several strategies can make the same path, and the balance heuristic weights them. The camera path hits a light or
- * samples one (next-event estimation), a light path connects to the camera, or the two paths merge within `radius` at
- * any non-specular vertex between. Let P_j be the density of the camera path's first j vertices, L_j the density of the
- * light path from its start to vertex j, N the number of light paths, and H = N pi radius^2. Merging at j has density H
- * P_j L_j; connecting to the camera has N L_1. The sum S_t of the strategies before vertex t, divided by P_t L_t, is
- *   S_1 = N / p(z_1),   S_(t+1) = (S_t + H) rev_(t+1) cos_t / (fwd_t cos_(t+1))
- * where fwd and rev are the densities of sampling the path's direction forwards and backwards. Distances cancel, so
- * each path carries only one number (`carry` = (S + H) cos / fwd). The sum on the light's side is the same, counted
- * from the light. At deltas, fwd = rev and H = 0.
+ * samples one (next-event estimation), a light path connects to the camera, an inner vertex of the camera path connects
+ * to one of the light path, or the two paths merge within `radius` at any non-specular vertex between. Let P_j be the
+ * density of the camera path's first j vertices, L_j the density of the light path from its start to vertex j, N the
+ * number of light paths, and H = N pi radius^2. Merging at j has density H P_j L_j; connecting to the camera has N L_1.
+ * The sum S_t of the strategies before vertex t, divided by P_t L_t, is S_1 = N / p(z_1),   S_(t+1) = (S_t + H)
+ * rev_(t+1) cos_t / (fwd_t cos_(t+1)) where fwd and rev are the densities of sampling the path's direction forwards and
+ * backwards. Distances cancel, so each path carries only one number (`carry` = (S + H) cos / fwd). The sum on the
+ * light's side is the same, counted from the light. At deltas, fwd = rev and H = 0.
+ *
+ * Connecting vertex t of the camera path to vertex t + 1 of the light path has density C P_t L_(t+1). It adds
+ * C distance^2 / (fwd_t cos_(t+1)) to S_(t+1), if the path does not scatter specularly at either end, and if the
+ * surface at t + 1, the light path's end, is diffuse: only there the BSDF is kept with the vertex (vlLightVertex). For
+ * the sum on the light's side, the surface at the vertex before must be diffuse. C is a constant; the weights sum to
+ * one for any. A connection itself competes with (S_t + H) fwd'_(t+1) cos_t / distance^2 and the same of the other
+ * side.
  *
  * In media, H = N 4/3 pi radius^3, and the medium's density at the vertex (vl_medium_extinction) replaces cos. It does
  * not depend on the wavelength, so both kinds of paths compute the same weights. The probabilities of flights are the
@@ -49,6 +56,27 @@ typedef struct vlPhoton {
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");
 
+/* A vertex of a light path on a diffuse surface, which camera paths connect to. power is the flux times the BSDF's
+ * value and |w . shading normal| / |w . geometric normal|, where w points to the previous vertex. */
+typedef struct vlLightVertex {
+  float p[3], g[3], n[3]; /* n: the shading normal on the side of w */
+  float power[4];
+  float back;   /* the strategies on the light's side, with merging here, divided by P L at this vertex */
+  float offset; /* as vlSurface.offset */
+  uint32_t path : 23, bounce : 8, alone : 1; /* number of the path in the pass; as vlPhoton */
+} vlLightVertex;
+_Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
+
+/* The vertices of the light paths numbered below `paths`. The paths are dealt to groups in turn; all paths of a group
+ * have the same wavelengths. order lists the vertices by group, path and bounce. */
+enum { VL_MOST_GROUPS = 16 };
+typedef struct vlLightVertices {
+  const vlLightVertex *vertices;
+  const uint32_t *order;
+  uint32_t start[VL_MOST_GROUPS + 1]; /* by group: its vertices in `order` */
+  uint32_t groups, paths;
+} vlLightVertices;
+
 /* Photons sorted by the hash of their grid cell, then by id, so that sums always have the same order. */
 typedef struct vlPhotonMap {
   const vlPhoton *photons;
@@ -73,12 +101,20 @@ typedef struct vlTwoWay {
   float inv_merged;    /* 1 / H */
   float shared; /* random number in [0, 1) that samples the wavelengths of all paths of the pass; below 0: each path has
                    its own number */
-  const float *choice; /* lights + 1 elements: cumulated probabilities that a light path starts at each light */
+  float connect;         /* C: density of connections between inner vertices, relative to one light path; 0: none */
+  float turn;            /* with connections: random number in [0, 1) of the pass, for the wavelengths of all groups */
+  vlLightVertices inner; /* of this pass; paths is 0 without connections */
+  const float *choice;   /* lights + 1 elements: cumulated probabilities that a light path starts at each light */
   const uint32_t
       *medium; /* by light: the medium in which its paths start (vlTraceKernels.light_media); null without media */
   vlSampler sampler; /* sampler of the light paths */
   vlPhotonMap map;   /* photons of this pass */
 } vlTwoWay;
+
+/* The random number that samples the wavelengths of a group. */
+static inline float vl_group_wavelength(const vlTwoWay *way, uint32_t group) {
+  return vl_min(((float)group + way->turn) / (float)way->inner.groups, VL_ONE_MINUS_EPSILON);
+}
 
 /* A batch of n <= VL_BATCH light paths. Photons and splats go to the callbacks, up to VL_BATCH elements per call. */
 typedef struct vlLightBatch {
@@ -94,6 +130,7 @@ typedef struct vlLightBatch {
   void (*splat)(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
                 float *const inv_pdf[4]);
   void (*store)(void *user, uint32_t n, const vlPhoton *photons);
+  void (*leave)(void *user, uint32_t n, const vlLightVertex *vertices);
   uint64_t bounce_rays, shadow_rays; /* the kernel adds its numbers of rays */
 } vlLightBatch;
 

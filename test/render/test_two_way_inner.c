@@ -1,0 +1,142 @@
+/* Connections of inner vertices (bidirectional): exact radiance in a white furnace; the mean of the path tracer in
+ * rooms whose lamps stand in shades, for each greatest number of bounces; less noise than the path tracer there. */
+#include "render/agreement.h"
+
+enum { SIZE = 24, FURNACE = 32 };
+
+static void add_tube(Stage *s, float y, float height, float radius, vlMaterialId material) {
+  for (int k = 0; k < 2; k++) { /* the tube and its bottom */
+    vlShapeDef def = vl_default_shape_def(k ? VL_SHAPE_DISK : VL_SHAPE_CYLINDER);
+    def.radius = radius, def.z_min = 0, def.z_max = height, def.height = 0;
+    set_matrix(def.group_from_shape, 1, 0, 0, 0.4, 0, 0, 1, y, 0, -1, 0, -3); /* z up */
+    def.material = material;
+    assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+  }
+}
+
+static void add_ball(Stage *s, float x, float y, float radius, vlMaterialId material, vlEmissionId emission) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, -3);
+  def.radius = radius, def.z_min = -radius, def.z_max = radius;
+  def.material = material, def.emission = emission;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+/* A ball whose vertex normals differ from its geometric normals. */
+static void add_faceted(Stage *s, float x, float y, float radius, vlMaterialId material) {
+  float *block = NULL;
+  vlShapeDef def = mesh_sphere(6, radius, true, &block);
+  set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, -2.6);
+  def.material = material;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+  free(block);
+}
+
+typedef struct Room {
+  uint32_t depth;
+  bool spectral, plastic;
+} Room;
+
+/* A closed room, with a ceiling of plastic if that is wanted, with a bulb in a tube that is open above. In it are
+ * balls, one of plastic, one of glass, and one of few facets. */
+static Stage room(const void *user, vlTracer tracer) {
+  const Room *what = user;
+  Stage s = stage_open_in(NULL, SIZE, SIZE);
+  s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
+  s.camera.fov = 1.2;
+  s.render.max_depth = what->depth;
+  s.render.spp = tracer == VL_TRACER_PATH ? 96 : 20;
+  s.render.light_paths = 2048; /* several groups of wavelengths */
+  vlMaterialId red = add_diffuse(&s, 0.8f, 0.4f, 0.3f), blue = add_diffuse(&s, 0.3f, 0.5f, 0.8f);
+  vlMaterialId white = add_diffuse(&s, 0.7f, 0.7f, 0.7f), dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f);
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
+  def.u_roughness = def.v_roughness = vl_float_input(0.3f);
+  vlMaterialId plastic = vl_scene_add_material(s.scene, &def);
+  for (int axis = 0; axis < 3; axis++)
+    for (int side = -1; side <= 1; side += 2) {
+      float at[3] = {0, 0, -2}, u[3] = {0}, v[3] = {0};
+      at[axis] += 2.5f * (float)side, u[(axis + 1) % 3] = 2.5f, v[(axis + 2) % 3] = 2.5f;
+      Quad q = quad_at(at[0], at[1], at[2], u[0], u[1], u[2], v[0], v[1], v[2]);
+      q.material = axis == 0 ? (side < 0 ? red : blue) : what->plastic && axis == 1 && side > 0 ? plastic : white;
+      add_quad(&s, &q);
+    }
+  add_tube(&s, 0.2f, 0.5f, 0.35f, dark);
+  add_ball(&s, 0.4f, 0.5f, 0.15f, dark, add_emission(&s, 40, false));
+  add_ball(&s, -1, -1, 0.6f, plastic, (vlEmissionId){0});
+  def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
+  def.u_roughness = def.v_roughness = vl_float_input(0.4f);
+  add_ball(&s, 0.8f, -0.9f, 0.5f, vl_scene_add_material(s.scene, &def), (vlEmissionId){0});
+  add_faceted(&s, -0.9f, 0.6f, 0.5f, white);
+  return s;
+}
+
+static void rooms(void **state) {
+  (void)state;
+  static const Room all[4] = {{2, false, true}, {3, false, false}, {6, false, true}, {4, true, true}};
+  for (int k = 0; k < 4; k++) {
+    Measure path = measure(room, &all[k], VL_TRACER_PATH), both = measure(room, &all[k], VL_TRACER_BIDIRECTIONAL);
+    char what[64];
+    snprintf(what, sizeof what, "depth %u%s", all[k].depth, all[k].spectral ? ", spectral" : "");
+    assert_agree(what, "bidirectional", &both, &path, 0.002);
+  }
+}
+
+/* The mean of (a - b)^2 / (a + b)^2 of two seeds. */
+static double noise(vlTracer tracer) {
+  const Room what = {6, false, false};
+  Image p[2];
+  for (uint32_t k = 0; k < 2; k++) {
+    Stage s = room(&what, tracer);
+    s.render.tracer = tracer, s.render.spp = 8, s.render.seed = k;
+    p[k] = stage_finish(&s);
+  }
+  double sum = 0;
+  for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+    double a = p[0].rgba[4 * i + 1], b = p[1].rgba[4 * i + 1];
+    sum += a + b > 0 ? (a - b) * (a - b) / ((a + b) * (a + b)) : 1;
+  }
+  image_free(&p[0]);
+  image_free(&p[1]);
+  return sum / (SIZE * SIZE);
+}
+
+static void less_noise(void **state) {
+  (void)state;
+  double path = noise(VL_TRACER_PATH), both = noise(VL_TRACER_BIDIRECTIONAL);
+  if (!(both < path / 8)) fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
+}
+
+/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... everywhere. */
+static Stage furnace(const void *user, vlTracer tracer) {
+  (void)tracer;
+  Stage s = stage_open_in(NULL, FURNACE, FURNACE);
+  s.build.color = *(const bool *)user ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
+  s.render.max_depth = 5, s.render.spp = 16;
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  def.radius = 2, def.z_min = -2, def.z_max = 2;
+  def.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f), def.emission = add_emission(&s, 1, true);
+  assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);
+  return s;
+}
+
+static void white_furnace(void **state) {
+  (void)state;
+  for (int spectral = 0; spectral < 2; spectral++) {
+    bool color = spectral;
+    Stage s = furnace(&color, VL_TRACER_RAYCAST);
+    s.render.tracer = VL_TRACER_RAYCAST, s.render.spp = 256; /* emission of 1 in the colours of the film */
+    Image one = stage_finish(&s);
+    Measure m = measure(furnace, &color, VL_TRACER_BIDIRECTIONAL);
+    for (int c = 0; c < AGREEMENT_CHANNELS; c++)
+      for (int band = 0; band < AGREEMENT_BANDS; band++)
+        assert_ratio("furnace", m.mean[band][c], 1.96875 * image_mean(&one, c),
+                     0.001 + 5 * m.error[band][c] / m.mean[band][c]);
+    image_free(&one);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rooms), cmocka_unit_test(less_noise),
+                                     cmocka_unit_test(white_furnace)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -140,7 +140,8 @@ static PyGetSetDef context_members[] = {
     {NULL, NULL, NULL, NULL, NULL},
 };
 static PyType_Slot context_slots[] = {
-    {Py_tp_doc, "Context(threads=processors, max_memory=0): memory, log and worker threads of all objects."},
+    {Py_tp_doc,
+     "Memory, log and worker threads of all objects. threads: default the processors; max_memory: bytes, 0: no limit."},
     {Py_tp_new, context_new},
     {Py_tp_dealloc, context_dealloc},
     {Py_tp_getset, context_members},

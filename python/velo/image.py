@@ -48,7 +48,8 @@ class Image(_velo.Image):
         return self.width, self.height
 
     def plane(self, name: str) -> Any:
-        """The channel of this name, or the channels of this layer ("N": "N.X", "N.Y", "N.Z"), as a buffer."""
+        """The channel of this name (height x width), or the channels of this layer ("N": "N.X", "N.Y", "N.Z"; height x width x
+        3), as a buffer."""
         for part in self.parts:
             names = part._names
             if name in names:

@@ -163,7 +163,7 @@ class Scene(_velo.Scene):
         return self.add_shape("triangles", positions=positions, indices=indices, **keywords)
 
     def add_sphere(self, center: Sequence[float], radius: float, **keywords: Any) -> Handle:
-        """Adds a whole sphere."""
+        """Adds a whole sphere: center (x, y, z) and radius in scene units. Keywords: as add_shape."""
         x, y, z = center
         place = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
         return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, transform=place, **keywords)

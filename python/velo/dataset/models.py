@@ -38,12 +38,13 @@ def ply(points: Any, faces: Any) -> bytes:
     rows = numpy.zeros(len(faces), dtype=[("count", "u1"), ("corners", "<i4", (3,))])
     rows["count"] = 3
     rows["corners"] = faces
-    return (head % (velo.__version__, len(points), len(faces))).encode() + points.astype("<f4").tobytes() + rows.tobytes()
+    text = head % (velo.__version__, len(points), len(faces))
+    return text.encode() + bytes(points.astype("<f4")) + bytes(rows)
 
 
 def _extreme(points: Any, count: int) -> Any:
     """The points that are the farthest in `count` directions, spread evenly."""
-    kept = set()
+    kept: set[int] = set()
     for i in range(count):
         z = 1 - (2 * i + 1) / count
         r, a = math.sqrt(1 - z * z), 2.399963229728653 * i

@@ -62,7 +62,7 @@ class Frame:
 
 class _Loaded(NamedTuple):
     """A model in a scene of its own."""
-    scene: Any
+    scene: velo.Scene
     name: str
     low: Any
     high: Any
@@ -123,7 +123,7 @@ class Stage:
         scene.add_instance(group, place(((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)))
         return _Loaded(scene, name, low, high, scene.world())
 
-    def model(self, number: int) -> Any:
+    def model(self, number: int) -> velo.Scene:
         """The scene (velo.Scene) that has model `number`, from 0, alone, in the file's own space and units."""
         return self._solo[number].scene
 
@@ -213,7 +213,7 @@ class Stage:
             keywords["reflectance"] = scene.add_texture("image", path=os.path.join(self.recipe.folder, texture))
         return scene.add_material("principled", **keywords)
 
-    def scene(self, plan: Plan) -> Any:
+    def scene(self, plan: Plan) -> velo.Scene:
         """The scene of a plan. Its last instances are the plan's objects, in order."""
         recipe = self.recipe
         scene = velo.Scene(context=self._context)

@@ -72,6 +72,7 @@ struct Engine {
   uint32_t serial;        /* of the last frame */
   double pixel_seconds;   /* time of one sample of one pixel; 0: not known */
   double publish_seconds; /* time to make a frame */
+  double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,
       looked;      /* times of this image: begin, last frame, last status, last error estimate */
   double rendered; /* seconds that this image has rendered */
@@ -81,6 +82,9 @@ struct Engine {
 };
 
 double engine_clock(void);
+/* Seconds of processor time of the calling thread; of the whole program. */
+double engine_thread_seconds(void);
+double engine_program_seconds(void);
 /* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after reporting an error. */
 int engine_take_model(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */

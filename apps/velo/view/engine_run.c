@@ -17,10 +17,22 @@ static const double longest_pass = 1.0;    /* later ones are longer */
 static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
-double engine_clock(void) {
+static double read_clock(clockid_t clock) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(clock, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double engine_clock(void) {
+  return read_clock(CLOCK_MONOTONIC);
+}
+
+double engine_thread_seconds(void) {
+  return read_clock(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double engine_program_seconds(void) {
+  return read_clock(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 static bool must_stop(const Engine *e) {
@@ -55,13 +67,14 @@ void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_
 }
 
 static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
-  double start = engine_clock();
+  double start = engine_clock(), used = engine_thread_seconds();
   vlImage *image = NULL;
   if (vl_film_develop(film, &e->model.job.defs->develop, &image) == VL_OK) {
     engine_publish(e, image, FRAME_HALF, 3, scale);
     e->publish_seconds = engine_clock() - start;
   }
   vl_image_destroy(image);
+  e->frame_seconds += engine_thread_seconds() - used;
 }
 
 /* ---- coarse images ----------------------------------------------------------------------------------------------- */

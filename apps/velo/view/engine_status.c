@@ -61,6 +61,8 @@ void status_tell(Engine *e, bool estimate) {
   json_number(&json.json, "paths_per_second", e->rendered > 0 ? (double)e->paths / e->rendered : NAN);
   json_number(&json.json, "seconds", e->rendered);
   json_number(&json.json, "error", e->noise);
+  json_number(&json.json, "program_seconds", engine_program_seconds());
+  json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
   json_bool(&json.json, "paused", paused);
   char *text = json_text_end(&json);
   if (!text) return;

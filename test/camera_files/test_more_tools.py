@@ -3,12 +3,14 @@
 written by hand from the tool's published equations."""
 import json
 import math
+import os
 import struct
 import sys
+import tempfile
 
 from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL, FX, FY, GL, IDENTITY, K9, PLAIN,
                         QUATERNION, R, RAD, RAD5, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
-                        rotation_vector, rows)
+                        result, rotation_vector, rows, run, write)
 
 SUFFIXES = {"velo": ".json", "realitycapture": ".xmp", "nerfstudio": ".json", "visualsfm": ".nvm", "collada": ".dae", "dso": ".txt",
                  "polycam": ".json", "realsense": ".json", "panoptic": ".json", "nerfies": ".json", "threejs": ".json",
@@ -249,5 +251,29 @@ CASES = [
     Case("projection.txt", P_MATRIX, "matrix", options=SIZE, **PLAIN, **own("matrix"), damage=False),
 ]
 
+# broken files: the place and the format in the message, and what it must not blame
+BROKEN = [
+    ("other.conf", "[main]\na=3\n", "other.conf:1:1: no camera of a known dialect", "JSON"),
+    ("bad.conf", "[LEFT_CAM_HD]\nfx=700\nfy=7x0\n", 'bad.conf:3:5: zed: no finite number: "x0"', "JSON"),
+    ("bad.nvm", "NVM_V3\n\n1\na.jpg 500 1 0 x 0 0 0 0 0 0\n", "bad.nvm:4:15: visualsfm: no finite number", "YAML"),
+    ("bad.txt", "500 0 320\n0 500 24o\n0 0 1\n", "bad.txt:2:7: matrix: no finite number", "YAML"),
+    ("bad.dae", '<COLLADA><library_visual_scenes><visual_scene><node id="a">\n<translate>0 0</translate>'
+     '<instance_camera url="#x"/></node></visual_scene></library_visual_scenes>\n<library_cameras><camera id="x"><optics>'
+     "<technique_common><perspective><xfov>40</xfov><yfov>30</yfov></perspective></technique_common></optics></camera>"
+     "</library_cameras></COLLADA>\n", "bad.dae:2:1: collada: <translate> must hold 3 finite numbers", "JSON"),
+    ("bad.csv", "#name,x,y,alt,heading,pitch,roll,f\na.jpg,1,2,3,0,0,no,50\n", 'bad.csv:2:17: realitycapture: "roll" is "no"',
+     "YAML"),
+]
+
+
+def check_broken():
+    with tempfile.TemporaryDirectory() as work:
+        for name, text, wanted, blamed in BROKEN:
+            write(work, {name: text})
+            code, _, err = run("info", os.path.join(work, name), *SIZE)
+            result(code == 3 and wanted in err and blamed not in err, "says where " + name + " is wrong", err)
+
+
 if __name__ == "__main__":
+    check_broken()
     sys.exit(main(CASES, SUFFIXES, ()))

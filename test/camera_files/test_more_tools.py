@@ -9,7 +9,7 @@ import sys
 import tempfile
 
 from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL, FX, FY, GL, IDENTITY, K9, PLAIN,
-                        QUATERNION, R, RAD, RAD5, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
+                        QUATERNION, R, RAD, RAD5, RADTAN, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
                         result, rotation_vector, rows, run, write)
 
 SUFFIXES = {"velo": ".json", "realitycapture": ".xmp", "nerfstudio": ".json", "visualsfm": ".nvm", "collada": ".dae", "dso": ".txt",
@@ -198,6 +198,15 @@ def own(dialect, *other):
 
 
 CASES = [
+    # ROS 2 prints messages with lower-case names and a line after them; OpenVINS has Kalibr's pose the other way round
+    Case("ros2.yaml", "header:\n  frame_id: camera\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\nd:\n" +
+         "".join("- %r\n" % v for v in FIVE) + "k:\n" + "".join("- %r\n" % float(v) for v in K9) +
+         "r: [1, 0, 0, 0, 1, 0, 0, 0, 1]\np: [500, 0, 315.25, 0, 0, 510, 245.5, 0, 0, 0, 1, 0]\nbinning_x: 0\n---\n", "ros",
+         pose=AT_ORIGIN, **RAD5, **own("x"), damage=False),
+    Case("openvins.yaml", "%%YAML:1.0\n\ncam0:\n  T_imu_cam: #rotation from camera to IMU\n%s  camera_model: pinhole\n"
+         "  distortion_coeffs: [%s]\n  distortion_model: radtan\n  intrinsics: [%s] #fu, fv, cu, cv\n"
+         "  resolution: [640, 480]\n" % ("".join("    - [%s]\n" % join(rows(RT, C)[i:i + 4]) for i in (0, 4, 8, 12)),
+                                         join(RADTAN), join([FX, FY, CX, CY])), "kalibr", **RAD, **own("x"), damage=False),
     # RealityCapture
     Case("IMG_1.xmp", {"IMG_1.xmp": xmp("brown3t2", [-0.2, 0.05, 0.01, 0, 0.001, -0.002]), "IMG_1.png": png(640, 480)},
          "realitycapture", k=(FX, FX, CX, CY), **RAD5, **own("realitycapture")),

@@ -45,7 +45,9 @@ static vlResult other_dialect(const vlCameraFile *file, vlCameraDialect found, v
 
 /* Returns whether the text looks like a tree format. Then the error of that format's parser is reported. */
 static bool is_meant_as_tree(const char *path, const char *text) {
-  const char *first = text + strspn(text, " \t\r\n");
+  const char *first = text + strspn(text, " \t\r\n"), *second = *first ? first + 1 : first;
+  bool section = *first == '[' && ((*second >= 'A' && *second <= 'Z') || (*second >= 'a' && *second <= 'z')); /* .ini */
+  if (section && !vl_ends_with(path, ".json")) return false;
   return strchr("{[<", *first) || strncmp(first, "%YAML", 5) == 0 || strncmp(first, "---", 3) == 0 ||
          strncmp(first, "glTF", 4) == 0 || vl_ends_with(path, ".yaml") || vl_ends_with(path, ".yml") ||
          vl_ends_with(path, ".json");

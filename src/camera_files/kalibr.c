@@ -90,13 +90,19 @@ static uint32_t cameras_of(const json_t *tree) {
   return count;
 }
 
+/* The key of a camera's pose relative to the IMU: camera from IMU, or OpenVINS' IMU from camera. */
+static const char *imu_key(const json_t *cam, bool *inverse) {
+  *inverse = !vl_camera_has(cam, "T_cam_imu") && vl_camera_has(cam, "T_imu_cam");
+  return *inverse ? "T_imu_cam" : "T_cam_imu";
+}
+
 /* Returns whether the poses are relative to the IMU, because the chain from camera to camera is missing. */
 static bool is_by_imu(const json_t *tree, uint32_t cameras) {
   bool chain = cameras > 1, imu = true;
   for (uint32_t i = 0; i < cameras; i++) {
     char key[16];
     snprintf(key, sizeof key, "cam%u", i);
-    imu = imu && vl_camera_has_in(tree, key, "T_cam_imu");
+    imu = imu && (vl_camera_has_in(tree, key, "T_cam_imu") || vl_camera_has_in(tree, key, "T_imu_cam"));
     chain = chain && (i == 0 || vl_camera_has_in(tree, key, "T_cn_cnm1"));
   }
   return imu && !chain;
@@ -113,8 +119,12 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlC
     if (!json_is_object(cam)) return vl_camera_wrong_in(file, tree, key, "kalibr: \"%s\" holds no fields", key);
     if (i > 0 || by_imu) {
       vlMat4 step;
-      vlResult result = vl_camera_numbers(file, cam, by_imu ? "T_cam_imu" : "T_cn_cnm1", step.m, 16, 16, NULL);
+      bool inverse;
+      const char *name = imu_key(cam, &inverse);
+      vlResult result = vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL);
       if (result != VL_OK) return result;
+      if (by_imu && inverse && !vl_mat4_inverse(step, &step))
+        return vl_camera_wrong_in(file, cam, name, "kalibr: \"%s\" is singular", name);
       from_world = by_imu ? step : vl_mat4_multiply(step, from_world);
     }
     if (!vl_camera_is_frame(file, i, key)) continue;

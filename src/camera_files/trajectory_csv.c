@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/context.h"
 #include "base/text.h"
 #include "camera_files/trajectory.h"
 
@@ -167,7 +168,12 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     while (column < COLUMNS && strcmp(names[column], fields[i]) != 0) column++;
     for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++)
       if (strcmp(aliases[k].alias, fields[i]) == 0) column = aliases[k].column;
-    if (column == COLUMNS && csv->euroc) {
+    bool lens = strcmp(fields[i], "fx") == 0 || strcmp(fields[i], "fy") == 0 || strcmp(fields[i], "cx") == 0 ||
+                strcmp(fields[i], "cy") == 0; /* Stray Scanner's */
+    if (lens && column == COLUMNS)
+      vl_log(csv->file->context, VL_LOG_WARNING, NULL, "%s: the column \"%s\" is ignored: the file has poses only",
+             csv->file->path, fields[i]);
+    if (column == COLUMNS && (csv->euroc || lens)) {
       csv->of[i] = IGNORED;
       continue;
     }

@@ -190,7 +190,8 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
     vl_free(file->context, copy);
     return vl_fail_memory(file->error);
   }
-  yaml_parser_set_input_string(&parser, (const unsigned char *)(copy ? copy : text) + skip, size - skip);
+  const char *source = (copy ? copy : text) + skip;
+  yaml_parser_set_input_string(&parser, (const unsigned char *)source, size - skip);
   vlResult result = VL_OK;
   int documents = 0;
   for (bool done = false; result == VL_OK && !done;) {
@@ -205,7 +206,11 @@ vlResult vl_camera_yaml(const vlCameraFile *file, const char *text, size_t size,
       break;
     }
     done = event.type == YAML_STREAM_END_EVENT;
-    if (event.type == YAML_DOCUMENT_START_EVENT && ++documents > 1)
+    bool second = event.type == YAML_DOCUMENT_START_EVENT && ++documents > 1;
+    size_t after = event.end_mark.index;
+    if (second && source[after + strspn(source + after, " \t\r\n.")] == 0)
+      done = true; /* "---" at the end, as ROS prints it after a message */
+    else if (second)
       result = wrong_at(file, event.start_mark, "a second document in one file");
     else
       result = take(file, &b, &event);

@@ -3,12 +3,14 @@
 written by hand from the tool's published equations."""
 import json
 import math
+import os
 import struct
 import sys
+import tempfile
 
 from test_tools import (AT_ORIGIN, C, CENTRED, CX, CY, FISH, FISHEYE, FIVE, FULL, FX, FY, GL, IDENTITY, K9, PLAIN,
-                        QUATERNION, R, RAD, RAD5, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
-                        rotation_vector, rows)
+                        QUATERNION, R, RAD, RAD5, RADTAN, RT, SIZE, T, Case, by_columns, fov, join, jpeg, main, opencv, png, radial,
+                        result, rotation_vector, rows, run, write)
 
 SUFFIXES = {"velo": ".json", "realitycapture": ".xmp", "nerfstudio": ".json", "visualsfm": ".nvm", "collada": ".dae", "dso": ".txt",
                  "polycam": ".json", "realsense": ".json", "panoptic": ".json", "nerfies": ".json", "threejs": ".json",
@@ -196,6 +198,15 @@ def own(dialect, *other):
 
 
 CASES = [
+    # ROS 2 prints messages with lower-case names and a line after them; OpenVINS has Kalibr's pose the other way round
+    Case("ros2.yaml", "header:\n  frame_id: camera\nheight: 480\nwidth: 640\ndistortion_model: plumb_bob\nd:\n" +
+         "".join("- %r\n" % v for v in FIVE) + "k:\n" + "".join("- %r\n" % float(v) for v in K9) +
+         "r: [1, 0, 0, 0, 1, 0, 0, 0, 1]\np: [500, 0, 315.25, 0, 0, 510, 245.5, 0, 0, 0, 1, 0]\nbinning_x: 0\n---\n", "ros",
+         pose=AT_ORIGIN, **RAD5, **own("x"), damage=False),
+    Case("openvins.yaml", "%%YAML:1.0\n\ncam0:\n  T_imu_cam: #rotation from camera to IMU\n%s  camera_model: pinhole\n"
+         "  distortion_coeffs: [%s]\n  distortion_model: radtan\n  intrinsics: [%s] #fu, fv, cu, cv\n"
+         "  resolution: [640, 480]\n" % ("".join("    - [%s]\n" % join(rows(RT, C)[i:i + 4]) for i in (0, 4, 8, 12)),
+                                         join(RADTAN), join([FX, FY, CX, CY])), "kalibr", **RAD, **own("x"), damage=False),
     # RealityCapture
     Case("IMG_1.xmp", {"IMG_1.xmp": xmp("brown3t2", [-0.2, 0.05, 0.01, 0, 0.001, -0.002]), "IMG_1.png": png(640, 480)},
          "realitycapture", k=(FX, FX, CX, CY), **RAD5, **own("realitycapture")),
@@ -249,5 +260,29 @@ CASES = [
     Case("projection.txt", P_MATRIX, "matrix", options=SIZE, **PLAIN, **own("matrix"), damage=False),
 ]
 
+# broken files: the place and the format in the message, and what it must not blame
+BROKEN = [
+    ("other.conf", "[main]\na=3\n", "other.conf:1:1: no camera of a known dialect", "JSON"),
+    ("bad.conf", "[LEFT_CAM_HD]\nfx=700\nfy=7x0\n", 'bad.conf:3:5: zed: no finite number: "x0"', "JSON"),
+    ("bad.nvm", "NVM_V3\n\n1\na.jpg 500 1 0 x 0 0 0 0 0 0\n", "bad.nvm:4:15: visualsfm: no finite number", "YAML"),
+    ("bad.txt", "500 0 320\n0 500 24o\n0 0 1\n", "bad.txt:2:7: matrix: no finite number", "YAML"),
+    ("bad.dae", '<COLLADA><library_visual_scenes><visual_scene><node id="a">\n<translate>0 0</translate>'
+     '<instance_camera url="#x"/></node></visual_scene></library_visual_scenes>\n<library_cameras><camera id="x"><optics>'
+     "<technique_common><perspective><xfov>40</xfov><yfov>30</yfov></perspective></technique_common></optics></camera>"
+     "</library_cameras></COLLADA>\n", "bad.dae:2:1: collada: <translate> must hold 3 finite numbers", "JSON"),
+    ("bad.csv", "#name,x,y,alt,heading,pitch,roll,f\na.jpg,1,2,3,0,0,no,50\n", 'bad.csv:2:17: realitycapture: "roll" is "no"',
+     "YAML"),
+]
+
+
+def check_broken():
+    with tempfile.TemporaryDirectory() as work:
+        for name, text, wanted, blamed in BROKEN:
+            write(work, {name: text})
+            code, _, err = run("info", os.path.join(work, name), *SIZE)
+            result(code == 3 and wanted in err and blamed not in err, "says where " + name + " is wrong", err)
+
+
 if __name__ == "__main__":
+    check_broken()
     sys.exit(main(CASES, SUFFIXES, ()))

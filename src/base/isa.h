@@ -13,8 +13,16 @@ vlIsa vl_isa_best(void);
 
 /* Declares the kernel tables of hot files. PREFIX_kernel_table is the name within the hot file that defines the
  * table. All other files use PREFIX_kernels(isa), which returns the table of an instruction set. The build links the
- * hot files of a set into one object in which only these tables are global (CMakeLists.txt has their list). */
-#if defined(__x86_64__)
+ * hot files of a set into one object in which only these tables are global (CMakeLists.txt has their list). With
+ * VL_LOWEST_SET_ONLY the tables of v2 are used for every set. */
+#if defined(__x86_64__) && defined(VL_LOWEST_SET_ONLY)
+#define VL_KERNEL_TABLE(type, prefix)                                \
+  extern const type prefix##_kernel_table, prefix##_kernel_table_v2; \
+  static inline const type *prefix##_kernels(vlIsa isa) {            \
+    (void)isa;                                                       \
+    return &prefix##_kernel_table_v2;                                \
+  }
+#elif defined(__x86_64__)
 #define VL_KERNEL_TABLE(type, prefix)                                                          \
   extern const type prefix##_kernel_table, prefix##_kernel_table_v2, prefix##_kernel_table_v3, \
       prefix##_kernel_table_v4;                                                                \

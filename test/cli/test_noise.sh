@@ -49,6 +49,16 @@ for i in 1 2 3; do $render scene.pbrt $noise --shard $i/3 --shard-by tiles --fil
 check merge "$VELO" film merge t3.film t1.film t2.film -o m.film
 $render scene.pbrt $noise --film whole.film --channels samples,error,Z
 same "shards by tiles" m.film whole.film
+# what is missing: a command that goes on until the threshold
+mkdir bin
+ln -s "$VELO" bin/velo
+"$VELO" film merge t3.film t1.film -o gap.film
+check missing "$VELO" film info --missing gap.film
+printf '%s\n' "$out" >missing.sh
+PATH=$PWD/bin:$PATH sh missing.sh 2>missing.txt
+"$VELO" film develop gap.film -o gap.pfm
+"$VELO" film develop whole.film -o whole.pfm
+same "what is missing is rendered by the command that info prints" gap.pfm whole.pfm
 # stopped at 20 samples, which is between two comparisons, and continued
 $render scene.pbrt $noise --spp 20 --film s.film --channels samples,error,Z
 $render --continue s.film --spp 65536 -o b.exr

@@ -32,11 +32,14 @@ static inline void fuzz_end(vlContext *context) {
   vl_context_destroy(context);
 }
 
-/* Writes the input to a file of that name in a directory of this process. The path is valid until the next call. */
+/* Writes the input to a file of that name in a directory of this process, in $TMPDIR. The path is valid until the next
+ * call. */
 static inline const char *fuzz_file(const char *name, const uint8_t *data, size_t size) {
-  static char folder[64], path[128];
+  static char folder[192], path[256];
   if (!folder[0]) {
-    snprintf(folder, sizeof folder, "%s/velo-fuzz-XXXXXX", access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+    const char *scratch = getenv("TMPDIR");
+    if (!scratch || !*scratch) scratch = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
+    snprintf(folder, sizeof folder, "%.150s/velo-fuzz-XXXXXX", scratch);
     if (!mkdtemp(folder)) exit(1);
   }
   snprintf(path, sizeof path, "%s/%s", folder, name);

@@ -3,7 +3,7 @@
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  static char to[160];
+  static char to[288];
   vlContext *context = fuzz_context();
   vlError error;
   const char *from = fuzz_file("input.pbrt", data, size);

@@ -75,36 +75,8 @@ static void print_contents(const char *path, const vlFilmFile *file, const FilmP
   for (uint32_t i = 0; (output = vl_receipt_output(receipt, i)); i++) printf("  output    %s\n", output);
 }
 
-/* Prints one command for each rectangle and range, and then the command that merges their films. */
-static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
-  const vlReceipt *receipt = vl_film_file_receipt(file);
-  const uint32_t *crop = vl_film_file_def(file)->crop;
-  uint32_t count = 0, planned = planned_of(file);
-  size_t length = strlen(path);
-  char stem[4096], name[4200];
-  double noise = receipt ? vl_receipt_noise(receipt) : 0;
-  if (noise > 0)
-    return report_failure(STATUS_SCENE,
-                          "%s: with --noise the samples that a block needs are not known before; velo render "
-                          "--continue renders them",
-                          path);
-  if (!receipt || !planned)
-    return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
-  if (length > 5 && strcmp(path + length - 5, ".film") == 0) length -= 5;
-  snprintf(stem, sizeof stem, "%.*s", (int)length, path);
-  for (uint32_t i = 0; i < parts->count; i++)
-    for (uint32_t k = 0; k < parts->parts[i].samples.count; k++) {
-      const FilmPart *p = &parts->parts[i];
-      const vlSampleRange *r = &p->samples.ranges[k];
-      print_command(receipt);
-      if (r->first || r->end != planned) printf(" --samples %u:%u", r->first, r->end);
-      if (!is_whole(p->place, crop)) printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
-      printf(" --film");
-      snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
-      print_word(name);
-      putchar('\n');
-    }
-  if (!count) return STATUS_OK;
+static void print_merge(const char *path, const char *stem, uint32_t count) {
+  char name[4200];
   printf("velo film merge");
   print_word(path);
   for (uint32_t i = 1; i <= count; i++) {
@@ -114,6 +86,41 @@ static int print_missing(const char *path, const vlFilmFile *file, const FilmPar
   printf(" -o");
   print_word(path);
   putchar('\n');
+}
+
+/* Prints one command for each rectangle and range, and then the command that merges their films. With --noise, only
+ * rectangles without any sample are listed: how many samples the others need is not known before. A last command
+ * continues the film until they have enough. */
+static int print_missing(const char *path, const vlFilmFile *file, const FilmParts *parts) {
+  const vlReceipt *receipt = vl_film_file_receipt(file);
+  const uint32_t *crop = vl_film_file_def(file)->crop;
+  uint32_t count = 0, planned = planned_of(file);
+  size_t length = strlen(path);
+  char stem[4096], name[4200];
+  double noise = receipt ? vl_receipt_noise(receipt) : 0;
+  if (!receipt || !planned)
+    return report_failure(STATUS_SCENE, "%s: the film has no receipt: what made it is not known", path);
+  if (length > 5 && strcmp(path + length - 5, ".film") == 0) length -= 5;
+  snprintf(stem, sizeof stem, "%.*s", (int)length, path);
+  for (uint32_t i = 0; i < parts->count; i++)
+    for (uint32_t k = 0; k < parts->parts[i].samples.count; k++) {
+      const FilmPart *p = &parts->parts[i];
+      const vlSampleRange *r = &p->samples.ranges[k];
+      if (noise > 0 && r->first) continue;
+      print_command(receipt);
+      if (r->first || r->end != planned) printf(" --samples %u:%u", r->first, r->end);
+      if (!is_whole(p->place, crop)) printf(" --tiles %u,%u,%u,%u", p->place[0], p->place[1], p->place[2], p->place[3]);
+      printf(" --film");
+      snprintf(name, sizeof name, "%s-missing-%u.film", stem, ++count);
+      print_word(name);
+      putchar('\n');
+    }
+  if (count) print_merge(path, stem, count);
+  if (noise > 0) {
+    printf("velo render --continue");
+    print_word(path);
+    putchar('\n');
+  }
   return STATUS_OK;
 }
 

@@ -247,6 +247,7 @@ def test_flow(page):
             break
         count += 1
     check("channel_rests", count < 20, count)
+    state_after(page, type="settings", channel="image")
     state_after(page, type="reset")
 
 
@@ -314,7 +315,7 @@ def wait_done(page):
 def test_files(page, folder):
     state_after(page, type="settings", spp=3)
     edit(page, eye=[300, 200, 470], zoom=1.25)
-    wait_done(page)
+    page.wait_frame(lambda f: f.change == page.change and f.spp == 3)
     look = dict(exposure=0.5, view="agx")
     for suffix in ("png", "exr", "pfm", "hdr", "jpg", "tga"):
         saved = answer(page, "saved", type="save", what="image", name=f"shown.{suffix}", **look)

@@ -137,7 +137,8 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
   return image;
 }
 
-static void render_channel(Engine *e) {
+/* False: interrupted. */
+static bool render_channel(Engine *e) {
   vlChannelsDef def = vl_default_channels_def(e->now.camera.made.width, e->now.camera.made.height);
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};
@@ -149,7 +150,7 @@ static void render_channel(Engine *e) {
   def.film = e->film;
   def.exposure = e->model.job.defs->develop.exposure;
   def.cancel = e->stop;
-  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return;
+  if (def.channels == VL_CHANNEL_ERROR && (!e->film || vl_film_spp(e->film) < 2)) return true;
   vlResult result = vl_render_channels(e->model.world, &e->now.camera.made, &def, &floats, &ids, &error);
   vlImage *flow = def.forward && result == VL_OK ? join_flow(e->def.context, floats, ids) : NULL;
   const vlImage *image = flow ? flow : floats ? floats : ids;
@@ -159,6 +160,7 @@ static void render_channel(Engine *e) {
   vl_image_destroy(floats);
   vl_image_destroy(ids);
   vl_image_destroy(flow);
+  return result != VL_CANCELLED;
 }
 
 /* ---- the whole image --------------------------------------------------------------------------------------------- */
@@ -289,7 +291,7 @@ static void *run(void *user) {
     answer_tasks(e);
     bool anew = take_wanted(e);
     if (anew && e->now.channel) {
-      render_channel(e);
+      if (!render_channel(e)) e->now.channel = UINT32_MAX; /* it is rendered anew */
     } else if (anew && e->film) {
       publish_film(e, e->film, 1);
     } else if (anew && !render_coarse_images(e)) {

@@ -206,6 +206,7 @@ static bool is_matrix(const char *text, size_t size) {
   if (size < 4096 && memchr(text, 0, size)) return false;
   if (parse(text, size).rows != 0) return true;
   while (vl_camera_next_line(&lines)) {
+    uint32_t before = words;
     if (++rows > 4) return false;
     for (const char *at = lines.text; *(at += strspn(at, separators)); words++) {
       char *end;
@@ -214,6 +215,7 @@ static bool is_matrix(const char *text, size_t size) {
       numbers += end == at + length;
       at += length;
     }
+    if (words - before > 4) return false; /* a list of poses */
   }
   return rows >= 2 && words >= 6 && words <= LARGEST && numbers + 2 >= words;
 }

@@ -264,6 +264,7 @@ CASES = [
 BROKEN = [
     ("other.conf", "[main]\na=3\n", "other.conf:1:1: no camera of a known dialect", "JSON"),
     ("bad.conf", "[LEFT_CAM_HD]\nfx=700\nfy=7x0\n", 'bad.conf:3:5: zed: no finite number: "x0"', "JSON"),
+    ("poses.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "poses.txt:1:1: no camera of a known dialect", "matrix"),
     ("bad.nvm", "NVM_V3\n\n1\na.jpg 500 1 0 x 0 0 0 0 0 0\n", "bad.nvm:4:15: visualsfm: no finite number", "YAML"),
     ("bad.txt", "500 0 320\n0 500 24o\n0 0 1\n", "bad.txt:2:7: matrix: no finite number", "YAML"),
     ("bad.dae", '<COLLADA><library_visual_scenes><visual_scene><node id="a">\n<translate>0 0</translate>'

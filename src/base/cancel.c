@@ -27,13 +27,15 @@ bool vl_cancel_requested(const vlCancel *cancel) {
   return vl_is_cancelled(cancel);
 }
 
+static const double step_interval = 0.1; /* seconds */
+
 void vl_task_start(vlTask *task, const vlCancel *cancel, vlStepFn *progress, void *user) {
   *task = (vlTask){.cancel = cancel, .progress = progress, .user = user, .caller = pthread_self()};
-  task->start = task->last = vl_seconds();
+  task->start = vl_seconds();
+  task->last = task->start - step_interval; /* the first step is reported at once */
 }
 
 bool vl_task_stopped(vlTask *task, const char *name, double fraction) {
-  const double interval = 0.1;
   if (!task) return false;
   if (atomic_load_explicit(&task->stopped, memory_order_relaxed)) return true;
   if (vl_is_cancelled(task->cancel)) {
@@ -42,7 +44,7 @@ bool vl_task_stopped(vlTask *task, const char *name, double fraction) {
   }
   if (!task->progress || !pthread_equal(pthread_self(), task->caller)) return false;
   double now = vl_seconds();
-  if (now - task->last < interval) return false;
+  if (now - task->last < step_interval) return false;
   task->last = now;
   vlStep step = {name, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction, now - task->start};
   if (task->progress(task->user, &step)) return false;

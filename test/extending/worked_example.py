@@ -59,7 +59,7 @@ def copy_tree(root, scratch):
     names = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "-z"], check=True,
                            stdout=subprocess.PIPE).stdout.decode().split("\0")
     for name in names:
-        if not name or name.startswith("docs/") or not os.path.exists(os.path.join(root, name)):
+        if not name or not os.path.exists(os.path.join(root, name)):
             continue
         to = os.path.join(scratch, name)
         os.makedirs(os.path.dirname(to), exist_ok=True)

@@ -176,6 +176,9 @@ static void never_nan(void **state) {
 
 static void same_bits(void **state) {
   const State *s = *state;
+#ifdef VL_LOWEST_SET_ONLY
+  skip(); /* the build has one set */
+#endif
   const vlBsdfKernels *base = vl_bsdf_kernels(VL_ISA_BASE);
   int compared = 0;
   for (int isa = VL_ISA_V3; isa <= VL_ISA_V4; isa++) {

@@ -69,12 +69,9 @@ static bool is_bop(const json_t *tree) {
 
 static vlResult write_bop(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], r[9], t[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  double r[9], t[3];
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_get_pose(&c, r, t);
   vl_camera_put(text, "{\n  \"0\": {\n    \"cam_K\": [");
   vl_camera_put_numbers(text, (double[]){c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);

@@ -60,8 +60,7 @@ static vlResult write_bundler(const vlCameraFile *file, const vlCameraRecord *re
   bool radial = family == VL_LENS_PINHOLE || family == VL_LENS_OPENCV;
   for (uint32_t i = 2; i < 14 && radial && family == VL_LENS_OPENCV; i++) radial = k[i] == 0.0;
   if (!radial) return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  result = vl_camera_refuse_off_centre(file, &c);
   if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
   if (result != VL_OK) return result;
   vl_camera_get_pose(&c, r, t);

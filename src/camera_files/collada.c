@@ -184,8 +184,7 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
   bool flat = c.projection == VL_PROJECTION_ORTHOGRAPHIC;
   if (!flat && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
     return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  result = vl_camera_refuse_off_centre(file, &c);
   if (result != VL_OK) return result;
   double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
   const char *kind = flat ? "orthographic" : "perspective", side = flat ? 'm' : 'f';

@@ -141,6 +141,14 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
 /* Makes *camera from the record. Returns an error for any property that the flags `holds` do not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera);
+/* vl_camera_fit for dialects without lens distortion. */
+vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
+                               vlCamera *camera);
+/* vl_camera_fit for dialects with the first five of OpenCV's coefficients, k1 k2 p1 p2 k3. */
+vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, double k[14],
+                              vlCamera *camera);
+/* vl_camera_refuse for a principal point that is not the image's centre. */
+vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera);
 /* Reports that the dialect cannot express the def's projection, or the distortion of that projection. */
 vlResult vl_camera_no_model(const vlCameraFile *file, const vlCameraDef *def);
 /* Converts the distortion to OpenCV's 14 coefficients. *count is 0, 4, 5, 8, 12 or 14; the coefficients after it are 0.

@@ -119,3 +119,29 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
   for (int i = 5; i >= 0 && counts[i] >= last; i--) *count = counts[i];
   return true;
 }
+
+vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
+                               vlCamera *camera) {
+  double k[14];
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, holds, camera);
+  if (result == VL_OK && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
+    result = vl_camera_no_model(file, &record->camera);
+  return result;
+}
+
+vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, double k[14],
+                              vlCamera *camera) {
+  uint32_t n;
+  vlResult result = vl_camera_fit(file, record, holds, camera);
+  if (result != VL_OK) return result;
+  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
+  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
+    result = vl_camera_no_model(file, &record->camera);
+  return result;
+}
+
+vlResult vl_camera_refuse_off_centre(const vlCameraFile *file, const vlCamera *camera) {
+  vlResult result = vl_camera_refuse(file, "cx", camera->cx != 0.5 * camera->width);
+  return result == VL_OK ? vl_camera_refuse(file, "cy", camera->cy != 0.5 * camera->height) : result;
+}

@@ -36,14 +36,9 @@ static bool is_gaussians(const json_t *tree) {
 
 static vlResult write_gaussians(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  result = vl_camera_refuse_off_centre(file, &c);
   if (result != VL_OK) return result;
   const double *m = c.world_from_camera;
   vl_camera_put(text, "[\n  {\"id\": 0, \"img_name\": ");

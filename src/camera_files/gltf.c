@@ -215,8 +215,7 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
   if (result == VL_OK) result = vl_camera_refuse(file, "projection", d->projection > VL_PROJECTION_ORTHOGRAPHIC);
   if (result == VL_OK) result = vl_camera_refuse(file, "distortion", c.distortion.steps != 0);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  if (result == VL_OK) result = vl_camera_refuse_off_centre(file, &c);
   if (result != VL_OK) return result;
   Numbers n = numbers_of(&c);
   const double *m = n.matrix;

@@ -127,12 +127,8 @@ static void put_row(vlCameraText *text, const char *key, const double *values, u
 static vlResult write_kitti(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], t[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE, k, &c);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_get_pose(&c, r, t);
   put_row(text, "S_00", (double[]){c.width, c.height}, 2);
   put_row(text, "K_00", (double[]){c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);

@@ -222,12 +222,8 @@ static bool is_matrix(const char *text, size_t size) {
 
 static vlResult write_matrix(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   const double i[9] = {c.fx, c.skew, c.cx - 0.5, 0.0, c.fy, c.cy - 0.5, 0.0, 0.0, 1.0}, *m = c.camera_from_world;
   for (int row = 0; row < 3; row++)
     for (int column = 0; column < 4; column++) {

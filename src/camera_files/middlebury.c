@@ -89,12 +89,8 @@ static bool is_middlebury(const char *text, size_t size) {
 
 static vlResult write_middlebury(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlResult result = vl_camera_fit_pinhole(file, record, 0, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_put(text, "cam0=[%.17g 0 %.17g; 0 %.17g %.17g; 0 0 1]\nwidth=%u\nheight=%u\n", c.fx, c.cx - 0.5, c.fy,
                 c.cy - 0.5, c.width, c.height);
   return VL_OK;

@@ -46,12 +46,8 @@ static bool is_mvsnet(const char *text, size_t size) {
 
 static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   const double *m = c.camera_from_world;
   vl_camera_put(text, "extrinsic\n");
   for (int i = 0; i < 4; i++)

@@ -53,14 +53,10 @@ static bool is_nerfstudio(const json_t *tree) {
 
 static vlResult write_nerfstudio(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], m[16];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  double m[16];
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "cx", c.cx != 0.5 * c.width);
-  if (result == VL_OK) result = vl_camera_refuse(file, "cy", c.cy != 0.5 * c.height);
+  result = vl_camera_refuse_off_centre(file, &c);
   if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
   if (result != VL_OK) return result;
   vl_camera_flip_axes(c.world_from_camera, m);

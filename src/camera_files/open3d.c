@@ -64,12 +64,8 @@ static bool is_open3d(const json_t *tree) {
 
 static vlResult write_open3d(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   double m[16];
   for (int i = 0; i < 16; i++) m[i] = c.camera_from_world[4 * (i % 4) + i / 4];
   vl_camera_put(text, "{\n  \"class_name\": \"PinholeCameraParameters\",\n  \"extrinsic\": [");

@@ -76,12 +76,9 @@ static bool is_polycam(const json_t *tree) {
 
 static vlResult write_polycam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], m[16];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  double m[16];
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_flip_axes(c.world_from_camera, m);
   vl_camera_put(text,
                 "{\n  \"width\": %u, \"height\": %u,\n  \"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g",

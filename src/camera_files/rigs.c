@@ -156,12 +156,8 @@ static void put_list(vlCameraText *text, const char *key, const double *values, 
 static vlResult write_panoptic(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], t[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, k, &c);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_get_pose(&c, r, t);
   vl_camera_put(text, "{\"cameras\": [\n  {\"name\": ");
   vl_camera_put_string(text, record->name[0] ? record->name : "00_00");
@@ -209,12 +205,8 @@ static bool is_nerfies(const json_t *tree) {
 static vlResult write_nerfies(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], t[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
+  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, k, &c);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
   const double *m = c.world_from_camera;
   vl_camera_get_pose(&c, r, t);
   vl_camera_put(text, "{\n  \"orientation\": [");

@@ -87,12 +87,9 @@ static bool is_visualsfm(const char *text, size_t size) {
 
 static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], r[9], t[3], q[4];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  double r[9], t[3], q[4];
+  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
-  if (vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    return vl_camera_no_model(file, &record->camera);
   vl_camera_get_pose(&c, r, t);
   vl_rotation_to_quaternion(r, q);
   const double *m = c.world_from_camera;

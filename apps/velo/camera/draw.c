@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera/numbers.h"
 #include "camera/poses.h"
+#include "camera/scene_world.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/lens_options.h"
 #include "render/outputs.h"
-#include "render/scene_options.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum {
@@ -36,11 +36,7 @@ _Static_assert((int)DRAW_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no r
 enum { DEFAULT_POINTS = 2 };
 
 typedef struct State {
-  vlContext *context;
-  vlScene *scene;
-  vlWorld *world;
-  Job job;
-  SceneOpening opening;
+  SceneWorld in;
   vlCamera *cameras;
   uint32_t count;
   Seen seen;
@@ -50,18 +46,6 @@ typedef struct State {
   OutsideDef view;
   Outside outside;
 } State;
-
-/* Reads `count` numbers separated by commas. */
-static bool parse_numbers(const char *text, int count, double *values) {
-  for (int i = 0; i < count; i++) {
-    char *end;
-    values[i] = strtod(text, &end);
-    if (end == text || !isfinite(values[i])) return false;
-    text = end;
-    if (i + 1 < count && *text++ != ',') return false;
-  }
-  return *text == 0;
-}
 
 static int parse_parts(const char *text, uint32_t *parts) {
 #define NAME(K, k) #k,
@@ -131,26 +115,19 @@ static int read_options(State *s, const Arguments *arguments) {
 static int load(State *s, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
-  vlContextDef def = vl_default_context_def();
   vlError error = {0};
-  def.log = report_log;
-  int status = context_open(&def, &s->context);
-  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
-  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
-  if (status >= 0) return status;
-  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
-  status = lens_autofocus(&s->job, s->scene, s->world);
+  int status = scene_world_open(&s->in, arguments);
   if (status >= 0) return status;
   if (v[RENDER_TRAJECTORY].given) {
-    result = poses_load(s->context, v[RENDER_TRAJECTORY].text, &s->job.camera, &s->cameras, &s->count, &error);
+    vlResult result =
+        poses_load(s->in.context, v[RENDER_TRAJECTORY].text, &s->in.job.camera, &s->cameras, &s->count, &error);
     return result == VL_OK ? -1 : report_error(&error, result, v[RENDER_TRAJECTORY].text);
   }
-  if (v[DRAW_NEAR].given) s->job.camera.near_plane = v[DRAW_NEAR].number;
-  if (v[DRAW_FAR].given) s->job.camera.far_plane = v[DRAW_FAR].number;
+  if (v[DRAW_NEAR].given) s->in.job.camera.near_plane = v[DRAW_NEAR].number;
+  if (v[DRAW_FAR].given) s->in.job.camera.far_plane = v[DRAW_FAR].number;
   s->cameras = malloc(sizeof *s->cameras);
   if (!s->cameras) return report_reason(VL_ERROR_MEMORY, path, "cameras");
-  s->cameras[s->count++] = s->job.camera;
+  s->cameras[s->count++] = s->in.job.camera;
   return -1;
 }
 
@@ -179,7 +156,7 @@ static void choose_points(State *s) {
 static void choose_distances(State *s, const OptionValue *v) {
   const Seen *seen = &s->seen;
   const vlCamera *c = &s->cameras[0];
-  double nearest = seen->count ? seen->near : 1, d = s->job.defs->camera.view_distance;
+  double nearest = seen->count ? seen->near : 1, d = s->in.job.defs->camera.view_distance;
   double far = c->far_plane < 1e30 ? c->far_plane : INFINITY;
   bool flat = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   s->def.plane = d > 0 && d < 0.8 * nearest ? d : 0.45 * fmin(flat || !seen->count ? nearest : seen->middle, far);
@@ -192,20 +169,21 @@ static void choose_distances(State *s, const OptionValue *v) {
 
 static int draw(State *s, const OptionValue *v) {
   vlError error = {0};
-  vlResult result = draw_look(s->world, &s->cameras[0], &s->seen, &error);
-  if (result != VL_OK) return report_error(&error, result, s->job.path);
+  vlResult result = draw_look(s->in.world, &s->cameras[0], &s->seen, &error);
+  if (result != VL_OK) return report_error(&error, result, s->in.job.path);
   choose_distances(s, v);
   if (s->def.point_count == 0 && s->count == 1) choose_points(s);
-  result = vl_camera_outline(s->context, s->cameras, s->count, &s->def, &s->drawing, &error);
+  result = vl_camera_outline(s->in.context, s->cameras, s->count, &s->def, &s->drawing, &error);
   if (result == VL_OK) result = draw_choose_view(&s->cameras[0], s->drawing, &s->seen, &s->view, &s->outside, &error);
   if (result == VL_OK)
-    result = draw_render(s->context, s->world, s->job.defs, &s->view, &s->cameras[0], s->drawing, &s->outside, &error);
-  if (result != VL_OK) return report_error(&error, result, s->job.path);
+    result = draw_render(s->in.context, s->in.world, s->in.job.defs, &s->view, &s->cameras[0], s->drawing, &s->outside,
+                         &error);
+  if (result != VL_OK) return report_error(&error, result, s->in.job.path);
   Overlay overlay = {0};
   result = VL_ERROR_MEMORY;
   if (overlay_begin(&overlay, s->outside.image)) {
     draw_paint(&overlay, &s->outside, s->drawing);
-    result = overlay_write(&overlay, s->context, v[DRAW_OUT].text, &error);
+    result = overlay_write(&overlay, s->in.context, v[DRAW_OUT].text, &error);
   }
   overlay_end(&overlay);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, v[DRAW_OUT].text);
@@ -222,9 +200,7 @@ static int run_draw(const Command *command, const Arguments *arguments) {
   draw_forget(&s.seen);
   vl_drawing_destroy(s.drawing);
   free(s.cameras);
-  vl_world_destroy(s.world);
-  vl_scene_destroy(s.scene);
-  vl_context_destroy(s.context);
+  scene_world_close(&s.in);
   return status;
 }
 

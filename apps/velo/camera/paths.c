@@ -4,24 +4,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera/scene_world.h"
 #include "cli/commands.h"
-#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/lens_options.h"
-#include "render/scene_options.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum { PATHS_PIXEL = RENDER_OPTIONS, PATHS_SAMPLES, PATHS_FIRST, PATHS_SHOW, PATHS_SORT, PATHS_JSON, PATHS_OPTIONS };
 _Static_assert((int)PATHS_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
 typedef struct State {
-  vlContext *context;
-  vlScene *scene;
-  vlWorld *world;
+  SceneWorld in;
   TracedPaths traced;
-  Job job;
-  SceneOpening opening;
 } State;
 
 /* Parses "x,y". */
@@ -36,23 +31,8 @@ static bool parse_pixel(const char *text, uint32_t pixel[2]) {
   return true;
 }
 
-/* Loads the scene and builds the world as `velo render` does. */
-static int load(State *s, const Arguments *arguments) {
-  const char *path = arguments->operands[0];
-  vlContextDef def = vl_default_context_def();
-  vlError error = {0};
-  def.log = report_log;
-  int status = context_open(&def, &s->context);
-  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
-  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
-  if (status >= 0) return status;
-  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
-  if (result != VL_OK) return report_error(&error, result, path);
-  return lens_autofocus(&s->job, s->scene, s->world);
-}
-
 static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
-  vlSceneDefs *defs = s->job.defs;
+  vlSceneDefs *defs = s->in.job.defs;
   vlError error = {0};
   uint32_t first = v[PATHS_FIRST].given ? (uint32_t)v[PATHS_FIRST].integer : 0;
   uint32_t count = v[PATHS_SAMPLES].given ? (uint32_t)v[PATHS_SAMPLES].integer : 16;
@@ -62,8 +42,8 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
   if (pixel[0] >= defs->film.width || pixel[1] >= defs->film.height)
     return report_usage("--pixel %u,%u: the image has only %u x %u pixels", pixel[0], pixel[1], defs->film.width,
                         defs->film.height);
-  const PathsRequest request = {.world = s->world,
-                                .camera = &s->job.camera,
+  const PathsRequest request = {.world = s->in.world,
+                                .camera = &s->in.job.camera,
                                 .film = &defs->film,
                                 .render = &defs->render,
                                 .pixel = {pixel[0], pixel[1]},
@@ -71,13 +51,13 @@ static int trace(State *s, const uint32_t pixel[2], const OptionValue *v) {
                                 .count = count,
                                 .by_sample = v[PATHS_SORT].given && v[PATHS_SORT].integer == 1};
   vlResult result = paths_trace(&request, &s->traced, &error);
-  return result == VL_OK ? -1 : report_error(&error, result, s->job.path);
+  return result == VL_OK ? -1 : report_error(&error, result, s->in.job.path);
 }
 
 static int print(State *s, const OptionValue *v) {
   uint32_t count = s->traced.paths->count, most = v[PATHS_SHOW].given ? (uint32_t)v[PATHS_SHOW].integer : 16;
   const PathsReport report = {
-      .file = s->job.path, .world = s->world, .traced = &s->traced, .shown = count < most ? count : most};
+      .file = s->in.job.path, .world = s->in.world, .traced = &s->traced, .shown = count < most ? count : most};
   if (v[PATHS_JSON].given) {
     Json json = {.out = stdout};
     json_begin(&json, NULL, '{');
@@ -99,13 +79,11 @@ static int run_paths(const Command *command, const Arguments *arguments) {
     return report_usage("--pixel \"%s\": a pixel is x,y, counted from 0,0 at the top left", v[PATHS_PIXEL].text);
   State s;
   memset(&s, 0, sizeof s);
-  int status = load(&s, arguments);
+  int status = scene_world_open(&s.in, arguments);
   if (status < 0) status = trace(&s, pixel, v);
   if (status < 0) status = print(&s, v);
   paths_free(&s.traced);
-  vl_world_destroy(s.world);
-  vl_scene_destroy(s.scene);
-  vl_context_destroy(s.context);
+  scene_world_close(&s.in);
   return status;
 }
 

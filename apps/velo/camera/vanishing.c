@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "camera/camera.h"
+#include "camera/numbers.h"
 #include "cli/commands.h"
 #include "cli/json.h"
 #include "cli/report.h"
@@ -229,18 +230,6 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
 }
 
 /* ---- the inverse ------------------------------------------------------------------------------------------------- */
-
-/* Reads count numbers separated by commas. */
-static bool parse_numbers(const char *text, int count, double *values) {
-  for (int i = 0; i < count; i++) {
-    char *end;
-    values[i] = strtod(text, &end);
-    if (end == text || !isfinite(values[i])) return false;
-    text = end;
-    if (i + 1 < count && *text++ != ',') return false;
-  }
-  return *text == 0;
-}
 
 /* Parses "xz" or "-xyz": the axis of each point; a minus means the negative direction. */
 static bool parse_axes(const char *text, vlVanishingDef *def) {

@@ -1,0 +1,26 @@
+/* camera/scene_world.c: a scene's world and camera, made as `velo render` makes them. */
+#include "camera/scene_world.h"
+
+#include "cli/context.h"
+#include "cli/report.h"
+#include "render/lens_options.h"
+
+int scene_world_open(SceneWorld *s, const Arguments *arguments) {
+  const char *path = arguments->operands[0];
+  vlContextDef def = vl_default_context_def();
+  vlError error = {0};
+  def.log = report_log;
+  int status = context_open(&def, &s->context);
+  if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
+  if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
+  if (status >= 0) return status;
+  vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
+  if (result != VL_OK) return report_error(&error, result, path);
+  return lens_autofocus(&s->job, s->scene, s->world);
+}
+
+void scene_world_close(SceneWorld *s) {
+  vl_world_destroy(s->world);
+  vl_scene_destroy(s->scene);
+  vl_context_destroy(s->context);
+}

@@ -1,0 +1,21 @@
+/* camera/scene_world.h: a scene's world and camera, made as `velo render` makes them. */
+#ifndef APP_CAMERA_SCENE_WORLD_H
+#define APP_CAMERA_SCENE_WORLD_H
+
+#include "render/job.h"
+#include "render/scene_options.h"
+
+typedef struct SceneWorld {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  Job job;
+  SceneOpening opening;
+} SceneWorld;
+
+/* Loads the scene of the first operand and builds its world. Returns -1, or the exit code after a report. */
+int scene_world_open(SceneWorld *s, const Arguments *arguments);
+/* Frees all, also what a failed scene_world_open has left. */
+void scene_world_close(SceneWorld *s);
+
+#endif

@@ -401,12 +401,7 @@ static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, Py
   }
   Py_ssize_t count = drop == Py_None ? 0 : PySequence_Size(drop);
   if (count < 0 || count > 32) return raise_usage("drop: at most 32 names of fields"), false;
-  for (Py_ssize_t i = 0; i < count; i++) {
-    PyObject *item = PySequence_GetItem(drop, i);
-    drops[i] = item ? keep_text(keep, item) : NULL;
-    Py_XDECREF(item);
-    if (!drops[i]) return false;
-  }
+  if (!keep_texts(keep, drop, count, drops)) return false;
   def->drop = drops;
   def->drop_count = (uint32_t)count;
   return true;

@@ -149,12 +149,7 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
       raise_usage("%u channels need as many names, not %zd", def.channels, count);
       goto end;
     }
-    for (Py_ssize_t i = 0; i < count; i++) {
-      PyObject *name = PySequence_GetItem(names, i);
-      texts[i] = name ? keep_text(keep, name) : NULL;
-      Py_XDECREF(name);
-      if (!texts[i]) goto end;
-    }
+    if (!keep_texts(keep, names, count, texts)) goto end;
     def.names = texts;
   }
   if (!context_check(context)) goto end;
@@ -195,12 +190,7 @@ static PyObject *image_read(PyObject *module, PyObject *arguments) {
     if (!PyErr_Occurred()) raise_usage("names: 1 to 1024 channels");
     goto end;
   }
-  for (Py_ssize_t i = 0; i < count; i++) {
-    PyObject *name = PySequence_GetItem(names, i);
-    texts[i] = name ? keep_text(keep, name) : NULL;
-    Py_XDECREF(name);
-    if (!texts[i]) goto end;
-  }
+  if (!keep_texts(keep, names, count, texts)) goto end;
   Call call;
   if (!call_begin(&call, context, NULL)) goto end;
   vlError error = {0};

@@ -180,6 +180,8 @@ bool append_names(PyObject *list, const vlParameter *rows, size_t count);
 int find_choice(const char *const *choices, const char *what, PyObject *value);
 /* UTF-8 text of a str, kept alive by the list; null with an exception. */
 const char *keep_text(PyObject *keep, PyObject *value);
+/* keep_text for the first `count` items of a sequence. */
+bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char **texts);
 const char *keep_path(PyObject *keep, PyObject *value);
 bool keep_object(PyObject *keep, PyObject *object); /* appends, without stealing */
 bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *spectrum, const char *what);

@@ -17,6 +17,16 @@ const char *keep_text(PyObject *keep, PyObject *value) {
   return text;
 }
 
+bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char **texts) {
+  for (Py_ssize_t i = 0; i < count; i++) {
+    PyObject *item = PySequence_GetItem(values, i);
+    texts[i] = item ? keep_text(keep, item) : NULL;
+    Py_XDECREF(item);
+    if (!texts[i]) return false;
+  }
+  return true;
+}
+
 const char *keep_path(PyObject *keep, PyObject *value) {
   PyObject *bytes = NULL;
   if (!PyUnicode_FSConverter(value, &bytes)) return NULL;

@@ -10,6 +10,7 @@
 #include "export/export.h"
 #include "image/mipmap.h"
 #include "image/pixel.h"
+#include "math/cube_map.h"
 #include "math/octahedral.h"
 
 enum { SMALLEST = 16, LARGEST = 1024, LEVELS = 7, LOBE_SAMPLES = 128 };
@@ -142,23 +143,11 @@ static bool add_sky(Cube *cube, const vlLightDef *d) {
 
 /* ---- the cube ---------------------------------------------------------------------------------------------------- */
 
-/* The direction of a point (s, t) in [-1, 1] of a face, in the order and with the axes of OpenGL's cube maps. */
-static vlVec3 direction_of(uint32_t face, float s, float t) {
-  const vlVec3 d[6] = {{1, -t, -s}, {-1, -t, s}, {s, 1, t}, {s, -1, -t}, {s, -t, 1}, {-s, -t, -1}};
-  return d[face];
-}
-
 static const float *texel_at(const Level *level, vlVec3 d) {
-  float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z), s, t, m;
-  uint32_t face;
-  if (x >= y && x >= z)
-    face = d.x < 0, m = x, s = face ? d.z : -d.z, t = -d.y;
-  else if (y >= z)
-    face = 2 + (d.y < 0), m = y, s = d.x, t = face == 2 ? d.z : -d.z;
-  else
-    face = 4 + (d.z < 0), m = z, s = face == 4 ? d.x : -d.x, t = -d.y;
+  float s, t;
+  const uint32_t face = vl_cube_map_face(d, &s, &t);
   const int n = (int)level->side;
-  int i = (int)((s / m + 1) * 0.5f * (float)n), j = (int)((t / m + 1) * 0.5f * (float)n);
+  int i = (int)((s + 1) * 0.5f * (float)n), j = (int)((t + 1) * 0.5f * (float)n);
   i = i < 0 ? 0 : i >= n ? n - 1 : i, j = j < 0 ? 0 : j >= n ? n - 1 : j;
   return level->texels + 3 * (((size_t)face * level->side + (size_t)j) * level->side + (size_t)i);
 }
@@ -174,7 +163,7 @@ static void look_row(void *user, uint32_t row, uint32_t worker) {
     for (uint32_t k = 0; k < 16; k++) {
       float s = ((float)i + 0.125f + 0.25f * (float)(k % 4)) / (float)n * 2 - 1;
       float t = ((float)y + 0.125f + 0.25f * (float)(k / 4)) / (float)n * 2 - 1;
-      radiance(cube, vl_normalize(direction_of(face, s, t)), sum);
+      radiance(cube, vl_normalize(vl_cube_map_direction(face, s, t)), sum);
     }
     for (int c = 0; c < 3; c++) level->texels[3 * ((size_t)row * n + i) + (size_t)c] = sum[c] / 16;
   }
@@ -198,8 +187,8 @@ static void filter_row(void *user, uint32_t row, uint32_t worker) {
   const uint32_t n = level->side, face = row / n, y = row % n;
   const float rough = (float)cube->level / (float)(cube->levels - 1), a2 = rough * rough * rough * rough;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 normal =
-        vl_normalize(direction_of(face, ((float)i + 0.5f) / (float)n * 2 - 1, ((float)y + 0.5f) / (float)n * 2 - 1));
+    vlVec3 normal = vl_normalize(
+        vl_cube_map_direction(face, ((float)i + 0.5f) / (float)n * 2 - 1, ((float)y + 0.5f) / (float)n * 2 - 1));
     vlVec3 aside = vl_abs(normal.y) < 0.9f ? vl_vec3(0, 1, 0) : vl_vec3(1, 0, 0);
     vlVec3 tx = vl_normalize(vl_cross(aside, normal)), ty = vl_cross(normal, tx);
     float sum[3] = {0, 0, 0}, weight = 0;
@@ -267,7 +256,7 @@ static json_t *irradiance(const Cube *cube, double intensity) {
   for (uint32_t i = 0; i < 6 * n * n; i++) {
     double s = ((i % n) + 0.5) / n * 2 - 1, t = ((i / n % n) + 0.5) / n * 2 - 1, l2 = 1 + s * s + t * t;
     double area = 4.0 / ((double)n * n) / (l2 * sqrt(l2));
-    vlVec3 at = direction_of(i / (n * n), (float)s, (float)t);
+    vlVec3 at = vl_cube_map_direction(i / (n * n), (float)s, (float)t);
     double x = (double)at.x / sqrt(l2), y = (double)at.y / sqrt(l2), z = (double)at.z / sqrt(l2);
     const double basis[9] = {0.282094791773878,
                              0.488602511902920 * y,

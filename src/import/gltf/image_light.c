@@ -6,6 +6,7 @@
 
 #include "image/image.h"
 #include "import/gltf/gltf.h"
+#include "math/cube_map.h"
 #include "math/octahedral.h"
 
 typedef struct Cube {
@@ -42,16 +43,10 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
 /* Radiance from direction d, interpolated bilinearly within one face. The faces have the order and axes of OpenGL's
  * cube maps. */
 static void look(const Cube *cube, vlVec3 d, float out[3]) {
-  float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z), s, t, m;
-  int face;
-  if (x >= y && x >= z)
-    face = d.x < 0, m = x, s = face ? d.z : -d.z, t = -d.y;
-  else if (y >= z)
-    face = 2 + (d.y < 0), m = y, s = d.x, t = face == 2 ? d.z : -d.z;
-  else
-    face = 4 + (d.z < 0), m = z, s = face == 4 ? d.x : -d.x, t = -d.y;
+  float s, t;
+  const uint32_t face = vl_cube_map_face(d, &s, &t);
   int n = (int)cube->side[face];
-  float u = (s / m + 1) * 0.5f * (float)n - 0.5f, v = (t / m + 1) * 0.5f * (float)n - 0.5f;
+  float u = (s + 1) * 0.5f * (float)n - 0.5f, v = (t + 1) * 0.5f * (float)n - 0.5f;
   int i = (int)floorf(u), j = (int)floorf(v);
   float fu = u - (float)i, fv = v - (float)j;
   out[0] = out[1] = out[2] = 0;

@@ -4,41 +4,107 @@
  * the linear value. Where the view clips, this is smaller than the derivative of the view would give. The noise of a
  * block is the root of the mean of e^2. That mean is itself estimated from the same samples, and a block that happens
  * to look too clean would stop too early: the upper limit of its one-sided 95 % confidence interval replaces it, from
- * the spread of e^2 over the block's pixels. */
+ * the spread of e^2 over the block's pixels.
+ *
+ * Where light is rare and bright, a few pixels have found it and the others have not. The view is steep in the dark and
+ * flat in the bright, so the first look too clean, and the second have no error at all. There the means over 3 x 3
+ * pixels are closer to the truth, of the linear values (between black and white) and of the squares of their errors.
+ * The noise is computed both ways, and the larger one counts. */
 #include <math.h>
 
 #include "film/sums.h"
 #include "image/pixel.h"
 #include "image/view.h"
 
-double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale) {
+/* The linear values of a block's pixels and the squares of their standard errors. */
+typedef struct Block {
+  uint32_t width, height;
+  double mean[VL_FILM_BLOCK][VL_FILM_BLOCK][3], square[VL_FILM_BLOCK][VL_FILM_BLOCK][3];
+} Block;
+
+typedef struct Display {
+  vlView view;
+  double factor; /* exposure and scale */
+} Display;
+
+/* e^2 of a pixel, the mean over R, G, B. */
+static double display_square(const Display *d, const double mean[3], const double square[3]) {
+  float low[3], high[3];
+  double e = 0;
+  for (int c = 0; c < 3; c++) {
+    double error = sqrt(square[c]);
+    low[c] = (float)((mean[c] - error) * d->factor), high[c] = (float)((mean[c] + error) * d->factor);
+  }
+  vl_view_display(d->view, low, low);
+  vl_view_display(d->view, high, high);
+  for (int c = 0; c < 3; c++) {
+    double half = 0.5 * ((double)high[c] - (double)low[c]);
+    e += half * half / 3.0;
+  }
+  return e;
+}
+
+/* The linear values between black and white that a pixel's standard error leaves possible, as mean and square. Beyond
+ * white an error is hardly seen in the pixel, and must not be seen in its neighbours. */
+static void limit(double white, double *mean, double *square) {
+  double error = sqrt(*square), low = *mean - error, high = *mean + error;
+  low = low < 0 ? 0 : low > white ? white : low, high = high < 0 ? 0 : high > white ? white : high;
+  *mean = 0.5 * (low + high), *square = 0.25 * (high - low) * (high - low);
+}
+
+/* The limited values, each replaced by the mean over the pixels of the block that are next to it. */
+static void pool(const Block *from, double white, Block *to) {
+  Block limited = *from;
+  for (uint32_t y = 0; y < from->height; y++)
+    for (uint32_t x = 0; x < from->width; x++)
+      for (int c = 0; c < 3; c++) limit(white, &limited.mean[y][x][c], &limited.square[y][x][c]);
+  to->width = from->width, to->height = from->height;
+  for (uint32_t y = 0; y < from->height; y++)
+    for (uint32_t x = 0; x < from->width; x++) {
+      uint32_t x0 = x > 0 ? x - 1 : 0, x1 = x + 1 < from->width ? x + 2 : from->width;
+      uint32_t y0 = y > 0 ? y - 1 : 0, y1 = y + 1 < from->height ? y + 2 : from->height;
+      double n = (double)((x1 - x0) * (y1 - y0));
+      for (int c = 0; c < 3; c++) {
+        double mean = 0, square = 0;
+        for (uint32_t j = y0; j < y1; j++)
+          for (uint32_t i = x0; i < x1; i++) mean += limited.mean[j][i][c], square += limited.square[j][i][c];
+        to->mean[y][x][c] = mean / n, to->square[y][x][c] = square / n;
+      }
+    }
+}
+
+static double block_noise(const Block *b, const Display *d) {
   const double one_sided_95 = 1.645; /* quantile of the normal distribution */
-  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
-  if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
-  const double factor = (double)scale * vl_exp2_exact((double)exposure);
-  uint32_t place[4];
-  vl_film_block_place(film->def.crop, block, place);
-  const uint32_t *crop = film->def.crop;
-  double sum = 0, squares = 0, n = 0;
-  for (uint32_t y = place[1]; y < place[3]; y++)
-    for (uint32_t x = place[0]; x < place[2]; x++) {
-      size_t at = (size_t)(y - crop[1]) * film->width + (x - crop[0]);
-      const vlFilmPixel *p = film->front + at;
-      float low[3], high[3];
-      if (p->weight <= 0) return INFINITY;
-      for (int c = 0; c < 3; c++) {
-        double mean = (double)p->color[c] / (double)p->weight * unit, error = vl_film_standard_error(film, at, c);
-        low[c] = (float)((mean - error) * factor), high[c] = (float)((mean + error) * factor);
-      }
-      vl_view_display(view, low, low);
-      vl_view_display(view, high, high);
-      double e = 0;
-      for (int c = 0; c < 3; c++) {
-        double half = 0.5 * ((double)high[c] - (double)low[c]);
-        e += half * half / 3.0;
-      }
-      sum += e, squares += e * e, n += 1;
+  double sum = 0, squares = 0, n = (double)(b->width * b->height);
+  for (uint32_t y = 0; y < b->height; y++)
+    for (uint32_t x = 0; x < b->width; x++) {
+      double e = display_square(d, b->mean[y][x], b->square[y][x]);
+      sum += e, squares += e * e;
     }
   double mean = sum / n, spread = squares / n - mean * mean;
   return sqrt(mean + one_sided_95 * sqrt((spread > 0 ? spread : 0) / n));
+}
+
+double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale) {
+  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
+  if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
+  Display d = {view, (double)scale * vl_exp2_exact((double)exposure)};
+  uint32_t place[4];
+  vl_film_block_place(film->def.crop, block, place);
+  const uint32_t *crop = film->def.crop;
+  Block b = {.width = place[2] - place[0], .height = place[3] - place[1]};
+  for (uint32_t y = 0; y < b.height; y++)
+    for (uint32_t x = 0; x < b.width; x++) {
+      size_t at = (size_t)(place[1] + y - crop[1]) * film->width + (place[0] + x - crop[0]);
+      const vlFilmPixel *p = film->front + at;
+      if (p->weight <= 0) return INFINITY;
+      for (int c = 0; c < 3; c++) {
+        double error = vl_film_standard_error(film, at, c);
+        b.mean[y][x][c] = (double)p->color[c] / (double)p->weight * unit, b.square[y][x][c] = error * error;
+      }
+    }
+  Block pooled;
+  pool(&b, 1.0 / d.factor, &pooled);
+  double each = block_noise(&b, &d), together = block_noise(&pooled, &d);
+  return each > together ? each : together;
 }

@@ -70,7 +70,8 @@ struct Engine {
   vlFilm *film;
   bool failed;            /* the image cannot be rendered */
   uint32_t serial;        /* of the last frame */
-  double pixel_seconds;   /* time of one sample of one pixel; 0: not known */
+  double pixel_seconds;   /* time of one sample of one pixel of the whole image; 0: not known */
+  double coarse_seconds;  /* the same of coarse images */
   double publish_seconds; /* time to make a frame */
   double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,

@@ -164,7 +164,7 @@ bool engine_swap_model(Engine *e) {
   pthread_rwlock_unlock(&e->model_lock);
   vl_film_destroy(e->film);
   e->film = NULL;
-  e->pixel_seconds = 0;
+  e->pixel_seconds = e->coarse_seconds = 0;
   model_free(&old);
   free(next);
   return true;

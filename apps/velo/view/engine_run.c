@@ -1,5 +1,5 @@
-/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into a
- * twentieth of a second; then come finer ones, then the film of the whole image, whose samples add up. */
+/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into
+ * first_seconds; then come finer ones, then the film of the whole image, whose samples add up. */
 #include "view/engine.h"
 
 #include <math.h>
@@ -11,9 +11,11 @@
 #include "view/engine_parts.h"
 #include "view/engine_status.h"
 
-static const double first_seconds = 0.05;  /* within which the first image should be there */
-static const double pass_seconds = 0.2;    /* of a pass at the beginning; */
-static const double longest_pass = 1.0;    /* later ones are longer */
+enum { COARSEST = 32, FIRST_PIXELS = 8192 };
+static const double first_seconds =
+    0.03;                               /* of the first image after a change: others can follow it 25 times a second */
+static const double pass_seconds = 0.2; /* of a pass at the beginning; */
+static const double longest_pass = 1.0; /* later ones are longer */
 static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
@@ -79,9 +81,10 @@ static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
 
 /* ---- coarse images ----------------------------------------------------------------------------------------------- */
 
-static void note_speed(Engine *e, const vlRenderStats *stats, double seconds) {
+/* Notes the time of one sample in a mean of the last ones. */
+static void note_speed(double *sample_seconds, const vlRenderStats *stats, double seconds) {
   double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
-  if (stats->camera_rays > 1000) e->pixel_seconds = e->pixel_seconds > 0 ? 0.5 * (e->pixel_seconds + one) : one;
+  if (stats->camera_rays > 1000) *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
 }
 
 /* False: interrupted. */
@@ -101,7 +104,7 @@ static bool render_coarse(Engine *e, uint32_t scale) {
   double start = engine_clock();
   if (result == VL_OK) result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
-    note_speed(e, &stats, engine_clock() - start);
+    note_speed(&e->coarse_seconds, &stats, engine_clock() - start);
     publish_film(e, film, scale);
   }
   vl_film_destroy(film);
@@ -111,8 +114,9 @@ static bool render_coarse(Engine *e, uint32_t scale) {
 /* Coarse images until one pass of the whole image is next. False: interrupted. */
 static bool render_coarse_images(Engine *e) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
-  uint32_t scale = e->pixel_seconds > 0 ? 1 : 8;
-  while (scale < 16 && pixels * e->pixel_seconds / ((double)scale * scale) > first_seconds) scale *= 2;
+  double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
+  uint32_t scale = 1;
+  while (scale < COARSEST && pixels > most * scale * scale) scale++;
   for (; scale > 1; scale /= 2)
     if (!render_coarse(e, scale)) return false;
   return true;
@@ -225,7 +229,7 @@ static void render_film(Engine *e) {
     }
     e->rendered += seconds;
     e->paths += stats.paths;
-    note_speed(e, &stats, seconds);
+    note_speed(&e->pixel_seconds, &stats, seconds);
     publish_if_due(e);
     tell_if_due(e, vl_film_spp(e->film) >= e->now.spp);
   }

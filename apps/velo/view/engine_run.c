@@ -41,6 +41,11 @@ static bool must_stop(const Engine *e) {
   return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
 }
 
+void engine_interrupt(Engine *engine) {
+  if (engine->interrupted <= 0) engine->interrupted = engine_clock();
+  vl_cancel_request(engine->stop);
+}
+
 bool engine_interrupted(Engine *engine) {
   pthread_mutex_lock(&engine->lock);
   bool stop = must_stop(engine) || engine->wanted.paused || !engine->clients;
@@ -208,6 +213,14 @@ static void tell_if_due(Engine *e, bool always) {
   status_tell(e, always);
 }
 
+/* After the work: a change does not wait for an estimate of the error. */
+static void tell_end(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  bool changed = must_stop(e);
+  pthread_mutex_unlock(&e->lock);
+  tell_if_due(e, !changed);
+}
+
 /* Adds samples until the image is done or something else is asked for. */
 static void render_film(Engine *e) {
   vlRenderDef render = e->model.job.defs->render;
@@ -244,6 +257,7 @@ static bool take_wanted(Engine *e) {
   bool channel = e->wanted.channel != e->now.channel;
   e->now = e->wanted;
   if (!e->quit && !e->next) vl_cancel_clear(e->stop);
+  e->interrupted = 0;
   pthread_mutex_unlock(&e->lock);
   if (!anew) return channel;
   e->failed = false;
@@ -260,6 +274,8 @@ static bool take_wanted(Engine *e) {
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
   pthread_mutex_lock(&e->lock);
+  if (e->interrupted > 0) e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
+  e->interrupted = 0;
   for (;;) {
     bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
     bool unfinished = samples && !e->failed && (!e->film || vl_film_spp(e->film) < e->wanted.spp);
@@ -299,11 +315,11 @@ static void *run(void *user) {
     } else if (anew && e->film) {
       publish_film(e, e->film, 1);
     } else if (anew && !render_coarse_images(e)) {
-      tell_if_due(e, true);
+      tell_end(e);
       continue;
     }
     if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed) render_film(e);
-    tell_if_due(e, true);
+    tell_end(e);
   }
   return NULL;
 }
@@ -364,7 +380,7 @@ int engine_stop(Engine *engine) {
   if (!engine->started) return STATUS_OK;
   pthread_mutex_lock(&engine->lock);
   engine->quit = true;
-  vl_cancel_request(engine->stop);
+  engine_interrupt(engine);
   vl_cancel_request(engine->end);
   vl_cancel_request(engine->trace_stop);
   pthread_cond_broadcast(&engine->wake);

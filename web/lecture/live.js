@@ -257,7 +257,7 @@ export class Live {
       figure.start();
     } else {
       this.state = state;
-    this.local = state.camera;
+      this.local = state.camera;
       this.overlay.state(state);
       this.follow(state);
       this.outside?.state();

@@ -20,19 +20,12 @@ from urllib.parse import urlsplit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from live import Frame, Page, Refused, View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
 
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
 SCENE = os.path.join(ROOT, "scenes/lecture/perspective_two_point.pbrt")
-failures = 0
-
-
-def check(name, good, *about):
-    global failures
-    print(("ok " if good else "not ok ") + name)
-    if not good:
-        failures += 1
-        print("  ", *about, file=sys.stderr)
 
 
 def state_after(page, **message):
@@ -549,4 +542,4 @@ def main():
 
 
 main()
-sys.exit(1 if failures else 0)
+results.end()

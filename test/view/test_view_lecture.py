@@ -13,19 +13,12 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
 from live import Frame, Page, View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
 
 ROOT = os.path.abspath(os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
 SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
-failures = 0
-
-
-def check(name, good, *about):
-    global failures
-    print(("ok " if good else "not ok ") + name)
-    if not good:
-        failures += 1
-        print("  ", *about, file=sys.stderr)
 
 
 def read(path, mode="r"):
@@ -267,4 +260,4 @@ def main():
 
 
 main()
-sys.exit(1 if failures else 0)
+results.end()

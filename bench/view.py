@@ -2,9 +2,10 @@
 """What `velo view` costs and how quick it is, by a client like a page. Usage: view.py VELO [SCENE ...] [-- OPTIONS]
 Without scenes: the lecture's, and those of ../shared that are there. Options are of `velo view`, such as --resolution.
 For each scene: from a change of the camera to its first frame (median and longest of 30), frames per second while the
-camera moves, from a pause to the render at rest (median and longest of 10), and the share of the program's processor
-time that developing, packing and sending frames take: while the camera moves, and in 10 s at rest. Times are only right
-on a machine that has nothing else to do; the shares hardly depend on it."""
+camera moves and their usual size, how soon a change stops the running pass (median and longest of what the program
+reports), and the share of the program's processor time that developing, packing and sending frames take: while the
+camera moves, and in 10 s at rest. Times are only right on a machine that has nothing else to do; the shares hardly
+depend on it."""
 import os
 import statistics
 import sys
@@ -12,7 +13,7 @@ import time
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
 sys.path.insert(0, os.path.join(ROOT, "test/view"))
-from live import Page, View  # noqa: E402
+from live import Frame, Page, View  # noqa: E402
 
 SCENES = ["scenes/lecture/pinhole.pbrt", "scenes/lecture/perspective_two_point.pbrt",
           "../shared/scenes/gltf/DamagedHelmet/DamagedHelmet.glb", "../shared/scenes/pbrt/dining-room/dining-room.pbrt"]
@@ -26,8 +27,18 @@ class Client:
     def __init__(self, view):
         self.page = Page(view)
         self.camera = self.page.wait_text("state")["camera"]
-        self.change, self.running = 1000, True
+        self.change, self.running, self.stops, self.sizes = 1000, True, [], []
         self.page.wait_frame()
+
+    def frame_of(self, change):
+        """The first frame that shows a change; notes what statuses say about stopped passes."""
+        while True:
+            message = self.page.receive()
+            if is_status(message) and "stop_seconds" in message:
+                self.stops.append(message["stop_seconds"])
+            if isinstance(message, Frame) and message.change == change:
+                self.sizes.append((message.columns, message.rows))
+                return
 
     def move(self, amount):
         """Moves the eye; the seconds until the first frame."""
@@ -36,7 +47,7 @@ class Client:
         self.change += 1
         begun = time.monotonic()
         self.page.send(type="camera", change=self.change, gesture=1, set={"eye": [eye[0] + amount * arm, eye[1], eye[2]]})
-        self.page.wait_frame(lambda f: f.change == self.change)
+        self.frame_of(self.change)
         return time.monotonic() - begun
 
     def pause(self, paused):
@@ -69,7 +80,7 @@ def measure(program, scene, options):
         firsts = []
         for i in range(30):
             firsts.append(client.move(0.002 * i))
-            time.sleep(0.05)
+            time.sleep(0.05 + 0.05 * (i % 7))
         rate = [0]
 
         def moving():
@@ -82,16 +93,13 @@ def measure(program, scene, options):
             begun = time.monotonic()
             while time.monotonic() - begun < 10:
                 client.page.receive()
-        busy, rest, cancels = client.share(moving), client.share(resting), []
-        for i in range(10):
-            client.page.send(type="settings", paused=False)
-            client.page.wait_frame(seconds=60)
-            time.sleep(0.1)
-            cancels.append(client.pause(True))
+        stops, client.sizes = client.stops, []
+        busy, rest = client.share(moving), client.share(resting)
+        columns, rows = statistics.median_low(client.sizes)
         client.page.close()
         ms = lambda values: f"{1e3 * statistics.median(values):.0f} ms (longest {1e3 * max(values):.0f})"
-        print(f"{os.path.basename(scene)}: first frame {ms(firsts)}; {rate[0] / 5:.1f} frames/s moving; "
-              f"at rest after {ms(cancels)}; frames take {busy:.2f} % of the processor time moving, {rest:.2f} % at rest",
+        print(f"{os.path.basename(scene)}: first frame {ms(firsts)}; {rate[0] / 5:.1f} frames/s of {columns}x{rows} moving; "
+              f"stopped within {ms(stops)}; frames take {busy:.2f} % of the processor time moving, {rest:.2f} % at rest",
               flush=True)
     finally:
         view.end()

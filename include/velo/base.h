@@ -183,8 +183,8 @@ VL_API vlIsa vl_context_isa(const vlContext *context);
 /** The number of workers. */
 VL_API uint32_t vl_context_threads(const vlContext *context);
 /** A request to stop, which one thread makes and the calls of other threads obey: load, build, render, ground truth. A
- * call stops within one batch of rays, or one step of a build, and returns VL_CANCELLED. All functions are callable
- * from any thread. */
+ * call stops within one batch of rays, some rows of a file, or one step of a build, and returns VL_CANCELLED. All
+ * functions are callable from any thread. */
 typedef struct vlCancel vlCancel;
 /** Creates a request that is not made yet. ARGUMENT, MEMORY. */
 VL_API vlResult vl_cancel_create(vlContext *context, vlCancel **cancel);

@@ -4,7 +4,10 @@
  *
  * Rules for all calls that change a scene: the checks are those of the vl_scene_add_* call of the object. After an
  * error the scene is unchanged, and vl_scene_result does not report the error. Worlds that were built before do not
- * change. Errors: ARGUMENT (no such id, the scene has an error, a def without cookie), SCENE, MEMORY. */
+ * change. Errors: ARGUMENT (no such id, the scene has an error, a def without cookie), SCENE, MEMORY.
+ *
+ * The numbers of a shape (its mesh, its transform, its media) cannot be changed, since worlds share them: hide it, and
+ * add another one, also to a group that has instances. */
 #ifndef VELO_EDIT_H
 #define VELO_EDIT_H
 
@@ -50,6 +53,8 @@ VL_API vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlM
 VL_API vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmissionDef *def, vlError *error);
 /** Replaces a light. */
 VL_API vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error);
+/** Replaces a medium. */
+VL_API vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error);
 /** Shows or hides a light; lights are shown at first. */
 VL_API vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error);
 

@@ -51,7 +51,7 @@ static vlResult put_def(vlScene *scene, Family family, uint32_t index, const Def
     case MATERIALS: return vl_scene_set_material(scene, (vlMaterialId){index}, &def->material, error);
     case EMISSION: return vl_scene_set_emission(scene, (vlEmissionId){index}, &def->emission, error);
     case LIGHTS: return vl_scene_set_light(scene, (vlLightId){index}, &def->light, error);
-    case MEDIA:
+    case MEDIA: return vl_scene_set_medium(scene, (vlMediumId){index}, &def->medium, error);
     case SHAPES:
     case GROUPS:
     case INSTANCES: break;
@@ -95,6 +95,7 @@ static void change_kind(Family family, int kind, bool spectrum, Def *def) {
   if (family == MATERIALS) def->material.name = old.material.name, def->material.source = old.material.source;
   if (family == EMISSION) def->emission.source = old.emission.source;
   if (family == LIGHTS) def->light.source = old.light.source;
+  if (family == MEDIA) def->medium.name = old.medium.name, def->medium.source = old.medium.source;
 }
 
 /* _set(handle, kind or None, keywords) */
@@ -108,7 +109,7 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
     return raise_usage("the kind of a shape cannot be changed");
   if (family == SHAPES) return set_shape(self, index, keywords);
   if (family == INSTANCES) return set_instance(self, index, keywords);
-  if (family == MEDIA || family == GROUPS) return raise_usage("%s cannot be changed", family_names[family]);
+  if (family == GROUPS) return raise_usage("%s cannot be changed", family_names[family]);
   Def def;
   if (!get_def(self->scene, (Family)family, index, &def, &kind)) return raise_usage("the scene has no such object");
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);

@@ -30,7 +30,7 @@ bool vl_cancel_requested(const vlCancel *cancel) {
 static const double step_interval = 0.1; /* seconds */
 
 void vl_task_start(vlTask *task, const vlCancel *cancel, vlStepFn *progress, void *user) {
-  *task = (vlTask){.cancel = cancel, .progress = progress, .user = user, .caller = pthread_self()};
+  *task = (vlTask){.cancel = cancel, .progress = progress, .user = user, .caller = pthread_self(), .name = "reading"};
   task->start = vl_seconds();
   task->last = task->start - step_interval; /* the first step is reported at once */
 }
@@ -43,10 +43,11 @@ bool vl_task_stopped(vlTask *task, const char *name, double fraction) {
     return true;
   }
   if (!task->progress || !pthread_equal(pthread_self(), task->caller)) return false;
+  if (name) task->name = name, task->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
   double now = vl_seconds();
   if (now - task->last < step_interval) return false;
   task->last = now;
-  vlStep step = {name, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction, now - task->start};
+  vlStep step = {task->name, task->fraction, now - task->start};
   if (task->progress(task->user, &step)) return false;
   atomic_store(&task->stopped, true);
   return true;

@@ -111,7 +111,7 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
   vl_error_clear(&error);
   vlResult r =
       t->data ? vl_image_read_memory(x->context, t->name ? t->name : "image", t->data, t->data_size, &image, &error)
-              : vl_image_read_named(x->context, t->path, &image, &error);
+              : vl_image_read_named(x->context, NULL, t->path, &image, &error);
   if (r != VL_OK && x->result == VL_OK) /* the scene's image is at fault, not the file being written */
     x->result = vl_fail_at(x->error, r, t->source.file, t->source.line, t->source.column, "%s", error.message);
   return image;

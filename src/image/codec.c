@@ -31,6 +31,10 @@ vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const
   return vl_fail(file->error, VL_ERROR_UNSUPPORTED, "%s: %s file with %s is not supported", file->name, format, what);
 }
 
+vlResult vl_codec_step(const vlImageFile *file) {
+  return vl_task_stopped(file->task, NULL, 0) ? vl_fail(file->error, VL_CANCELLED, "stopped") : VL_OK;
+}
+
 vlResult vl_codec_promise(const vlImageFile *file, const char *format, uint64_t width, uint64_t height, double need,
                           double ratio) {
   if (width == 0 || height == 0) return vl_codec_broken(file, format, "its image is empty");
@@ -123,25 +127,31 @@ static vlResult read_memory(const vlImageFile *f, vlImage **image) {
                  "%s: not an image (known are OpenEXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI and WebP)", name);
 }
 
-vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
-                              vlError *error) {
+vlResult vl_image_decode(vlContext *context, vlTask *task, const char *name, const void *data, size_t size,
+                         vlImage **image, vlError *error) {
   vlImageFile file = {.context = context,
                       .name = name,
                       .data = data,
                       .size = size,
                       .error = error,
+                      .task = task,
                       .most_pixels = vl_context_max_texture_pixels(context)};
   return read_memory(&file, image);
 }
 
-vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **image, vlError *error) {
+vlResult vl_image_read_memory(vlContext *context, const char *name, const void *data, size_t size, vlImage **image,
+                              vlError *error) {
+  return vl_image_decode(context, NULL, name, data, size, image, error);
+}
+
+vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path, vlImage **image, vlError *error) {
   vl_error_clear(error);
   *image = NULL;
   char *data;
   size_t size;
   vlResult result = vl_file_read(context, path, false, &data, &size, error);
   if (result != VL_OK) return result;
-  result = vl_image_read_memory(context, path, data, size, image, error);
+  result = vl_image_decode(context, task, path, data, size, image, error);
   vl_free(context, data);
   return result;
 }

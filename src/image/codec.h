@@ -3,6 +3,7 @@
 #ifndef IMAGE_CODEC_H
 #define IMAGE_CODEC_H
 
+#include "base/cancel.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "image/image.h"
@@ -17,6 +18,7 @@ typedef struct vlImageFile {
   const char *const *wanted; /* names of the channels to read; null: all. Used by OpenEXR only */
   uint32_t wanted_count;
   uint64_t most_pixels; /* limit of the image's size; 0: none */
+  vlTask *task;         /* of the load or the build that reads the file; null: none */
   vlImage **header; /* not null: only the header is read; vl_codec_create stores an image here and stops the reader */
 } vlImageFile;
 
@@ -36,6 +38,8 @@ extern const uint32_t vl_codec_count;
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what);
 /* Reports an UNSUPPORTED error: "name: PNG file with <what> is not supported". */
 vlResult vl_codec_unsupported(const vlImageFile *file, const char *format, const char *what);
+/* CANCELLED, reported, if the load or the build must stop; decoders call it for each row or chunk. */
+vlResult vl_codec_step(const vlImageFile *file);
 /* Checks the image's size before memory is allocated. need: bytes of the pixels. ratio: the largest number of these
  * bytes that one byte of the file can encode. The result is a SCENE error when the file is too small ("promises WxH
  * pixels, more than its N bytes can hold") or the image is empty. */

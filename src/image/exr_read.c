@@ -284,7 +284,8 @@ static vlResult decode_dwa_chunk(Reader *r, const exr_chunk_info_t *chunk, char 
 
 static vlResult decode_chunk(Reader *r, uint32_t column, uint32_t row) {
   exr_chunk_info_t chunk;
-  vlResult result = find_chunk(r, column, row, &chunk);
+  vlResult result = vl_codec_step(r->base.file);
+  if (result == VL_OK) result = find_chunk(r, column, row, &chunk);
   if (result != VL_OK) return result;
   size_t pixel = (size_t)r->user_size * r->image->channels, line = pixel * r->width;
   char *origin = (char *)r->image->pixels +

@@ -120,6 +120,7 @@ vlResult vl_hdr_read(const vlImageFile *file, vlImage **image) {
                : vl_fail_memory(file->error);
   size_t at = h.pixels;
   for (uint32_t y = 0; result == VL_OK && y < h.height; y++) {
+    if ((result = vl_codec_step(file)) != VL_OK) break;
     const uint8_t *p = file->data + at;
     size_t left = file->size - at;
     bool planes = left >= 4 && p[0] == 2 && p[1] == 2 && p[2] < 128 && h.width >= 8 && h.width < 32768;

@@ -4,6 +4,7 @@
 #define IMAGE_IMAGE_H
 
 #include "base/array.h"
+#include "base/cancel.h"
 #include "base/context.h"
 #include "velo/image.h"
 
@@ -48,7 +49,10 @@ void vl_image_row_to_float(const vlImage *image, uint32_t y, const uint32_t *cha
 vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32_t count, float **result);
 
 /* Like vl_image_read, for a file that a scene names: pipes are rejected, and the context's sandbox and pixel limit
- * apply. */
-vlResult vl_image_read_named(vlContext *context, const char *path, vlImage **image, vlError *error);
+ * apply. task: of the load or the build that reads it, which stops with CANCELLED; null: none. */
+vlResult vl_image_read_named(vlContext *context, vlTask *task, const char *path, vlImage **image, vlError *error);
+/* Like vl_image_read_memory, with a task. */
+vlResult vl_image_decode(vlContext *context, vlTask *task, const char *name, const void *data, size_t size,
+                         vlImage **image, vlError *error);
 
 #endif

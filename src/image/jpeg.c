@@ -21,7 +21,9 @@ typedef struct Jpeg {
   vlImage *image;
   uint8_t *line;
   float *scratch;
+  const vlImageFile *file; /* that is read */
   int code;
+  bool stopped; /* by vl_codec_step */
   char message[JMSG_LENGTH_MAX];
   uint8_t buffer[16384];
 } Jpeg;
@@ -48,6 +50,11 @@ static void on_output(j_common_ptr info) {
   (void)info;
 }
 static void on_progress(j_common_ptr info) {
+  Jpeg *jpeg = (Jpeg *)(void *)info->err;
+  if (jpeg->file && vl_codec_step(jpeg->file) != VL_OK) {
+    jpeg->stopped = true;
+    longjmp(jpeg->jump, 1);
+  }
   if (info->is_decompressor && ((j_decompress_ptr)info)->input_scan_number > MAX_SCANS) {
     info->err->msg_code = JERR_BAD_PROGRESSION;
     Jpeg *j = (Jpeg *)(void *)info->err;
@@ -91,7 +98,9 @@ static void cmyk_row(const uint8_t *line, uint32_t width, bool inverted, uint8_t
 
 static vlResult decode(Jpeg *j, struct jpeg_decompress_struct *d, const vlImageFile *file) {
   if (setjmp(j->jump))
-    return j->code == JERR_OUT_OF_MEMORY ? vl_fail_memory(file->error) : vl_codec_broken(file, "JPEG", j->message);
+    return j->stopped                      ? VL_CANCELLED
+           : j->code == JERR_OUT_OF_MEMORY ? vl_fail_memory(file->error)
+                                           : vl_codec_broken(file, "JPEG", j->message);
   jpeg_create_decompress(d);
   d->progress = &j->progress;
   j->source = (struct jpeg_source_mgr){.next_input_byte = file->data,
@@ -135,6 +144,7 @@ vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image) {
   struct jpeg_decompress_struct d;
   memset(&d, 0, sizeof d);
   start_errors(j);
+  j->file = file;
   d.err = &j->errors;
   vlResult result = decode(j, &d, file);
   jpeg_destroy_decompress(&d);

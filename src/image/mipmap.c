@@ -15,6 +15,7 @@ typedef struct Builder {
   bool one_table;           /* all channels have the same decoding */
   float *column;            /* one row: weighted sum of source rows */
   float *line;              /* one decoded row */
+  vlTask *task;             /* null: none */
 } Builder;
 
 size_t vl_mipmap_bytes(const vlMipmap *map) {
@@ -86,6 +87,7 @@ static vlResult finest_level(vlMipmap *map, const vlImage *image, const vlMipmap
   vlMipLevel *level = &map->levels[map->level_count++];
   *level = (vlMipLevel){image->width, image->height, map->is_bytes ? block : NULL, map->is_bytes ? NULL : block};
   for (uint32_t y = 0; y < image->height; y++) {
+    if (vl_task_stopped(def->task, NULL, 0)) return VL_CANCELLED;
     if (map->is_bytes) {
       const uint8_t *from = vl_image_const_row(image, y);
       uint8_t *to = (uint8_t *)block + row * y;
@@ -130,11 +132,13 @@ static void shrink_pairs(const float *column, uint32_t width, uint32_t n, float 
       out[(size_t)x * n + c] = 0.5f * column[(size_t)2 * x * n + c] + 0.5f * column[((size_t)2 * x + 1) * n + c];
 }
 
-static void shrink(Builder *b, const vlMipLevel *from, const float *floats, uint32_t width, uint32_t height,
+/* False: stopped. */
+static bool shrink(Builder *b, const vlMipLevel *from, const float *floats, uint32_t width, uint32_t height,
                    float *out) {
   uint32_t n = b->map->channels;
   size_t row = (size_t)from->width * n;
   for (uint32_t y = 0; y < height; y++, out += (size_t)width * n) {
+    if (vl_task_stopped(b->task, NULL, 0)) return false;
     uint32_t first = (uint32_t)((uint64_t)y * from->height / height);
     uint32_t last = (uint32_t)(((uint64_t)(y + 1) * from->height + height - 1) / height);
     for (uint32_t i = first; i < last; i++) {
@@ -160,6 +164,14 @@ static void shrink(Builder *b, const vlMipLevel *from, const float *floats, uint
       }
     }
   }
+  return true;
+}
+
+/* Rounds the means to codes. */
+static void store_codes(const Builder *b, const float *floats, size_t count, uint8_t *bytes) {
+  const uint32_t n = b->map->channels;
+  for (size_t i = 0; i < count; i += n)
+    for (uint32_t c = 0; c < n; c++) bytes[i + c] = nearest_code(b, c, floats[i + c]);
 }
 
 /* Makes the next coarser level. *kept holds the floats of the level before (null for 8-bit level 0) and is replaced by
@@ -171,14 +183,15 @@ static vlResult add_level(Builder *b, float **kept) {
   size_t count = (size_t)width * height * map->channels;
   float *floats = vl_alloc_array(map->context, count, sizeof *floats);
   uint8_t *bytes = map->is_bytes ? vl_alloc_array(map->context, count, 1) : NULL;
-  if (!floats || (map->is_bytes && !bytes)) {
+  vlResult result = floats && (!map->is_bytes || bytes) ? VL_OK : VL_ERROR_MEMORY;
+  if (result == VL_OK && !shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats))
+    result = VL_CANCELLED;
+  if (result != VL_OK) {
     vl_free(map->context, floats);
     vl_free(map->context, bytes);
-    return VL_ERROR_MEMORY;
+    return result;
   }
-  shrink(b, from, map->is_bytes ? *kept : from->floats, width, height, floats);
-  for (size_t i = 0; bytes && i < count; i += map->channels)
-    for (uint32_t c = 0; c < map->channels; c++) bytes[i + c] = nearest_code(b, c, floats[i + c]);
+  if (bytes) store_codes(b, floats, count, bytes);
   if (map->is_bytes) {
     vl_free(map->context, *kept);
     *kept = floats;
@@ -215,6 +228,7 @@ vlResult vl_mipmap_create(const vlImage *image, const vlMipmapDef *def, vlMipmap
   if (map) map->context = context; /* vl_mipmap_destroy needs the context */
   if (result == VL_OK) {
     b->map = map;
+    b->task = def->task;
     map->channels = def->count;
     find_space(image, map);
     map->is_bytes = image->type == VL_PIXEL_U8;

@@ -34,6 +34,7 @@ typedef struct vlMipmapDef {
   bool own_encoding;   /* 8 and 16-bit images: use encoding and gamma below instead of the image's own */
   vlEncoding encoding;
   float gamma;
+  vlTask *task; /* of the build that makes it, which stops with CANCELLED; null: none */
 } vlMipmapDef;
 
 /* Makes a mipmap. The image may be destroyed afterwards. */

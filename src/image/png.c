@@ -18,7 +18,8 @@ typedef struct Png {
   vlImage *image;
   uint8_t *line;
   float *scratch;
-  bool memory; /* an allocation failed */
+  bool memory;  /* an allocation failed */
+  bool stopped; /* by vl_codec_step */
   char message[128];
 } Png;
 
@@ -47,6 +48,10 @@ static void on_free(png_structp png, png_voidp block) {
 static void on_read(png_structp png, png_bytep bytes, size_t size) {
   Png *p = png_get_io_ptr(png);
   if (size > p->file->size - p->at) png_error(png, "ends too early");
+  if (vl_codec_step(p->file) != VL_OK) {
+    p->stopped = true;
+    png_error(png, "stopped");
+  }
   memcpy(bytes, p->file->data + p->at, size);
   p->at += size;
 }
@@ -69,7 +74,9 @@ static bool says_linear(Png *p) {
 static vlResult decode(Png *p) {
   const vlImageFile *file = p->file;
   if (setjmp(png_jmpbuf(p->png)))
-    return p->memory ? vl_fail_memory(file->error) : vl_codec_broken(file, "PNG", p->message);
+    return p->stopped  ? VL_CANCELLED
+           : p->memory ? vl_fail_memory(file->error)
+                       : vl_codec_broken(file, "PNG", p->message);
   png_set_read_fn(p->png, p, on_read);
   png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff); /* the size is checked below against the file's size */
   png_set_chunk_malloc_max(p->png, 8u << 20);

@@ -128,7 +128,7 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, 
   vl_import_plain_settings(scene);
   vlPlyMesh mesh = {0};
   vlError inside = {0};
-  vlResult r = vl_ply_read_given(context, path, load && load->permissive, &mesh, &inside);
+  vlResult r = vl_ply_read_given(context, scene->task, path, load && load->permissive, &mesh, &inside);
   if (r == VL_OK && !split_quads(context, &mesh)) {
     r = VL_ERROR_MEMORY;
     vl_ply_free(context, &mesh);

@@ -99,7 +99,7 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
     vlError error;
     vlResult r = t->data   ? vl_image_read_memory(c->context, t->name ? t->name : "an image", t->data, t->data_size,
                                                   &image, &error)
-                 : t->path ? vl_image_read_named(c->context, t->path, &image, &error)
+                 : t->path ? vl_image_read_named(c->context, NULL, t->path, &image, &error)
                            : VL_ERROR_MISSING;
     if (r == VL_ERROR_MEMORY) c->no_memory = true;
     if (r == VL_ERROR_SCENE || r == VL_ERROR_UNSUPPORTED)

@@ -177,6 +177,20 @@ vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def,
   return result;
 }
 
+static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
+  SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
+}
+
+vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
+  vlResult result = check(scene, ITEM(scene, media, id) != NULL, "medium", error);
+  if (result != VL_OK) return result;
+  vlSceneMark *mark = mark_of(scene, &scene->medium_marks, id.index);
+  if (!mark) return vl_fail_memory(error);
+  result = set_medium(scene, id, def, error);
+  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
+  return result;
+}
+
 /* ---- shapes, lights ---------------------------------------------------------------------------------------------- */
 
 vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {

@@ -56,6 +56,7 @@ void vl_scene_destroy(vlScene *scene) {
   VL_ARRAY_FREE(context, &scene->edits);
   VL_ARRAY_FREE(context, &scene->texture_marks);
   VL_ARRAY_FREE(context, &scene->light_marks);
+  VL_ARRAY_FREE(context, &scene->medium_marks);
   VL_ARRAY_FREE(context, &scene->shape_marks);
   VL_ARRAY_FREE(context, &scene->apertures);
   VL_ARRAY_FREE(context, &scene->optics);

@@ -70,7 +70,7 @@ struct vlScene {
   VL_ARRAY(vlSceneGroup) groups;
   VL_ARRAY(vlSceneInstance) instances;
   uint64_t number; /* of this scene in its context; from 1 */
-  vlSceneMarks texture_marks, light_marks, shape_marks;
+  vlSceneMarks texture_marks, light_marks, medium_marks, shape_marks;
   VL_ARRAY(vlSceneEdit) edits;
   vlSceneDefs defs;
   bool camera_in_full; /* vl_scene_load has read a complete camera description from the extras of a glTF file */

@@ -222,7 +222,8 @@ typedef struct vlWorldLight {
 typedef struct vlWorldFilePart {
   vlPart *part;
   vlFileStamp stamp; /* of the file when it was read */
-  uint32_t id;       /* of a medium: its id in the scene */
+  uint32_t id;       /* of a medium: its id in the scene, and the generation of its mark */
+  uint64_t generation;
 } vlWorldFilePart;
 
 /* What worlds share of an environment: the distribution over its cells. */

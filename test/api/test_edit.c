@@ -110,6 +110,8 @@ static Things make_scene(vlContext *context) {
   return t;
 }
 
+static vlTracer tracer = VL_TRACER_PATH;
+
 static void shoot(vlContext *context, const vlWorld *world, float *pixels) {
   vlCamera camera;
   vlFilm *film = NULL;
@@ -117,6 +119,7 @@ static void shoot(vlContext *context, const vlWorld *world, float *pixels) {
   vlFilmDef film_def = vl_default_film_def(SMALL_WIDTH, SMALL_HEIGHT);
   vlRenderDef render = vl_default_render_def();
   render.spp = 2;
+  render.tracer = tracer;
   assert_int_equal(small_camera(&camera), VL_OK);
   assert_int_equal(vl_film_create(context, &film_def, &film), VL_OK);
   assert_int_equal(vl_render(world, &camera, film, &render, NULL, NULL), VL_OK);
@@ -327,6 +330,49 @@ static void an_image_file_changes(void **state) {
 }
 
 /* A wrong change is refused and leaves the scene as it was. */
+/* A ball of fog. Its medium changes its numbers, then its kind; then nothing changes, and it is shared. */
+static void media_change(void **state) {
+  (void)state;
+  static float a[8 * PIXELS], b[8 * PIXELS];
+  vlContext *context = make_context();
+  Things t = make_scene(context);
+  vlError error;
+  vlMediumDef fog = vl_default_medium_def(VL_MEDIUM_HOMOGENEOUS);
+  fog.sigma_s = vl_spectrum_constant(2), fog.sigma_a = vl_spectrum_constant(0.5f);
+  vlMediumId id = vl_scene_add_medium(t.scene, &fog);
+  vlMaterialDef surface = vl_default_material_def(VL_MATERIAL_INTERFACE);
+  vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);
+  ball.radius = 1, ball.z_min = -1, ball.z_max = 1;
+  ball.material = vl_scene_add_material(t.scene, &surface);
+  ball.inside = id;
+  assert_true(vl_scene_add_shape(t.scene, &ball).index > 0);
+  tracer = VL_TRACER_VOLPATH;
+  vlWorld *one = compare(context, t.scene, NULL, a);
+  fog = *vl_scene_medium(t.scene, id);
+  fog.sigma_s = vl_spectrum_constant(6);
+  assert_int_equal(vl_scene_set_medium(t.scene, id, &fog, &error), VL_OK);
+  vlWorld *two = compare(context, t.scene, one, b);
+  assert_memory_not_equal(a, b, sizeof a);
+  const float density[8] = {1, 4, 0, 2, 3, 1, 5, 0};
+  fog = vl_default_medium_def(VL_MEDIUM_GRID);
+  fog.nx = fog.ny = fog.nz = 2, fog.density = density;
+  assert_int_equal(vl_scene_set_medium(t.scene, id, &fog, &error), VL_OK);
+  vlWorld *three = compare(context, t.scene, two, a);
+  assert_memory_not_equal(a, b, sizeof a);
+  fog.density = NULL;
+  assert_int_equal(vl_scene_set_medium(t.scene, id, &fog, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_scene_set_medium(t.scene, (vlMediumId){9}, &fog, &error), VL_ERROR_ARGUMENT);
+  vlWorld *four = compare(context, t.scene, three, b);
+  assert_memory_equal(a, b, sizeof a);
+  tracer = VL_TRACER_PATH;
+  vl_world_destroy(two);
+  vl_world_destroy(one);
+  vl_world_destroy(three);
+  vl_world_destroy(four);
+  vl_scene_destroy(t.scene);
+  end(context);
+}
+
 static void wrong_edits(void **state) {
   (void)state;
   static float a[8 * PIXELS], b[8 * PIXELS];
@@ -420,6 +466,7 @@ int main(void) {
       cmocka_unit_test(any_order),
       cmocka_unit_test(a_scene_made_again),
       cmocka_unit_test(an_image_file_changes),
+      cmocka_unit_test(media_change),
       cmocka_unit_test(wrong_edits),
       cmocka_unit_test(images_are_kept),
       cmocka_unit_test(edits_keep_no_memory),

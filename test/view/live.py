@@ -75,6 +75,7 @@ class Page:
 
     def __init__(self, view, path=None, host=None, origin=None, protocol="velo-view"):
         self.socket = socket.create_connection((view.host, view.port), 10)
+        self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as browsers do
         host = host or f"{view.host}:{view.port}"
         key = base64.b64encode(os.urandom(16)).decode()
         lines = [f"GET {path or view.path + 'socket'} HTTP/1.1", f"Host: {host}", "Upgrade: websocket",

@@ -15,6 +15,8 @@ import zlib
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
 from live import View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
 
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
@@ -31,15 +33,6 @@ Include "things.pbrt"
 Material "diffuse" "rgb reflectance" [0.6 0.6 0.5]
 Shape "bilinearmesh" "point3 P" [-9 -0.8 -9 9 -0.8 -9 -9 -0.8 9 9 -0.8 9]
 '''
-failures = 0
-
-
-def check(name, good, *about):
-    global failures
-    print(("ok " if good else "not ok ") + name)
-    if not good:
-        failures += 1
-        print("  ", *about, file=sys.stderr)
 
 
 def read_png(path):
@@ -356,4 +349,4 @@ def main():
 
 
 main()
-sys.exit(1 if failures else 0)
+results.end()

@@ -13,19 +13,12 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
 from live import Frame, Page, View  # noqa: E402
+import results  # noqa: E402
+from results import check  # noqa: E402
 
 ROOT = os.path.abspath(os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
 SHOTS = os.environ.get("VELO_SCREENSHOTS")  # a folder to which the images of the page are written
-failures = 0
-
-
-def check(name, good, *about):
-    global failures
-    print(("ok " if good else "not ok ") + name)
-    if not good:
-        failures += 1
-        print("  ", *about, file=sys.stderr)
 
 
 def read(path, mode="r"):
@@ -154,6 +147,20 @@ def test_figure(b, language):
 
 
 def test_page(b, view):
+    # another page steers: the figure of its scene shows its image
+    other = Page(view)
+    choose(other, "scenes/lecture/view_plane_500.pbrt", 77)
+    b.open(view.address)
+    b.wait("!!velo.lecture && velo.live.steers === false", 120)
+    n = make_live(b, "view_plane_500")
+    other.send(type="camera", change=78, gesture=1, set={"d": 800})
+    b.wait(f"velo.live.shown === 78 && velo.lecture.figures[{n}].camera.d === 800")
+    b.run("velo.live.edit({ d: 300 })")
+    choose(other, "scenes/lecture/pinhole.pbrt", 79)
+    b.wait(f"velo.live.canvas.hidden && velo.lecture.figures[{n}].error.textContent")
+    check("looks_on", b.run(f"velo.lecture.figures[{n}].camera.d") == 800)
+    other.close()
+    b.wait("velo.live.steers && !velo.live.canvas.hidden")
     b.open(view.address)
     b.wait("!!velo.lecture && velo.live.steers", 120)
     check("figures", b.run("velo.lecture.figures.length") >= 15)
@@ -175,6 +182,16 @@ def test_page(b, view):
     b.drag(at[0], at[1], at[0] + 30 * at[2], at[1] + 30 * at[3])
     b.wait(f"velo.live.state.camera.d < 450 && velo.lecture.figures[{n}].camera.d === velo.live.state.camera.d")
     check("drag_plane_outside", True)
+    # dragging the image turns the camera round lookat; so do the arrow keys
+    arm = "(c => Math.hypot(...c.eye.map((x, i) => x - c.lookat[i])))(velo.live.state.camera)"
+    at = b.run("(r => [r.x + r.width / 2, r.y + r.height / 2])(velo.live.canvas.getBoundingClientRect())")
+    eye, length = b.run("velo.live.state.camera.eye"), b.run(arm)
+    b.drag(at[0], at[1], at[0] + 60, at[1])
+    b.wait(f"velo.live.shown === velo.live.change && Math.abs(velo.live.state.camera.eye[0] - {eye[0]}) > 10")
+    check("drag_image", abs(b.run(arm) - length) < 1e-6 * length and
+          b.run(f"velo.lecture.figures[{n}].camera.eye.join() === velo.live.state.camera.eye.join()"), b.run(arm), length)
+    b.run("velo.live.canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp', cancelable: true }))")
+    b.wait("velo.live.shown === velo.live.change && Math.abs(velo.live.state.camera.eye[1]) > 5")
     # what cannot be: near behind far
     make_live(b, "lecture/pinhole")
     b.run("(() => { const f = velo.lecture.figures.find(f => f.element.dataset.scene.includes('/pinhole')); f.set({ ...f.camera, near: 900, far: 300 }, false); })()")
@@ -243,4 +260,4 @@ def main():
 
 
 main()
-sys.exit(1 if failures else 0)
+results.end()

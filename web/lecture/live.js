@@ -5,17 +5,20 @@ import { parseFrame } from "../frame.js";
 import { Outside } from "../outside.js";
 import { Overlay } from "../overlay.js";
 import { Screen } from "../screen.js";
+import { attachDrag } from "./drag.js";
 
 const WORDS = {
   en: {
     steered: "another page steers",
     away: "velo has ended or cannot be reached; trying again",
+    image: "Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn",
     outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
     status: (s) => `${s.spp} of ${s.target} samples per pixel`,
   },
   it: {
     steered: "un'altra pagina ha il comando",
     away: "velo è terminato o non è raggiungibile; nuovo tentativo",
+    image: "Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce",
     outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
   },
@@ -59,6 +62,7 @@ export class Live {
     document.body.append(this.canvas, this.svg);
     this.screen = new Screen(this.canvas);
     this.overlay = new Overlay(document.createElement("div"), this);
+    attachDrag(this.canvas, this);
     this.screen.onplace = () => this.overlay.draw();
     this.display = { ev: 0 };
     addEventListener("wheel", (event) => { // over the view from outside it scrolls the page
@@ -74,16 +78,18 @@ export class Live {
   use(language) {
     this.leave();
     this.words = WORDS[language];
+    this.canvas.title = this.words.image;
+    this.canvas.setAttribute("aria-label", this.words.image);
   }
 
   // ---- for figures.js ----
 
   start(element, scene) {
     this.leave();
-    if (this.steers === false) return Promise.reject(new Error(this.words.steered));
     this.element = element;
     this.scene = scene;
     this.state = null;
+    if (this.steers === false) return this.look();
     element.querySelector(".pane.image").append(this.canvas, this.svg);
     return new Promise((resolve, reject) => {
       this.pending = { change: ++this.change, resolve, reject };
@@ -94,6 +100,7 @@ export class Live {
 
   show(element, scene, camera) {
     if (element !== this.element || !this.state) return;
+    if (this.steers === false) return this.follow(this.state);
     this.wanted = camera;
     this.timer ??= requestAnimationFrame(() => this.flush());
   }
@@ -107,6 +114,9 @@ export class Live {
   // ---- what the view from outside and the overlays need ----
 
   camera() { return this.local; }
+
+  // A gesture begins: its edits are one step of undo.
+  next() { this.gesture++; }
 
   edit(set) {
     const figure = this.figures.find((f) => f.element === this.element);
@@ -206,6 +216,8 @@ export class Live {
   }
 
   receiveState(state) {
+    this.latest = state;
+    if (this.steers === false) return this.lookAt(state);
     if (!this.element || state.scene !== this.scene || state.change < this.first) return;
     this.state = state;
     this.local = state.camera;
@@ -219,6 +231,37 @@ export class Live {
       this.follow(state);
     }
     this.outside?.state();
+  }
+
+  // Another page steers: its image is shown where it is that of this figure's scene.
+  look() {
+    const state = this.latest;
+    if (state?.scene !== this.scene) return Promise.reject(new Error(this.words.steered));
+    this.element.querySelector(".pane.image").append(this.canvas, this.svg);
+    this.first = state.change;
+    this.state = state;
+    this.local = state.camera;
+    this.overlay.state(state);
+    this.canvas.hidden = !(this.shown >= this.first);
+    return Promise.resolve(this.begin(state));
+  }
+
+  lookAt(state) {
+    const figure = this.figures.find((f) => f.element === this.element);
+    if (!figure) return;
+    if (state.scene !== this.scene) {
+      this.canvas.hidden = true;
+      this.outside = this.state = null;
+      figure.complain(this.words.steered);
+    } else if (!this.state) {
+      figure.start();
+    } else {
+      this.state = state;
+      this.local = state.camera;
+      this.overlay.state(state);
+      this.follow(state);
+      this.outside?.state();
+    }
   }
 
   // The figure's numbers are those of velo, unless newer ones are on their way.

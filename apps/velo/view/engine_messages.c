@@ -46,7 +46,7 @@ void engine_clients(void *user, uint32_t count) {
   pthread_mutex_lock(&e->lock);
   e->clients = count;
   if (!count) {
-    vl_cancel_request(e->stop);
+    engine_interrupt(e);
     engine_drop_traces(e, 0, "the page is closed");
   }
   pthread_cond_broadcast(&e->wake);
@@ -68,7 +68,7 @@ static void post_refusal(Engine *e, uint32_t client, const ViewMessage *m, const
 static void show_camera(Engine *e, const ViewCamera *camera) {
   e->wanted.camera = *camera;
   e->wanted.generation++;
-  vl_cancel_request(e->stop);
+  engine_interrupt(e);
   engine_drop_traces(e, 0, "the camera moved");
 }
 
@@ -164,7 +164,7 @@ static void change_settings(Engine *e, uint32_t client, const ViewMessage *m) {
   }
   if (m->has_spp) e->wanted.spp = m->spp;
   if (m->has_paused) e->wanted.paused = m->paused;
-  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused) vl_cancel_request(e->stop);
+  if (m->has_crop || m->has_channel || m->mark || e->wanted.paused) engine_interrupt(e);
   e->wanted.change = m->change ? m->change : e->wanted.change;
   engine_post_state(e, 0);
 }

@@ -49,6 +49,8 @@ struct Engine {
   vlCancel *trace_stop;        /* stops the tracing of a pixel's paths; as `stop` */
   /* under the lock */
   bool quit;
+  double interrupted;  /* time of the first request to stop that the render thread has not obeyed; 0: none */
+  double stop_seconds; /* the longest time from such a request to the end of the work, since the last status */
   uint32_t clients;
   Wanted wanted;
   ViewCamera scene_camera; /* as the scene and the command line give it */
@@ -70,7 +72,8 @@ struct Engine {
   vlFilm *film;
   bool failed;            /* the image cannot be rendered */
   uint32_t serial;        /* of the last frame */
-  double pixel_seconds;   /* time of one sample of one pixel; 0: not known */
+  double pixel_seconds;   /* time of one sample of one pixel of the whole image; 0: not known */
+  double coarse_seconds;  /* the same of coarse images */
   double publish_seconds; /* time to make a frame */
   double frame_seconds;   /* processor time of this thread for all frames */
   double begun, published, reported,
@@ -87,6 +90,8 @@ double engine_thread_seconds(void);
 double engine_program_seconds(void);
 /* Begins anew with the camera and the settings of the model. Returns -1 or the exit code after reporting an error. */
 int engine_take_model(Engine *engine);
+/* Stops what the render thread does; the caller holds the lock. */
+void engine_interrupt(Engine *engine);
 /* Whether the render thread must stop what it does. Takes the lock. */
 bool engine_interrupted(Engine *engine);
 /* Sends a frame of `image`. format, channels: as frame_make's; scale: pixels of the image per pixel of the frame. */

@@ -44,7 +44,7 @@ static bool load_again(Engine *e, Watch *watch) {
   pthread_mutex_lock(&e->lock);
   Model *unused = e->next;
   e->next = model;
-  vl_cancel_request(e->stop);
+  engine_interrupt(e);
   engine_drop_traces(e, 0, "the scene changed");
   pthread_cond_broadcast(&e->wake);
   pthread_mutex_unlock(&e->lock);
@@ -105,7 +105,7 @@ void *engine_load_chosen(void *user) {
     Model *unused = e->next;
     e->next = model;
     e->next_path = path, e->next_change = change;
-    vl_cancel_request(e->stop);
+    engine_interrupt(e);
     pthread_cond_broadcast(&e->wake);
     pthread_mutex_unlock(&e->lock);
     if (unused) model_free(unused);
@@ -164,7 +164,7 @@ bool engine_swap_model(Engine *e) {
   pthread_rwlock_unlock(&e->model_lock);
   vl_film_destroy(e->film);
   e->film = NULL;
-  e->pixel_seconds = 0;
+  e->pixel_seconds = e->coarse_seconds = 0;
   model_free(&old);
   free(next);
   return true;

@@ -1,5 +1,5 @@
-/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into a
- * twentieth of a second; then come finer ones, then the film of the whole image, whose samples add up. */
+/* view/engine_run.c: the render thread; see engine.h. The first image after a change is as fine as fits into
+ * first_seconds; then come finer ones, then the film of the whole image, whose samples add up. */
 #include "view/engine.h"
 
 #include <math.h>
@@ -11,9 +11,11 @@
 #include "view/engine_parts.h"
 #include "view/engine_status.h"
 
-static const double first_seconds = 0.05;  /* within which the first image should be there */
-static const double pass_seconds = 0.2;    /* of a pass at the beginning; */
-static const double longest_pass = 1.0;    /* later ones are longer */
+enum { COARSEST = 32, FIRST_PIXELS = 8192 };
+static const double first_seconds =
+    0.03;                               /* of the first image after a change: others can follow it 25 times a second */
+static const double pass_seconds = 0.2; /* of a pass at the beginning; */
+static const double longest_pass = 1.0; /* later ones are longer */
 static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
@@ -37,6 +39,11 @@ double engine_program_seconds(void) {
 
 static bool must_stop(const Engine *e) {
   return e->quit || e->next || e->task_count || e->wanted.generation != e->now.generation;
+}
+
+void engine_interrupt(Engine *engine) {
+  if (engine->interrupted <= 0) engine->interrupted = engine_clock();
+  vl_cancel_request(engine->stop);
 }
 
 bool engine_interrupted(Engine *engine) {
@@ -79,9 +86,10 @@ static void publish_film(Engine *e, const vlFilm *film, uint32_t scale) {
 
 /* ---- coarse images ----------------------------------------------------------------------------------------------- */
 
-static void note_speed(Engine *e, const vlRenderStats *stats, double seconds) {
+/* Notes the time of one sample in a mean of the last ones. */
+static void note_speed(double *sample_seconds, const vlRenderStats *stats, double seconds) {
   double one = seconds / (double)(stats->camera_rays ? stats->camera_rays : 1);
-  if (stats->camera_rays > 1000) e->pixel_seconds = e->pixel_seconds > 0 ? 0.5 * (e->pixel_seconds + one) : one;
+  if (stats->camera_rays > 1000) *sample_seconds = *sample_seconds > 0 ? 0.5 * (*sample_seconds + one) : one;
 }
 
 /* False: interrupted. */
@@ -101,7 +109,7 @@ static bool render_coarse(Engine *e, uint32_t scale) {
   double start = engine_clock();
   if (result == VL_OK) result = vl_render(e->model.world, &camera, film, &render, &stats, &error);
   if (result == VL_OK) {
-    note_speed(e, &stats, engine_clock() - start);
+    note_speed(&e->coarse_seconds, &stats, engine_clock() - start);
     publish_film(e, film, scale);
   }
   vl_film_destroy(film);
@@ -111,8 +119,9 @@ static bool render_coarse(Engine *e, uint32_t scale) {
 /* Coarse images until one pass of the whole image is next. False: interrupted. */
 static bool render_coarse_images(Engine *e) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
-  uint32_t scale = e->pixel_seconds > 0 ? 1 : 8;
-  while (scale < 16 && pixels * e->pixel_seconds / ((double)scale * scale) > first_seconds) scale *= 2;
+  double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
+  uint32_t scale = 1;
+  while (scale < COARSEST && pixels > most * scale * scale) scale++;
   for (; scale > 1; scale /= 2)
     if (!render_coarse(e, scale)) return false;
   return true;
@@ -204,6 +213,14 @@ static void tell_if_due(Engine *e, bool always) {
   status_tell(e, always);
 }
 
+/* After the work: a change does not wait for an estimate of the error. */
+static void tell_end(Engine *e) {
+  pthread_mutex_lock(&e->lock);
+  bool changed = must_stop(e);
+  pthread_mutex_unlock(&e->lock);
+  tell_if_due(e, !changed);
+}
+
 /* Adds samples until the image is done or something else is asked for. */
 static void render_film(Engine *e) {
   vlRenderDef render = e->model.job.defs->render;
@@ -225,7 +242,7 @@ static void render_film(Engine *e) {
     }
     e->rendered += seconds;
     e->paths += stats.paths;
-    note_speed(e, &stats, seconds);
+    note_speed(&e->pixel_seconds, &stats, seconds);
     publish_if_due(e);
     tell_if_due(e, vl_film_spp(e->film) >= e->now.spp);
   }
@@ -240,6 +257,7 @@ static bool take_wanted(Engine *e) {
   bool channel = e->wanted.channel != e->now.channel;
   e->now = e->wanted;
   if (!e->quit && !e->next) vl_cancel_clear(e->stop);
+  e->interrupted = 0;
   pthread_mutex_unlock(&e->lock);
   if (!anew) return channel;
   e->failed = false;
@@ -256,6 +274,8 @@ static bool take_wanted(Engine *e) {
 /* Waits until there is something to do. False: the end. */
 static bool wait_for_work(Engine *e) {
   pthread_mutex_lock(&e->lock);
+  if (e->interrupted > 0) e->stop_seconds = fmax(e->stop_seconds, engine_clock() - e->interrupted);
+  e->interrupted = 0;
   for (;;) {
     bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
     bool unfinished = samples && !e->failed && (!e->film || vl_film_spp(e->film) < e->wanted.spp);
@@ -295,11 +315,11 @@ static void *run(void *user) {
     } else if (anew && e->film) {
       publish_film(e, e->film, 1);
     } else if (anew && !render_coarse_images(e)) {
-      tell_if_due(e, true);
+      tell_end(e);
       continue;
     }
     if ((e->now.channel == 0 || e->now.channel == CHANNEL_ERROR) && !e->failed) render_film(e);
-    tell_if_due(e, true);
+    tell_end(e);
   }
   return NULL;
 }
@@ -360,7 +380,7 @@ int engine_stop(Engine *engine) {
   if (!engine->started) return STATUS_OK;
   pthread_mutex_lock(&engine->lock);
   engine->quit = true;
-  vl_cancel_request(engine->stop);
+  engine_interrupt(engine);
   vl_cancel_request(engine->end);
   vl_cancel_request(engine->trace_stop);
   pthread_cond_broadcast(&engine->wake);

@@ -55,6 +55,8 @@ void status_tell(Engine *e, bool estimate) {
   if (!json_text_begin(&json, "status")) return;
   pthread_mutex_lock(&e->lock);
   bool paused = e->wanted.paused;
+  double stop = e->stop_seconds;
+  e->stop_seconds = 0;
   pthread_mutex_unlock(&e->lock);
   json_integer(&json.json, "spp", spp);
   json_integer(&json.json, "target", e->now.spp);
@@ -63,6 +65,7 @@ void status_tell(Engine *e, bool estimate) {
   json_number(&json.json, "error", e->noise);
   json_number(&json.json, "program_seconds", engine_program_seconds());
   json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
+  if (stop > 0) json_number(&json.json, "stop_seconds", stop);
   json_bool(&json.json, "paused", paused);
   char *text = json_text_end(&json);
   if (!text) return;

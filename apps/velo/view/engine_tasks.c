@@ -108,7 +108,7 @@ static void focus(Engine *e, const Task *task) {
   engine_remember(e, &next, 0);
   e->wanted.camera = next;
   e->wanted.generation++;
-  vl_cancel_request(e->stop);
+  engine_interrupt(e);
   engine_drop_traces(e, 0, "the camera moved");
   pthread_cond_broadcast(&e->wake);
   engine_post_state(e, 0);

@@ -94,7 +94,7 @@ static bool read_map(vlExport *x, const vlLightDef *d, Sky *sky) {
   vlImage *read = NULL;
   vlError error;
   vl_error_clear(&error);
-  if (!d->image && vl_image_read_named(x->context, d->path, &read, &error) != VL_OK) return false;
+  if (!d->image && vl_image_read_named(x->context, NULL, d->path, &read, &error) != VL_OK) return false;
   const vlImage *image = d->image ? d->image : read;
   vlMipmapDef def = {.only_finest = true};
   def.count = vl_image_color(image, def.channel);

@@ -21,7 +21,7 @@ static bool read_face(vlGltf *g, const vlGltfPlace *at, size_t index, Cube *cube
   vlImage *image = NULL;
   vlError error;
   vl_error_clear(&error);
-  vlResult r = file->path ? vl_image_read_named(g->context, file->path, &image, &error)
+  vlResult r = file->path ? vl_image_read_named(g->context, NULL, file->path, &image, &error)
                           : vl_image_read_memory(g->context, "image", file->data, file->size, &image, &error);
   if (r != VL_OK) return vl_gltf_fail_code(g, r, at, "%s", error.message);
   uint32_t channel[4], count = vl_image_color(image, channel);

@@ -41,7 +41,7 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
   vlError error;
   vl_error_clear(&error);
   vlResult r = def.data ? vl_image_read_memory(g->context, def.name, def.data, def.data_size, &image, &error)
-                        : vl_image_read_named(g->context, def.path, &image, &error);
+                        : vl_image_read_named(g->context, NULL, def.path, &image, &error);
   if (r != VL_OK) return vl_gltf_fail_code(g, r, NULL, "%s", error.message);
   bool ok = image->channels >= 3 || vl_gltf_fail(g, NULL, "%s: has no directions", def.name);
   if (ok) {

@@ -58,7 +58,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
     char path[4096];
     vlImage *image = NULL;
     if (!vl_import_path(import, p, path, sizeof path)) return false;
-    result = vl_image_read_named(import->context, path, &image, &error);
+    result = vl_image_read_named(import->context, NULL, path, &image, &error);
     if (result == VL_OK) result = aperture_from_image(import, image, place, &error);
     vl_image_destroy(image);
   }

@@ -43,8 +43,8 @@ static void read_one(void *user, uint32_t index, uint32_t worker) {
     job->result = vl_fail(&job->error, VL_CANCELLED, "stopped");
     return;
   }
-  job->result = vl_ply_read(import->context, import->mesh_files.items[work->first + index].path, import->permissive,
-                            &job->mesh, &job->error);
+  job->result = vl_ply_read(import->context, import->scene->task, import->mesh_files.items[work->first + index].path,
+                            import->permissive, &job->mesh, &job->error);
 }
 
 /* Splits patches into triangles, since only triangles can be displaced. */

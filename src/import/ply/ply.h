@@ -4,6 +4,7 @@
 #ifndef IMPORT_PLY_PLY_H
 #define IMPORT_PLY_PLY_H
 
+#include "base/cancel.h"
 #include "base/context.h"
 #include "velo/base.h"
 
@@ -19,10 +20,12 @@ typedef struct vlPlyMesh {
 
 /* All arrays are blocks of the context. Errors: MISSING, IO, MEMORY, SCENE (with the line number in text files and
  * headers). vl_ply_read_given reads a file that the caller names (base/file.h), with its colours; without faces it
- * is a cloud of points. broken: normals and uvs that are not finite are no error (import/repair.h). */
-vlResult vl_ply_read_given(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
+ * is a cloud of points. task: of the load, which stops with CANCELLED; null: none. broken: normals and uvs that are not
+ * finite are no error (import/repair.h). */
+vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh,
+                           vlError *error);
 /* Reads a file that a scene names, without colours. */
-vlResult vl_ply_read(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
+vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh, vlError *error);
 /* Reads from memory. name is used in errors. data[size] must be a zero byte; data is not changed. */
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
                       vlError *error);

@@ -178,13 +178,14 @@ void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
   *mesh = (vlPlyMesh){0};
 }
 
-static vlResult parse(vlContext *context, const char *name, const char *data, size_t size, bool alone, bool broken,
-                      vlPlyMesh *mesh, vlError *error) {
+static vlResult parse(vlContext *context, vlTask *task, const char *name, const char *data, size_t size, bool alone,
+                      bool broken, vlPlyMesh *mesh, vlError *error) {
   vlError local;
   if (!error) error = &local;
   vl_error_clear(error);
   *mesh = (vlPlyMesh){0};
   vlPlyReader r = {.context = context,
+                   .task = task,
                    .name = name,
                    .at = data,
                    .end = data + size,
@@ -205,10 +206,10 @@ static vlResult parse(vlContext *context, const char *name, const char *data, si
 
 vlResult vl_ply_parse(vlContext *context, const char *name, const char *data, size_t size, vlPlyMesh *mesh,
                       vlError *error) {
-  return parse(context, name, data, size, false, false, mesh, error);
+  return parse(context, NULL, name, data, size, false, false, mesh, error);
 }
 
-static vlResult read_file(vlContext *context, const char *path, bool given, bool broken, vlPlyMesh *mesh,
+static vlResult read_file(vlContext *context, vlTask *task, const char *path, bool given, bool broken, vlPlyMesh *mesh,
                           vlError *error) {
   char *data;
   size_t size;
@@ -216,17 +217,18 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
   vlResult result = given ? vl_file_read_given(context, path, true, &data, &size, error)
                           : vl_file_read(context, path, true, &data, &size, error);
   if (result != VL_OK) return result;
-  result = parse(context, path, data, size, given, broken, mesh, error);
+  result = parse(context, task, path, data, size, given, broken, mesh, error);
   vl_free(context, data);
   return result;
 }
 
-vlResult vl_ply_read_given(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
-  return read_file(context, path, true, broken, mesh, error);
+vlResult vl_ply_read_given(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh,
+                           vlError *error) {
+  return read_file(context, task, path, true, broken, mesh, error);
 }
 
-vlResult vl_ply_read(vlContext *context, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
-  vlResult result = read_file(context, path, false, broken, mesh, error);
+vlResult vl_ply_read(vlContext *context, vlTask *task, const char *path, bool broken, vlPlyMesh *mesh, vlError *error) {
+  vlResult result = read_file(context, task, path, false, broken, mesh, error);
   vl_free(context, mesh->colors);
   mesh->colors = NULL;
   return result;

@@ -20,6 +20,12 @@ bool vl_ply_fail_memory(vlPlyReader *r) {
   return false;
 }
 
+bool vl_ply_goes_on(vlPlyReader *r, uint64_t row) {
+  if (row % 16384 != 0 || !vl_task_stopped(r->task, NULL, 0)) return true;
+  vl_fail(r->error, VL_CANCELLED, "stopped");
+  return false;
+}
+
 /* ---- header ----------------------------------------------------------------------------------------------------- */
 
 typedef struct Words {

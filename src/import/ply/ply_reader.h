@@ -63,6 +63,7 @@ typedef struct vlPlyElement {
 
 typedef struct vlPlyReader {
   vlContext *context;
+  vlTask *task; /* of the load; null: none */
   const char *name;
   const char *at, *end;
   uint32_t line; /* line number in a text file or header; 0 in binary data */
@@ -86,6 +87,8 @@ static inline uint32_t vl_ply_type_size(vlPlyType type) {
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 bool vl_ply_fail_memory(vlPlyReader *r);
+/* False, with the error CANCELLED: the load must stop. row: number of the row that is read next. */
+bool vl_ply_goes_on(vlPlyReader *r, uint64_t row);
 bool vl_ply_read_header(vlPlyReader *r); /* stops at the first byte of the data */
 /* Reads the next value of that type from text or binary data. */
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value);

@@ -91,6 +91,7 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
   r->has_vertices = true;
   if (copy_float_rows(r, e)) return true;
   for (uint64_t i = 0; i < e->count; i++) {
+    if (!vl_ply_goes_on(r, i)) return false;
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
       double value;
@@ -243,6 +244,7 @@ bool vl_ply_read_faces(vlPlyReader *r, const vlPlyElement *e) {
   for (uint64_t i = copy_triangles(r, e); i < e->count; i++) {
     float color[4] = {0, 0, 0, 1};
     uint32_t first = r->mesh->triangles;
+    if (!vl_ply_goes_on(r, i)) return false;
     if (!read_face_row(r, e, indices, i, color) || (colors && !add_colors(r, first, color))) return false;
   }
   return true;

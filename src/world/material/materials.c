@@ -113,7 +113,7 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   if (!part) vl_measured_free(world->context, made);
   if (!part) return vl_fail_memory(error);
   part->destroy = free_measured, part->object = made;
-  *kept = (vlWorldFilePart){part, stamp, 0};
+  *kept = (vlWorldFilePart){.part = part, .stamp = stamp};
   m->measured = *slot = made;
   return VL_OK;
 }

@@ -118,25 +118,26 @@ static vlResult compile(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m
   return compile_kind[def->kind](world, def, m, error);
 }
 
-/* Compiles a medium, or shares that of the previous world: media of a scene cannot be changed, but the file of one
- * can. */
+/* Compiles a medium, or shares that of the previous world if neither it nor its file has changed. */
 static vlResult obtain(vlWorld *world, const vlScene *scene, vlMediumId id, vlWorldMedium *m, vlError *error) {
   const vlMediumDef *def = &scene->media.items[id.index - 1];
   const vlWorld *previous = world->previous;
   vlFileStamp stamp = vl_file_stamp(def->path);
   vlWorldFilePart *kept = VL_PUSH(world->context, &world->medium_parts);
   if (!kept) return vl_fail_memory(error);
+  const uint64_t generation = vl_scene_mark(&scene->medium_marks, id.index - 1).generation;
   bool same_scene = previous && previous->scene_number == scene->number;
   for (size_t i = 0; same_scene && i < previous->media.count; i++) {
     const vlWorldFilePart *known = &previous->medium_parts.items[i];
-    if (known->id != id.index || !vl_file_stamp_same(&known->stamp, &stamp)) continue;
+    if (known->id != id.index || known->generation != generation || !vl_file_stamp_same(&known->stamp, &stamp))
+      continue;
     if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
     *kept = *known;
     *m = previous->media.items[i];
     world->by_channel = world->by_channel || m->by_channel;
     return VL_OK;
   }
-  *kept = (vlWorldFilePart){vl_part_add(world), stamp, id.index};
+  *kept = (vlWorldFilePart){vl_part_add(world), stamp, id.index, generation};
   if (!(world->part = kept->part)) return vl_fail_memory(error);
   vlResult r = compile(world, def, m, error);
   world->part = NULL;

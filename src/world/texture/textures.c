@@ -108,14 +108,15 @@ typedef struct Image {
   uint64_t owner; /* vlImageKey.owner */
 } Image;
 
-static vlResult load_image(vlContext *context, const Image *p, vlMipmap **mipmap, vlError *error) {
+static vlResult load_image(const vlWorld *world, const Image *p, vlMipmap **mipmap, vlError *error) {
+  vlContext *context = world->context;
   const vlImage *given = p->given;
   vlImage *image = NULL;
   vlResult r = VL_OK;
   if (p->data)
-    r = vl_image_read_memory(context, p->name ? p->name : "image", p->data, p->size, &image, error);
+    r = vl_image_decode(context, world->task, p->name ? p->name : "image", p->data, p->size, &image, error);
   else if (!given)
-    r = vl_image_read_named(context, p->path, &image, error);
+    r = vl_image_read_named(context, world->task, p->path, &image, error);
   if (r != VL_OK) return r;
   given = image ? image : given;
   vlMipmapDef mip;
@@ -125,8 +126,11 @@ static vlResult load_image(vlContext *context, const Image *p, vlMipmap **mipmap
   mip.own_encoding = p->encoding != NULL;
   mip.encoding = p->encoding ? *p->encoding : VL_ENCODING_LINEAR;
   mip.gamma = p->gamma;
+  mip.task = world->task;
   if ((r = vl_mipmap_create(given, &mip, mipmap)) == VL_ERROR_MEMORY)
     vl_fail_memory(error);
+  else if (r == VL_CANCELLED)
+    vl_fail(error, r, "stopped");
   else if (r != VL_OK)
     vl_fail(error, r, "%s: cannot be used as a texture", p->path ? p->path : "image");
   vl_image_destroy(image);
@@ -216,7 +220,7 @@ static int32_t obtain_image(vlWorld *world, const Image *p, vlError *error) {
   const vlWorldImage *previous = find_previous(world, p, &key);
   if (previous) return share_image(world, previous, &key, error);
   vlMipmap *mipmap = NULL;
-  return load_image(world->context, p, &mipmap, error) == VL_OK ? push_image(world, mipmap, &key, error) : -1;
+  return load_image(world, p, &mipmap, error) == VL_OK ? push_image(world, mipmap, &key, error) : -1;
 }
 
 int32_t vl_world_add_image(vlWorld *world, const char *path, const vlImage *given, const vlEncoding *encoding,
@@ -255,7 +259,6 @@ static bool name_image(vlWorld *world, vlWorldImage *entry, const vlTextureDef *
 }
 
 typedef struct Preload {
-  vlContext *context;
   const vlWorld *world;
   const vlScene *scene;
   vlImageKey *keys;
@@ -272,7 +275,7 @@ static void preload_one(void *user, uint32_t index, uint32_t worker) {
   if (vl_world_step(job->world, "images", 0.3 * share, NULL) != VL_OK) return;
   Image p = open_image(job->scene, job->defs[index]);
   vlError ignored; /* ignored: whoever uses the image meets the same error and reports it with its source location */
-  load_image(job->context, &p, &job->mipmaps[index], &ignored);
+  load_image(job->world, &p, &job->mipmaps[index], &ignored);
 }
 
 static bool listed(const vlTextureDef **defs, size_t count, const vlTextureDef *def) {
@@ -307,7 +310,7 @@ static bool list_image(vlWorld *world, Preload *job, const vlTextureDef *def, vl
 vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *error) {
   enum { MOST = 4096 }; /* duplicates are found by linear search */
   size_t most = scene->textures.count < MOST ? scene->textures.count : MOST;
-  Preload job = {.context = world->context, .world = world, .scene = scene};
+  Preload job = {.world = world, .scene = scene};
   job.defs = vl_alloc_array(world->context, most + 1, sizeof *job.defs);
   job.keys = vl_alloc_array(world->context, most + 1, sizeof *job.keys);
   job.mipmaps = vl_alloc_zero(world->context, most + 1, sizeof *job.mipmaps);

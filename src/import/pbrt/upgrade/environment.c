@@ -125,7 +125,7 @@ bool vl_old_convert_maps(vlUpgrade *u) {
     const vlOldMap *map = &u->maps.items[i];
     char to[8300];
     vlImage *from = NULL;
-    u->result = vl_image_read_named(u->context, map->from, &from, &u->error);
+    u->result = vl_image_read_named(u->context, NULL, map->from, &from, &u->error);
     if (u->result != VL_OK) return false;
     snprintf(to, sizeof to, "%s/%s", u->to_folder, map->name);
     bool fine = convert(u, map, from, to);

@@ -104,9 +104,7 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     record->frames++;
   }
   if (!record->frames) return missing(file, "P0");
-  if (taken == UINT32_MAX)
-    return vl_camera_wrong(file, "kitti: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (taken == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
   return raw ? read_raw(file, text, size, taken, record) : read_projection(file, &chosen, taken, record);
 }
 

@@ -59,8 +59,7 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree, vlCam
   record->frames = pair ? 2 : 1;
   uint32_t index = vl_camera_is_frame(file, 0, "Camera1") ? 0 : 1;
   if (index == 1 && !(pair && vl_camera_is_frame(file, 1, "Camera2")))
-    return vl_camera_wrong(file, "orbslam: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+    return vl_camera_no_frame(file, "camera", record->frames);
   if (numbered || index == 1) snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
   vlResult result = read_one(file, tree, prefix, record);
   vl_camera_set_origin(&record->camera);

@@ -234,7 +234,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
     chosen = row;
     for (int i = 0; i < row.count; i++) chosen.fields[i] = chosen.text + (row.fields[i] - row.text);
   }
-  return chosen.count ? read_row(file, &chosen, of, record) : vl_camera_no_frame(file, record->frames);
+  return chosen.count ? read_row(file, &chosen, of, record) : vl_camera_no_frame(file, "camera", record->frames);
 }
 
 static bool is_csv(const char *text, size_t size) {

@@ -77,7 +77,7 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree, vlCam
     if (!camera && vl_camera_is_frame(file, record->frames, name)) camera = one, vl_camera_name(record, name);
     record->frames++;
   }
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side(file, camera, "width", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
   if (result == VL_OK) result = vl_camera_numbers(file, camera, "intrinsicMatrix", k, 9, 9, NULL);
@@ -125,7 +125,7 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCame
     camera = one;
     vl_camera_name(record, name);
   }
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *intrinsics, *pose;
   vlResult result = vl_camera_side(file, camera, "SensorWidth", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, camera, "SensorHeight", &d->height);
@@ -208,7 +208,7 @@ static vlResult read_realsense(const vlCameraFile *file, const json_t *tree, vlC
     if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = stream, vl_camera_name(record, name);
     record->frames++;
   }
-  return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, record->frames);
+  return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, "camera", record->frames);
 }
 
 static bool is_realsense(const json_t *tree) {

@@ -15,7 +15,7 @@ static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, dou
 
 static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  double head[2], v[15];
+  double head[2] = {0.0, 0.0}, v[15];
   bool taken = false;
   vlResult result = next_numbers(file, &lines, head, 2);
   if (result == VL_OK && !(head[0] >= 1.0 && head[0] <= 1e7))

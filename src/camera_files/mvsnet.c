@@ -19,7 +19,7 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
 
 static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  double m[16], k[9];
+  double m[16], k[9] = {0.0};
   char images[4][300];
   vlResult result = read_matrix(file, &lines, "extrinsic", 4, m);
   const vlCameraLines last = lines; /* of extrinsic */

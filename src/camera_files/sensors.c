@@ -221,20 +221,16 @@ static bool is_realsense(const json_t *tree) {
 
 static vlResult write_realsense(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool fisheye = family == VL_LENS_FISHEYE;
-  if ((!fisheye && family != VL_LENS_OPENCV && family != VL_LENS_PINHOLE) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
+  bool fisheye = fit.family == VL_LENS_FISHEYE;
   vl_camera_put(
       text,
       "{\n  \"width\": %u, \"height\": %u,\n  \"ppx\": %.17g, \"ppy\": %.17g,\n  \"fx\": %.17g, \"fy\": %.17g,\n"
       "  \"model\": \"distortion.%s\",\n  \"coeffs\": [",
       c.width, c.height, c.cx - 0.5, c.cy - 0.5, c.fx, c.fy, fisheye ? "kannala_brandt4" : "brown_conrady");
-  vl_camera_put_numbers(text, k, 5);
+  vl_camera_put_numbers(text, fit.k, 5);
   vl_camera_put(text, "]\n}\n");
   return VL_OK;
 }

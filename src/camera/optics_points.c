@@ -28,7 +28,7 @@ bool vl_optics_unproject(const vlOptics *o, double x, double y, vlCameraLocal *r
 /* Computes the distance by which the chief ray of a film radius passes outside the point (rho, z). It increases with
  * the radius. */
 static bool miss(const vlOptics *o, double radius, double rho, double z, double *value) {
-  vlChief c;
+  vlChief c = {0};
   bool valid = chief_at(o, radius, &c);
   *value = -(c.x0 + c.slope * z) - rho;
   return valid;

@@ -14,10 +14,12 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
   bool flat = type && strcmp(type, "ORTHO") == 0;
   if (type && !flat && strcmp(type, "PERSP") != 0)
-    return vl_camera_wrong(file, "blender: unknown type \"%s\"; there are PERSP, ORTHO", vl_short_text(type).text);
+    return vl_camera_wrong_in(file, tree, "type", "blender: unknown type \"%s\"; there are PERSP, ORTHO",
+                              vl_short_text(type).text);
   if (fit && strcmp(fit, "AUTO") != 0 && strcmp(fit, "HORIZONTAL") != 0 && strcmp(fit, "VERTICAL") != 0)
-    return vl_camera_wrong(file, "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
-                           vl_short_text(fit).text);
+    return vl_camera_wrong_in(file, tree, "sensor_fit",
+                              "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
+                              vl_short_text(fit).text);
   vlResult result = vl_camera_side(file, tree, "resolution_x", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, tree, "resolution_y", &d->height);
   if (result == VL_OK)

@@ -54,9 +54,7 @@ static vlResult read_bop(const vlCameraFile *file, const json_t *tree, vlCameraR
     if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = name;
     record->frames++;
   }
-  if (!chosen)
-    return vl_camera_wrong(file, "bop: there is no image \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (!chosen) return vl_camera_no_frame(file, "image", record->frames);
   vl_camera_name(record, chosen);
   return read_image(file, json_object_get(tree, chosen), chosen, record);
 }

@@ -15,11 +15,11 @@ static vlResult next_numbers(const vlCameraFile *file, vlCameraLines *lines, dou
 
 static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  double head[2], v[15];
+  double head[2] = {0.0, 0.0}, v[15];
   bool taken = false;
   vlResult result = next_numbers(file, &lines, head, 2);
   if (result == VL_OK && !(head[0] >= 1.0 && head[0] <= 1e7))
-    return vl_camera_wrong_line(file, &lines, lines.text, "bundler: the file has no camera");
+    return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = 0;
   for (uint32_t i = 0; result == VL_OK && i < (uint32_t)head[0]; i++) {
     char name[16];
@@ -37,9 +37,7 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
     record->frames++;
   }
   if (result != VL_OK) return result;
-  if (!taken)
-    return vl_camera_wrong(file, "bundler: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
   result = vl_camera_size_beside(file, (const char *const[]){NULL}, record);
   record->camera.cx = 0.5 * record->camera.width, record->camera.cy = 0.5 * record->camera.height;
   return result;

@@ -127,9 +127,7 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree, vlC
     if (found == UINT32_MAX && vl_camera_is_frame(file, i, name)) found = i;
     record->frames++;
   }
-  if (found == UINT32_MAX)
-    return vl_camera_wrong(file, "camodocal: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (found == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
   snprintf(key, sizeof key, "cam%u_calib", found);
   uint32_t frames = record->frames;
   vlResult result = read_named(file, tree, key, record);

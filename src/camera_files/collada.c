@@ -148,7 +148,7 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCam
   }
   if (result != VL_OK) return result;
   record->frames = s.count;
-  if (!s.camera) return vl_camera_no_frame(file, s.count);
+  if (!s.camera) return vl_camera_no_frame(file, "camera", s.count);
   const json_t *camera = find_camera(tree, vl_camera_text(s.camera, "url"));
   if (!camera) return vl_camera_wrong_element(file, s.camera, "the node names a camera that does not exist");
   const json_t *common = vl_camera_child(vl_camera_child(camera, "optics"), "technique_common");

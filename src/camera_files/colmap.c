@@ -125,9 +125,7 @@ static vlResult read_images(const vlCameraFile *file, const char *path, double *
     record->frames++;
     next_line(&lines); /* skip the line of points */
   }
-  if (result == VL_OK && !taken)
-    result = vl_camera_wrong(file, "colmap: there is no image \"%.60s\" among the %u",
-                             file->def->frame ? file->def->frame : "0", record->frames);
+  if (result == VL_OK && !taken) result = vl_camera_no_frame(file, "image", record->frames);
   vl_free(file->context, text);
   return result;
 }

@@ -86,22 +86,18 @@ static bool is_dso(const char *text, size_t size) {
 
 static vlResult write_dso(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON | 1 << VL_LENS_FOV, 4, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool fisheye = family == VL_LENS_FISHEYE, bent = family == VL_LENS_OPENCV, fov = family == VL_LENS_FOV;
-  if ((!fisheye && !bent && !fov && family != VL_LENS_PINHOLE) || n > 4)
-    return vl_camera_no_model(file, &record->camera);
+  bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV, fov = fit.family == VL_LENS_FOV;
   vl_camera_put(text, "%s %.17g %.17g %.17g %.17g",
                 fisheye ? "KannalaBrandt"
                 : bent  ? "RadTan"
                 : fov   ? "FOV"
                         : "Pinhole",
                 c.fx, c.fy, c.cx - 0.5, c.cy - 0.5);
-  if (fov) k[0] = c.shape[0];
-  for (int i = 0; i < (fisheye || bent ? 4 : 1); i++) vl_camera_put(text, " %.17g", k[i] + 0.0);
+  if (fov) fit.k[0] = c.shape[0];
+  for (int i = 0; i < (fisheye || bent ? 4 : 1); i++) vl_camera_put(text, " %.17g", fit.k[i] + 0.0);
   vl_camera_put(text, "\n%u %u\nfull\n%u %u\n", c.width, c.height, c.width, c.height);
   return VL_OK;
 }

@@ -53,14 +53,10 @@ static bool is_euroc(const json_t *tree) {
 
 static vlResult write_euroc(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && family != VL_LENS_FISHEYE) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
-  if (n == 0) n = 4;
+  if (fit.count == 0) fit.count = 4;
   vl_camera_put(text, "sensor_type: camera\ncomment: ");
   vl_camera_put_string(text, record->name[0] ? record->name : "camera");
   vl_camera_put(text, "\nT_BS:\n  cols: 4\n  rows: 4\n  data: [");
@@ -68,8 +64,8 @@ static vlResult write_euroc(const vlCameraFile *file, const vlCameraRecord *reco
   vl_camera_put(text, "]\nresolution: [%u, %u]\ncamera_model: pinhole\nintrinsics: [", c.width, c.height);
   vl_camera_put_numbers(text, (double[]){c.fx, c.fy, c.cx - 0.5, c.cy - 0.5}, 4);
   vl_camera_put(text, "]\ndistortion_model: %s\ndistortion_coefficients: [",
-                family == VL_LENS_FISHEYE ? "equidistant" : "radial-tangential");
-  vl_camera_put_numbers(text, k, n);
+                fit.family == VL_LENS_FISHEYE ? "equidistant" : "radial-tangential");
+  vl_camera_put_numbers(text, fit.k, fit.count);
   vl_camera_put(text, "]\n");
   return VL_OK;
 }

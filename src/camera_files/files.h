@@ -100,8 +100,8 @@ const char *vl_camera_text(const json_t *object, const char *key);
 /* Returns whether the camera or pose with this index and name is the requested one. The name may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
 void vl_camera_name(vlCameraRecord *record, const char *name);
-/* Reports that the requested camera is not among the `count` cameras of the file. */
-vlResult vl_camera_no_frame(const vlCameraFile *file, uint32_t count);
+/* Reports that the requested camera is not among the `count` cameras of the file. what: the format's word for one. */
+vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count);
 /* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel is (0, 0). It is an error
  * at object[key] if the matrix is not fx skew cx, 0 fy cy, 0 0 1. */
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],
@@ -141,6 +141,28 @@ vlResult vl_camera_refuse(const vlCameraFile *file, const char *field, bool pres
 bool vl_camera_drops(const vlCameraFile *file, const char *field);
 /* Makes *camera from the record. Returns an error for any property that the flags `holds` do not include. */
 vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, vlCamera *camera);
+/* The lens models that calibration tools name. */
+typedef enum vlLensFamily {
+  VL_LENS_PINHOLE,
+  VL_LENS_OPENCV,  /* k has count coefficients */
+  VL_LENS_FISHEYE, /* k1 to k4 */
+  VL_LENS_FOV,     /* shape[0] */
+  VL_LENS_UNIFIED, /* shape[0], and OpenCV's distortion, whose count may be 0 */
+  VL_LENS_EUCM,
+  VL_LENS_DOUBLE_SPHERE,
+  VL_LENS_OTHER
+} vlLensFamily;
+/* A bit for each of the lenses that most tools have. */
+enum { VL_LENSES_COMMON = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV | 1 << VL_LENS_FISHEYE };
+typedef struct vlFittedLens {
+  vlLensFamily family;
+  double k[14];
+  uint32_t count;
+} vlFittedLens;
+/* vl_camera_fit for dialects with several lenses. families: a bit for each (1 << VL_LENS_FOV); most: how many
+ * coefficients there may be. */
+vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, uint32_t families,
+                            uint32_t most, vlCamera *camera, vlFittedLens *lens);
 /* vl_camera_fit for dialects without lens distortion. */
 vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
                                vlCamera *camera);
@@ -163,17 +185,7 @@ void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, do
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count);
 /* Sets OpenCV's fisheye: k1 to k4. */
 void vl_camera_set_fisheye(vlCameraDef *def, const double k[4]);
-/* The lens models that calibration tools name. */
-typedef enum vlLensFamily {
-  VL_LENS_PINHOLE,
-  VL_LENS_OPENCV,  /* k has count coefficients */
-  VL_LENS_FISHEYE, /* k1 to k4 */
-  VL_LENS_FOV,     /* shape[0] */
-  VL_LENS_UNIFIED, /* shape[0], and OpenCV's distortion, whose count may be 0 */
-  VL_LENS_EUCM,
-  VL_LENS_DOUBLE_SPHERE,
-  VL_LENS_OTHER
-} vlLensFamily;
+/* The family of a camera's lens, with its coefficients. */
 vlLensFamily vl_camera_lens_family(const vlCameraDef *def, double k[14], uint32_t *count);
 
 /* ---- rotations: row-major 3 x 3 ---------------------------------------------------------------------------------- */

@@ -120,24 +120,27 @@ bool vl_camera_as_opencv(const vlCameraDef *def, double k[14], uint32_t *count) 
   return true;
 }
 
+vlResult vl_camera_fit_lens(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, uint32_t families,
+                            uint32_t most, vlCamera *camera, vlFittedLens *lens) {
+  vlResult result = vl_camera_fit(file, record, holds, camera);
+  if (result != VL_OK) return result;
+  lens->family = vl_camera_lens_family(&record->camera, lens->k, &lens->count);
+  if ((families >> lens->family & 1u) && lens->count <= most) return VL_OK;
+  return vl_camera_no_model(file, &record->camera);
+}
+
 vlResult vl_camera_fit_pinhole(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds,
                                vlCamera *camera) {
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, holds, camera);
-  if (result == VL_OK && vl_camera_lens_family(&record->camera, k, &n) != VL_LENS_PINHOLE)
-    result = vl_camera_no_model(file, &record->camera);
-  return result;
+  vlFittedLens lens;
+  return vl_camera_fit_lens(file, record, holds, 1 << VL_LENS_PINHOLE, 0, camera, &lens);
 }
 
 vlResult vl_camera_fit_opencv(const vlCameraFile *file, const vlCameraRecord *record, uint32_t holds, double k[14],
                               vlCamera *camera) {
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, holds, camera);
-  if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
-    result = vl_camera_no_model(file, &record->camera);
+  vlFittedLens lens = {.count = 0};
+  vlResult result =
+      vl_camera_fit_lens(file, record, holds, 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV, 5, camera, &lens);
+  memcpy(k, lens.k, sizeof lens.k);
   return result;
 }
 

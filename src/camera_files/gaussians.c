@@ -13,9 +13,7 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree, vlC
   for (uint32_t i = 0; i < record->frames && !camera; i++)
     if (vl_camera_is_frame(file, i, vl_camera_text(json_array_get(list, i), "img_name")))
       camera = json_array_get(list, i);
-  if (!camera)
-    return vl_camera_wrong(file, "gaussians: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side(file, camera, "width", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
   if (result == VL_OK) result = vl_camera_number(file, camera, "fx", &d->fx);

@@ -198,9 +198,7 @@ static vlResult read_gltf(const vlCameraFile *file, const json_t *tree, vlCamera
   }
   if (result == VL_OK && record->frames == 0)
     return vl_camera_wrong(file, "gltf: no node holds a camera (\"cameras\" has %zu)", json_array_size(cameras));
-  if (result == VL_OK && !chosen)
-    return vl_camera_wrong(file, "gltf: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (result == VL_OK && !chosen) return vl_camera_no_frame(file, "camera", record->frames);
   if (result != VL_OK) return result;
   char name[sizeof record->name];
   memcpy(name, record->name, sizeof name);

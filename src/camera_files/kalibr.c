@@ -118,7 +118,7 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlC
     const json_t *cam = json_object_get(tree, key);
     if (!json_is_object(cam)) return vl_camera_wrong_in(file, tree, key, "kalibr: \"%s\" holds no fields", key);
     if (i > 0 || by_imu) {
-      vlMat4 step;
+      vlMat4 step = vl_mat4_identity();
       bool inverse;
       const char *name = imu_key(cam, &inverse);
       vlResult result = vl_camera_numbers(file, cam, by_imu ? name : "T_cn_cnm1", step.m, 16, 16, NULL);

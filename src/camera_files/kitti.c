@@ -7,7 +7,7 @@
 
 #include "camera_files/lines.h"
 
-/* The numbers after a key such as "P2:". An entry with a null key ends the list `found`. */
+/* The numbers after a key such as "P2:". */
 typedef struct {
   char key[16];
   double values[12];
@@ -57,7 +57,7 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
     char letter;
     uint32_t count;
   } wanted[] = {{'S', 2}, {'K', 9}, {'D', 5}, {'R', 9}, {'T', 3}};
-  Row rows[5];
+  Row rows[5] = {{.key = ""}};
   vlCameraDef *d = &record->camera;
   for (int i = 0; i < 5; i++) {
     bool found;
@@ -104,9 +104,7 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     record->frames++;
   }
   if (!record->frames) return missing(file, "P0");
-  if (taken == UINT32_MAX)
-    return vl_camera_wrong(file, "kitti: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (taken == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
   return raw ? read_raw(file, text, size, taken, record) : read_projection(file, &chosen, taken, record);
 }
 

@@ -58,7 +58,7 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
   record->frames = array.count < UINT32_MAX ? (uint32_t)array.count : UINT32_MAX;
   for (uint32_t i = 0; i < record->frames && chosen == UINT32_MAX; i++)
     if (vl_camera_is_frame(file, i, NULL)) chosen = i;
-  if (chosen == UINT32_MAX) return vl_camera_no_frame(file, record->frames);
+  if (chosen == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
   for (int i = 0; i < NUMBERS; i++) v[i] = number_at(&array, chosen, (size_t)i);
   const double height = v[4], width = v[9];
   for (int i = 0; i < 15; i++)

@@ -99,7 +99,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree, const json_t *intrinsic,
                                vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
-  double version[3] = {1.0, 0.0, 0.0}, size[2], c[2] = {0.0, 0.0};
+  double version[3] = {1.0, 0.0, 0.0}, size[2] = {0.0, 0.0}, c[2] = {0.0, 0.0};
   vlResult result = VL_OK;
   if (vl_camera_has(tree, "version")) result = numbers(file, tree, "version", version, 3);
   if (result == VL_OK) result = numbers(file, intrinsic, "width", &size[0], 1);
@@ -133,7 +133,7 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   const json_t *intrinsic =
       with_id(json_object_get(tree, "intrinsics"), "intrinsicId", json_object_get(view, "intrinsicId"));
   const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId", json_object_get(view, "poseId")), *transform;
-  double r[9], center[3], m[16] = {[15] = 1.0};
+  double r[9] = {0.0}, center[3] = {0.0}, m[16] = {[15] = 1.0};
   if (!intrinsic)
     return vl_camera_wrong_in(file, view, "intrinsicId",
                               "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
@@ -180,18 +180,15 @@ static void put_texts(vlCameraText *text, const double *values, uint32_t count) 
 
 static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON | 1 << VL_LENS_FOV, 5, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  const char *lens = family == VL_LENS_PINHOLE   ? "none"
-                     : family == VL_LENS_OPENCV  ? "brown"
-                     : family == VL_LENS_FISHEYE ? "fisheye4"
-                     : family == VL_LENS_FOV     ? "fisheye1"
-                                                 : NULL;
-  if (!lens || n > 5) return vl_camera_no_model(file, &record->camera);
-  const double brown[5] = {k[0], k[1], k[4], k[2], k[3]};
+  const char *lens = fit.family == VL_LENS_PINHOLE   ? "none"
+                     : fit.family == VL_LENS_OPENCV  ? "brown"
+                     : fit.family == VL_LENS_FISHEYE ? "fisheye4"
+                     : fit.family == VL_LENS_FOV     ? "fisheye1"
+                                                     : NULL;
+  const double brown[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
   const double sensor = record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0,
                *m = c.world_from_camera;
   vl_camera_put(text,
@@ -209,10 +206,10 @@ static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *r
   vl_camera_put(text, "     \"pixelRatio\": \"%.17g\", \"principalPoint\": [", c.fy / c.fx);
   put_texts(text, (double[]){c.cx - 0.5 * c.width, c.cy - 0.5 * c.height}, 2);
   vl_camera_put(text, "],\n     \"distortionType\": \"%s\", \"distortionParams\": [", lens);
-  if (family == VL_LENS_FOV)
+  if (fit.family == VL_LENS_FOV)
     put_texts(text, c.shape, 1);
   else
-    put_texts(text, family == VL_LENS_OPENCV ? brown : k, family == VL_LENS_OPENCV ? 5 : n);
+    put_texts(text, fit.family == VL_LENS_OPENCV ? brown : fit.k, fit.family == VL_LENS_OPENCV ? 5 : fit.count);
   vl_camera_put(text,
                 "], \"locked\": \"false\"}\n  ],\n  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n"
                 "      \"rotation\": [");

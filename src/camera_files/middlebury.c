@@ -52,9 +52,7 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
     if (chosen < 0 && vl_camera_is_frame(file, record->frames, names[i])) chosen = i;
     record->frames++;
   }
-  if (chosen < 0)
-    return vl_camera_wrong_at(file, 1, 1, "middlebury: there is no camera \"%.60s\" among the %u",
-                              file->def->frame ? file->def->frame : "0", record->frames);
+  if (chosen < 0) return vl_camera_no_frame(file, "camera", record->frames);
   const char *at = find(text, size, names[chosen], &line);
   double k[9];
   for (int i = 0; i < 9; i++) {
@@ -62,13 +60,12 @@ static vlResult read_middlebury(const vlCameraFile *file, const char *text, size
     at += strspn(at, "[; ,\t");
     k[i] = strtod(at, &end);
     if (end == at || !isfinite(k[i]))
-      return vl_camera_wrong_line(file, &line, at, "middlebury: %s must have nine numbers", names[chosen]);
+      return vl_camera_wrong_line(file, &line, at, "%s must have nine numbers", names[chosen]);
     at = end;
   }
-  if (at[strspn(at, "] ;")]) return vl_camera_wrong_line(file, &line, at, "middlebury: unexpected text");
+  if (at[strspn(at, "] ;")]) return vl_camera_wrong_line(file, &line, at, "unexpected text");
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong_line(file, &line, line.text, "middlebury: %s must be [fx 0 cx; 0 fy cy; 0 0 1]",
-                                names[chosen]);
+    return vl_camera_wrong_line(file, &line, line.text, "%s must be [fx 0 cx; 0 fy cy; 0 0 1]", names[chosen]);
   vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
   const double r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   double t[3] = {0, 0, 0};

@@ -308,8 +308,7 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
     vl_camera_name(record, vl_camera_text(chosen, "id"));
     result = read_sensor(&scene, chosen, &record->camera);
   } else if (record->frames) {
-    result = vl_camera_wrong(file, "mitsuba: there is no sensor \"%.60s\" among the %u",
-                             file->def->frame ? file->def->frame : "0", record->frames);
+    result = vl_camera_no_frame(file, "sensor", record->frames);
   } else {
     result = vl_camera_wrong(file, "mitsuba: <%s> holds no <sensor>%s", vl_short_text(tag_of(tree)).text,
                              includes ? "; included files are not followed" : "");

@@ -19,15 +19,16 @@ static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, cons
 
 static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  double m[16], k[9];
+  double m[16], k[9] = {0.0};
   char images[4][300];
   vlResult result = read_matrix(file, &lines, "extrinsic", 4, m);
+  const vlCameraLines last = lines; /* of extrinsic */
   if (result == VL_OK) result = read_matrix(file, &lines, "intrinsic", 3, k);
   if (result != VL_OK) return result;
   if (k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
-    return vl_camera_wrong(file, "mvsnet: \"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
+    return vl_camera_wrong_line(file, &lines, lines.text, "\"intrinsic\" must be fx skew cx, 0 fy cy, 0 0 1");
   if (!vl_camera_set_matrix(&record->camera, m, true))
-    return vl_camera_wrong(file, "mvsnet: \"extrinsic\" is singular");
+    return vl_camera_wrong_line(file, &last, last.text, "\"extrinsic\" is singular");
   vl_camera_set_centred(&record->camera, k[0], k[4], k[2], k[5]);
   record->camera.skew = k[1];
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *end = strstr(name, "_cam.txt");

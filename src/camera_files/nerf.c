@@ -100,8 +100,7 @@ static vlResult read_nerf(const vlCameraFile *file, const json_t *tree, vlCamera
     if (vl_camera_is_frame(file, i, vl_camera_text(frame, "file_path")))
       return vl_camera_read_nerf_frame(file, frame, tree, record);
   }
-  return vl_camera_wrong(file, "nerf: there is no frame \"%.60s\" among the %u",
-                         file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_no_frame(file, "frame", record->frames);
 }
 
 static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {

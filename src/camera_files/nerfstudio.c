@@ -30,7 +30,7 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vl
   record->frames = (uint32_t)json_array_size(path);
   for (uint32_t i = 0; i < record->frames && !camera; i++)
     if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(path, i);
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_sides(file, tree, "render_width", "render_height", record);
   if (result == VL_OK) result = read_type(file, tree, d);
   if (result == VL_OK) result = vl_camera_numbers(file, camera, "camera_to_world", m, 16, 16, NULL);

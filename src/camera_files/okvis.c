@@ -58,22 +58,18 @@ static bool is_okvis(const json_t *tree) {
 
 static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 8, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && family != VL_LENS_FISHEYE) || n > 8)
-    return vl_camera_no_model(file, &record->camera);
-  n = n > 4 ? 8 : 4;
+  fit.count = fit.count > 4 ? 8 : 4;
   vl_camera_put(text, "%%YAML:1.0\ncameras:\n  - {T_SC: [");
   vl_camera_put_numbers(text, c.world_from_camera, 16);
   vl_camera_put(text, "],\n     image_dimension: [%u, %u],\n     distortion_coefficients: [", c.width, c.height);
-  vl_camera_put_numbers(text, k, n);
+  vl_camera_put_numbers(text, fit.k, fit.count);
   vl_camera_put(text, "],\n     distortion_type: %s,\n     focal_length: [%.17g, %.17g],\n",
-                family == VL_LENS_FISHEYE ? "equidistant"
-                : n == 8                  ? "radialtangential8"
-                                          : "radialtangential",
+                fit.family == VL_LENS_FISHEYE ? "equidistant"
+                : fit.count == 8              ? "radialtangential8"
+                                              : "radialtangential",
                 c.fx, c.fy);
   vl_camera_put(text, "     principal_point: [%.17g, %.17g]}\n", c.cx - 0.5, c.cy - 0.5);
   return VL_OK;

@@ -5,11 +5,17 @@
 
 #include "camera_files/files.h"
 
+/* The number at key, -1 where there is none. The tree's numbers are doubles. */
+static double id_of(const json_t *object, const char *key) {
+  const json_t *value = json_object_get(object, key);
+  return json_is_number(value) ? json_number_value(value) : -1.0;
+}
+
 /* The item of a list of {key, value} with this key, or null. */
-static const json_t *item_of(const json_t *list, json_int_t key) {
+static const json_t *item_of(const json_t *list, double key) {
   size_t i;
   json_t *item;
-  json_array_foreach((json_t *)list, i, item) if (json_integer_value(json_object_get(item, "key")) == key) return item;
+  json_array_foreach((json_t *)list, i, item) if (key >= 0.0 && id_of(item, "key") == key) return item;
   return NULL;
 }
 
@@ -22,17 +28,21 @@ static const json_t *data_of(const json_t *item, const char *field) {
   return data;
 }
 
+/* The number of an object's class; bit 31 marks the first object of the class. 0: there is none. */
+static uint32_t class_number(const json_t *value) {
+  const double id = id_of(value, "polymorphic_id");
+  return id >= 0.0 && id <= UINT32_MAX ? (uint32_t)id & 0x7fffffff : 0;
+}
+
 /* The class of an intrinsic: only the first object of a class has its name, later ones have its number. */
 static const char *class_of(const json_t *list, const json_t *item) {
-  const json_int_t mask = 0x7fffffff;
-  const json_t *value = json_object_get(item, "value");
-  const json_int_t id = json_integer_value(json_object_get(value, "polymorphic_id")) & mask;
+  const uint32_t id = class_number(json_object_get(item, "value"));
   size_t i;
   json_t *other;
   json_array_foreach((json_t *)list, i, other) {
-    const json_t *v = json_object_get(other, "value");
-    const char *name = vl_camera_text(v, "polymorphic_name");
-    if (name && (json_integer_value(json_object_get(v, "polymorphic_id")) & mask) == id) return name;
+    const json_t *value = json_object_get(other, "value");
+    const char *name = vl_camera_text(value, "polymorphic_name");
+    if (name && class_number(value) == id) return name;
   }
   return NULL;
 }
@@ -57,10 +67,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
     vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
     return VL_OK;
   }
-  return vl_camera_wrong(file,
-                         "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
-                         "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
-                         vl_short_text(name).text);
+  return vl_camera_wrong_in(file, item, NULL,
+                            "openmvg: \"%s\" is no model of velo; there are pinhole, pinhole_radial_k1, "
+                            "pinhole_radial_k3, pinhole_brown_t2, fisheye, spherical",
+                            vl_short_text(name).text);
 }
 
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, const json_t *item,
@@ -68,7 +78,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
   const char *name = class_of(list, item);
   vlCameraDef *d = &record->camera;
   double f, c[2];
-  if (!name) return vl_camera_wrong(file, "openmvg: an intrinsic without \"polymorphic_name\"");
+  if (!name) return vl_camera_wrong_in(file, item, NULL, "openmvg: an intrinsic without \"polymorphic_name\"");
   vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
   if (result != VL_OK) return result;
   if (strcmp(name, "spherical") == 0) return d->projection = VL_PROJECTION_EQUIRECTANGULAR, VL_OK;
@@ -84,9 +94,9 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
 static vlResult read_view(const vlCameraFile *file, const json_t *tree, const json_t *view, const json_t *pose,
                           vlCameraRecord *record) {
   const json_t *intrinsics = json_object_get(tree, "intrinsics");
-  const json_t *item = item_of(intrinsics, json_integer_value(json_object_get(view, "id_intrinsic")));
+  const json_t *item = item_of(intrinsics, id_of(view, "id_intrinsic"));
   double r[9], center[3], t[3];
-  if (!item) return vl_camera_wrong(file, "openmvg: the view's intrinsic is missing");
+  if (!item) return vl_camera_wrong_in(file, view, "id_intrinsic", "openmvg: the view's intrinsic is missing");
   vlResult result = read_intrinsic(file, intrinsics, item, record);
   if (result == VL_OK) result = vl_camera_numbers(file, pose, "rotation", r, 9, 9, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, pose, "center", center, 3, 3, NULL);
@@ -105,7 +115,7 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
   record->frames = 0;
   json_array_foreach(json_object_get(tree, "views"), i, item) {
     const json_t *view = data_of(item, "id_pose");
-    const json_t *own = item_of(extrinsics, json_integer_value(json_object_get(view, "id_pose")));
+    const json_t *own = item_of(extrinsics, id_of(view, "id_pose"));
     if (!view || !own) continue; /* not reconstructed */
     if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename")))
       chosen = view, pose = json_object_get(own, "value");
@@ -113,8 +123,7 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
   }
   if (chosen) return read_view(file, tree, chosen, pose, record);
   if (record->frames || !json_array_size(json_object_get(tree, "intrinsics")))
-    return vl_camera_wrong(file, "openmvg: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+    return vl_camera_no_frame(file, "camera", record->frames);
   record->frames = 1; /* before the reconstruction: the first intrinsic, at the origin */
   vl_camera_set_origin(&record->camera);
   return read_intrinsic(file, json_object_get(tree, "intrinsics"),

@@ -113,9 +113,7 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCam
       record->frames++;
     }
   }
-  if (!chosen)
-    return vl_camera_wrong(file, "opensfm: there is no shot \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+  if (!chosen) return vl_camera_no_frame(file, "shot", record->frames);
   return read_shot(file, chosen, of, chosen_name, record);
 }
 

@@ -59,8 +59,7 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree, vlCam
   record->frames = pair ? 2 : 1;
   uint32_t index = vl_camera_is_frame(file, 0, "Camera1") ? 0 : 1;
   if (index == 1 && !(pair && vl_camera_is_frame(file, 1, "Camera2")))
-    return vl_camera_wrong(file, "orbslam: there is no camera \"%.60s\" among the %u",
-                           file->def->frame ? file->def->frame : "0", record->frames);
+    return vl_camera_no_frame(file, "camera", record->frames);
   if (numbered || index == 1) snprintf(prefix, sizeof prefix, "Camera%u", index + 1);
   vlResult result = read_one(file, tree, prefix, record);
   vl_camera_set_origin(&record->camera);
@@ -81,20 +80,16 @@ static bool is_orbslam(const json_t *tree) {
 static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {"k1", "k2", "k3", "k4"};
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && family != VL_LENS_FISHEYE) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
-  bool fisheye = family == VL_LENS_FISHEYE;
+  bool fisheye = fit.family == VL_LENS_FISHEYE;
   vl_camera_put(text, "%%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"%s\"\n\n",
                 fisheye ? "KannalaBrandt8" : "PinHole");
   vl_camera_put(text, "Camera1.fx: %.17g\nCamera1.fy: %.17g\nCamera1.cx: %.17g\nCamera1.cy: %.17g\n\n", c.fx, c.fy,
                 c.cx - 0.5, c.cy - 0.5);
-  for (uint32_t i = 0; i < n; i++)
-    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i], k[i] + 0.0);
+  for (uint32_t i = 0; i < fit.count; i++)
+    vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i], fit.k[i] + 0.0);
   vl_camera_put(text, "\nCamera.width: %u\nCamera.height: %u\n", c.width, c.height);
   return VL_OK;
 }

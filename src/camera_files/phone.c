@@ -22,7 +22,7 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCa
   record->frames = (uint32_t)json_array_size(poses);
   for (uint32_t i = 0; i < record->frames && !pose; i++)
     if (vl_camera_is_frame(file, i, NULL)) pose = json_array_get(poses, i), coefficients = json_array_get(own, i);
-  if (!pose) return vl_camera_no_frame(file, record->frames);
+  if (!pose) return vl_camera_no_frame(file, "camera", record->frames);
   json_t *holder = json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
   if (!holder) return vl_fail_memory(file->error);
   vlResult result = vl_camera_numbers(file, holder, "poses", v, 7, 7, NULL);

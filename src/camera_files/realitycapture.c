@@ -108,13 +108,8 @@ static bool is_xmp(const json_t *tree) {
 static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE, k, &c);
+  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
   if (result != VL_OK) return result;
   const double side = c.width > c.height ? c.width : c.height, *m = c.camera_from_world, *p = c.world_from_camera;
   vl_camera_put(text,
@@ -124,7 +119,7 @@ static vlResult write_xmp(const vlCameraFile *file, const vlCameraRecord *record
                 "       xcr:DistortionModel=\"%s\" xcr:FocalLength35mm=\"%.17g\" xcr:Skew=\"0\" xcr:AspectRatio=\"1\"\n"
                 "       xcr:PrincipalPointU=\"%.17g\" xcr:PrincipalPointV=\"%.17g\"\n"
                 "       xmlns:xcr=\"http://www.capturingreality.com/ns/xcr/1.1#\">\n",
-                n == 0                       ? "perspective"
+                c.distortion.steps == 0      ? "perspective"
                 : k[2] == 0.0 && k[3] == 0.0 ? "brown3"
                                              : "brown3t2",
                 36.0 * c.fx / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side);
@@ -223,7 +218,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
     of[k] = -1;
     for (int i = 0; i < row.count; i++)
       if (strcmp(row.fields[i], columns[k]) == 0) of[k] = i;
-    if (of[k] < 0 && k <= F)
+    if (k <= F && of[k] < 0)
       return vl_camera_wrong_at(file, row.number, 1, "realitycapture: the column \"%s\" is missing", columns[k]);
   }
   Row chosen = {.count = 0};
@@ -234,7 +229,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
     chosen = row;
     for (int i = 0; i < row.count; i++) chosen.fields[i] = chosen.text + (row.fields[i] - row.text);
   }
-  return chosen.count ? read_row(file, &chosen, of, record) : vl_camera_no_frame(file, record->frames);
+  return chosen.count ? read_row(file, &chosen, of, record) : vl_camera_no_frame(file, "camera", record->frames);
 }
 
 static bool is_csv(const char *text, size_t size) {

@@ -39,7 +39,7 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCam
   record->frames = (uint32_t)json_array_size(list);
   for (uint32_t i = 0; i < record->frames && !camera; i++)
     if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(list, i);
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *model, *parameters, *transform = json_object_get(camera, "transform");
   vlResult result = vl_camera_field(file, camera, "model", &model);
   if (result != VL_OK) return result;
@@ -94,7 +94,7 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
     if (!chosen && vl_camera_is_frame(file, record->frames, token)) chosen = item, vl_camera_name(record, token);
     record->frames++;
   }
-  if (!chosen) return vl_camera_no_frame(file, record->frames);
+  if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_numbers(file, chosen, "camera_intrinsic", k, 9, 9, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, chosen, "rotation", q, 4, 4, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, chosen, "translation", t, 3, 3, NULL);
@@ -129,7 +129,7 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCa
     chosen = item;
     vl_camera_name(record, vl_camera_text(item, "name"));
   }
-  if (!chosen) return vl_camera_no_frame(file, record->frames);
+  if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
   if (result == VL_OK) result = vl_camera_numbers(file, chosen, "K", k, 9, 9, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, chosen, "distCoef", lens, 5, 5, NULL);

@@ -77,7 +77,7 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree, vlCam
     if (!camera && vl_camera_is_frame(file, record->frames, name)) camera = one, vl_camera_name(record, name);
     record->frames++;
   }
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side(file, camera, "width", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
   if (result == VL_OK) result = vl_camera_numbers(file, camera, "intrinsicMatrix", k, 9, 9, NULL);
@@ -125,7 +125,7 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCame
     camera = one;
     vl_camera_name(record, name);
   }
-  if (!camera) return vl_camera_no_frame(file, record->frames);
+  if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *intrinsics, *pose;
   vlResult result = vl_camera_side(file, camera, "SensorWidth", &d->width);
   if (result == VL_OK) result = vl_camera_side(file, camera, "SensorHeight", &d->height);
@@ -208,7 +208,7 @@ static vlResult read_realsense(const vlCameraFile *file, const json_t *tree, vlC
     if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = stream, vl_camera_name(record, name);
     record->frames++;
   }
-  return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, record->frames);
+  return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, "camera", record->frames);
 }
 
 static bool is_realsense(const json_t *tree) {
@@ -221,20 +221,16 @@ static bool is_realsense(const json_t *tree) {
 
 static vlResult write_realsense(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, 0, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool fisheye = family == VL_LENS_FISHEYE;
-  if ((!fisheye && family != VL_LENS_OPENCV && family != VL_LENS_PINHOLE) || n > 5)
-    return vl_camera_no_model(file, &record->camera);
+  bool fisheye = fit.family == VL_LENS_FISHEYE;
   vl_camera_put(
       text,
       "{\n  \"width\": %u, \"height\": %u,\n  \"ppx\": %.17g, \"ppy\": %.17g,\n  \"fx\": %.17g, \"fy\": %.17g,\n"
       "  \"model\": \"distortion.%s\",\n  \"coeffs\": [",
       c.width, c.height, c.cx - 0.5, c.cy - 0.5, c.fx, c.fy, fisheye ? "kannala_brandt4" : "brown_conrady");
-  vl_camera_put_numbers(text, k, 5);
+  vl_camera_put_numbers(text, fit.k, 5);
   vl_camera_put(text, "]\n}\n");
   return VL_OK;
 }

@@ -110,24 +110,24 @@ static void put_matrix(vlCameraText *text, const char *indent, const char *name,
 
 static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE,
+                                       VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED, 4, &c, &fit);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  bool unified = family == VL_LENS_UNIFIED, fov = family == VL_LENS_FOV;
-  if (n > 4 || family == VL_LENS_EUCM || family == VL_LENS_DOUBLE_SPHERE || family == VL_LENS_OTHER)
-    return vl_camera_no_model(file, &record->camera);
-  const char *lens = fov ? "fisheye" : family == VL_LENS_FISHEYE ? "equidistant" : n ? "radial-tangential" : "none";
+  bool unified = fit.family == VL_LENS_UNIFIED, fov = fit.family == VL_LENS_FOV;
+  const char *lens = fov                             ? "fisheye"
+                     : fit.family == VL_LENS_FISHEYE ? "equidistant"
+                     : fit.count                     ? "radial-tangential"
+                                                     : "none";
   const double f[5] = {c.shape[0], c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
-  if (fov) k[0] = c.shape[0];
+  if (fov) fit.k[0] = c.shape[0];
   vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
   vl_camera_put_string(text, record->name[0] ? record->name : "cam0");
   vl_camera_put(text, "\n    type: %s\n    image_width: %u\n    image_height: %u\n", unified ? "omni" : "pinhole",
                 c.width, c.height);
   put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
   vl_camera_put(text, "    distortion:\n      type: %s\n", lens);
-  if (n || fov) put_matrix(text, "      ", "parameters", fov ? 1 : (int)n, 1, k);
+  if (fit.count || fov) put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit.count, 1, fit.k);
   put_matrix(text, "  ", "T_B_C", 4, 4, c.world_from_camera);
   return VL_OK;
 }

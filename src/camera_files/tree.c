@@ -250,8 +250,8 @@ void vl_camera_name(vlCameraRecord *record, const char *name) {
   snprintf(record->name, sizeof record->name, "%s", name ? name : "");
 }
 
-vlResult vl_camera_no_frame(const vlCameraFile *file, uint32_t count) {
-  return vl_camera_wrong(file, "%s: there is no camera \"%.60s\" among the %u", file->dialect,
+vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count) {
+  return vl_camera_wrong(file, "%s: there is no %s \"%.60s\" among the %u", file->dialect, what,
                          file->def->frame ? file->def->frame : "0", count);
 }
 

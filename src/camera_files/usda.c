@@ -129,8 +129,8 @@ static bool braces(Parser *p) {
 }
 
 static bool value(Parser *p, int depth, json_t **result) {
-  const char *text;
-  size_t length;
+  const char *text = NULL;
+  size_t length = 0;
   if (!skip(p)) return fail(p, "a value is missing");
   char c = *p->at;
   if (c == '(' || c == '[') return list(p, depth, c == '(' ? ')' : ']', result);

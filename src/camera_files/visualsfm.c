@@ -52,8 +52,8 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   if (result == VL_OK && !vl_camera_next_line(&lines))
     return vl_camera_wrong(file, "visualsfm: the file has no camera");
   if (result == VL_OK) result = vl_camera_line_numbers(file, &lines, lines.text, &count, 1, 1, &n);
-  if (result == VL_OK && !(count >= 1.0 && count <= 1e7))
-    return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
+  if (result != VL_OK) return result;
+  if (!(count >= 1.0 && count <= 1e7)) return vl_camera_wrong_line(file, &lines, lines.text, "the file has no camera");
   record->frames = (uint32_t)count;
   for (uint32_t i = 0; result == VL_OK && i < record->frames && !taken; i++) {
     char name[sizeof record->name];
@@ -68,7 +68,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
     vl_camera_name(record, name);
   }
   if (result != VL_OK) return result;
-  if (!taken) return vl_camera_no_frame(file, record->frames);
+  if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
   if (!vl_rotation_from_quaternion(v + 1, r))
     return vl_camera_wrong_line(file, &lines, lines.text, "the quaternion is no rotation");
   for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * v[5] + r[3 * i + 1] * v[6] + r[3 * i + 2] * v[7]);

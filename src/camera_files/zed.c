@@ -89,7 +89,7 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
     }
     record->frames++;
   }
-  if (mode < 0) return vl_camera_no_frame(file, record->frames);
+  if (mode < 0) return vl_camera_no_frame(file, "camera", record->frames);
   for (int i = 0; i < 9; i++) {
     bool there;
     vlResult result = find_value(file, text, size, section, keys[i], &v[i], &there);

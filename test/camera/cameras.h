@@ -100,4 +100,22 @@ static inline vlCamera camera_of(int index) {
   return make_or_fail(&def);
 }
 
+/* One clear line: the code, no line break, and the words that matter. second may be null. */
+static inline void expect_error(vlCameraDef def, const char *first, const char *second) {
+  vlCamera c;
+  vlError error;
+  memset(&error, 0x55, sizeof error);
+  assert_int_equal(vl_camera_make(&def, &c, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_int_equal(error.code, VL_ERROR_ARGUMENT);
+  if (!strstr(error.message, first) || (second && !strstr(error.message, second)) || strchr(error.message, '\n'))
+    fail_msg("message \"%s\" should speak of \"%s\" and \"%s\"", error.message, first, second ? second : "");
+}
+/* The default def with a change. */
+#define EXPECT_ERROR(change, ...)                    \
+  do {                                               \
+    vlCameraDef d = vl_default_camera_def(640, 480); \
+    change;                                          \
+    expect_error(d, __VA_ARGS__);                    \
+  } while (0)
+
 #endif

@@ -229,23 +229,6 @@ static void orthographic(void **state) {
   assert_true(make_or_fail(&def).fy == 100); /* default: -1 to 1 across the smaller side */
 }
 
-/* One clear line each: the code, no line break, and the words that matter. */
-static void expect_error(vlCameraDef def, const char *first, const char *second) {
-  vlCamera c;
-  vlError error;
-  memset(&error, 0x55, sizeof error);
-  assert_int_equal(vl_camera_make(&def, &c, NULL, &error), VL_ERROR_ARGUMENT);
-  assert_int_equal(error.code, VL_ERROR_ARGUMENT);
-  if (!strstr(error.message, first) || (second && !strstr(error.message, second)) || strchr(error.message, '\n'))
-    fail_msg("message \"%s\" should speak of \"%s\" and \"%s\"", error.message, first, second ? second : "");
-}
-#define EXPECT_ERROR(change, ...)                    \
-  do {                                               \
-    vlCameraDef d = vl_default_camera_def(640, 480); \
-    change;                                          \
-    expect_error(d, __VA_ARGS__);                    \
-  } while (0)
-
 static void error_messages(void **state) {
   (void)state;
   EXPECT_ERROR(d.cookie = 0, "def.cookie", NULL);

@@ -413,21 +413,6 @@ static void folding_is_found(void **state) {
   assert_true(c.distortion.steps == 0);
 }
 
-static void expect_error(vlCameraDef def, const char *first, const char *second) {
-  vlCamera c;
-  vlError error;
-  memset(&error, 0x55, sizeof error);
-  if (vl_camera_make(&def, &c, NULL, &error) != VL_ERROR_ARGUMENT) fail_msg("no error for \"%s\"", first);
-  if (!strstr(error.message, first) || (second && !strstr(error.message, second)) || strchr(error.message, '\n'))
-    fail_msg("message \"%s\" should speak of \"%s\" and \"%s\"", error.message, first, second ? second : "");
-}
-#define EXPECT_ERROR(change, ...)                    \
-  do {                                               \
-    vlCameraDef d = vl_default_camera_def(640, 480); \
-    change;                                          \
-    expect_error(d, __VA_ARGS__);                    \
-  } while (0)
-
 static void error_messages(void **state) {
   (void)state;
   EXPECT_ERROR(d.fx = 0, "fx is 0", NULL);

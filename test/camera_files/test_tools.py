@@ -409,8 +409,8 @@ BUNDLER = "# Bundle file v0.3\n3 1\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n%r -0.2 0
 
 
 def openmvg(kind, distortion, nested=False):
-    def lens(extra):
-        size, rest = {"width": 640, "height": 480}, dict(focal_length=FX, principal_point=[CX + 0.5, CY + 0.5])
+    def lens(extra, focal=FX):
+        size, rest = {"width": 640, "height": 480}, dict(focal_length=focal, principal_point=[CX + 0.5, CY + 0.5])
         return dict({"value0": dict({"value0": size}, **rest)}, **extra) if nested else dict(size, **rest, **extra)
 
     def view(key, pose, name):
@@ -419,9 +419,10 @@ def openmvg(kind, distortion, nested=False):
     return json.dumps({
         "sfm_data_version": "0.3", "root_path": "/x", "views": [view(0, 4294967295, "a.jpg"), view(1, 5, "b.jpg")],
         "intrinsics": [{"key": 0, "value": {"polymorphic_id": 2147483649, "polymorphic_name": kind,
-                                            "ptr_wrapper": {"id": 2147483660, "data": lens(distortion)}}},
+                                            "ptr_wrapper": {"id": 2147483660, "data": lens(distortion, 9.0)}}},
                        {"key": 1, "value": {"polymorphic_id": 1, "ptr_wrapper": {"id": 2147483661, "data": lens(distortion)}}}],
-        "extrinsics": [{"key": 5, "value": {"rotation": R, "center": C}}], "structure": [], "control_points": []}, indent=1)
+        "extrinsics": [{"key": 4, "value": {"rotation": IDENTITY, "center": T}}, {"key": 5, "value": {"rotation": R, "center": C}}],
+        "structure": [], "control_points": []}, indent=1)
 
 
 CASES = [

@@ -115,7 +115,7 @@ static void lists_of_poses(void **state) {
   const double q = sqrt(0.5);
   char text[2000];
   double first[16];
-  for (int i = 0; i < 7; i++) {
+  for (int i = 0; i < 9; i++) {
     const char *name = "p.csv";
     switch (i) {
       case 0:
@@ -134,6 +134,16 @@ static void lists_of_poses(void **state) {
                  "# pose: camera_from_world\nm00,m01,m02,m03,m10,m11,m12,m13,m20,m21,m22,m23\n0,0,-1,3,0,1,0,-2,1,0,0,"
                  "-1");
         break;
+      case 6: /* EuRoC: nanoseconds; the velocity is ignored */
+        snprintf(
+            text, sizeof text,
+            "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z "
+            "[], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1]\n2500000000,1,2,3,%.17g,0,%.17g,0,7,8,9\n",
+            q, q);
+        break;
+      case 7: /* Stray Scanner: the intrinsics are ignored, with a warning */
+        snprintf(text, sizeof text, "tx,ty,tz,qx,qy,qz,qw,fx,fy,cx,cy\n1,2,3,0,%.17g,0,%.17g,900,900,300,200\n", q, q);
+        break;
       default:
         snprintf(text, sizeof text,
                  "eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z,up_x,up_y,up_z\n1,2,3, 11,2,3, 0,-1,0\n");
@@ -148,7 +158,7 @@ static void lists_of_poses(void **state) {
       if (!(fabs(frame.world_from_camera[k] - expected[k]) < 1e-12)) fail_msg("case %d, element %d", i, k);
     if (i == 0) memcpy(first, frame.world_from_camera, sizeof first);
     if (i == 0) assert_string_equal(frame.name, "a,b.png");
-    assert_true(i == 0 || i == 2 ? frame.time == 2.5 : isnan(frame.time));
+    assert_true(i == 0 || i == 2 || i == 6 ? frame.time == 2.5 : isnan(frame.time));
     vl_trajectory_destroy(t);
   }
 }
@@ -178,6 +188,7 @@ static void wrong_lines_are_told(void **state) {
       {"a.csv", "tx,ty,tz,qx,qy,qz\n", 1, "the column \"qw\" is missing"},
       {"a.csv", "tx,tx\n", 1, "stands twice"},
       {"a.csv", "name,time\na,1\n", 1, "say no pose"},
+      {"a.csv", "tx,ty,tz,qx,qy,qz,qw,roll\n0,0,0,0,0,0,1,9\n", 1, "go with eye and lookat only"},
       {"a.csv", "# axes: blender\n", 1, "axes are opencv or opengl"},
       {"a.csv", "1 2 3 4\n", 1, "lists of TUM have 8"},
       {"a.csv", "", 0, "holds no pose"},

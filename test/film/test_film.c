@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "film/film.h"
+#include "film/sums.h"
 #include "statistics.h"
 #include "velo/image.h"
 
@@ -165,6 +166,41 @@ static void test_passes(void **state) {
   assert_memory_equal(one_, two_, sizeof one_);
   vl_film_destroy(plain);
   vl_film_destroy(film);
+}
+
+/* After 2^32 - 1 passes the numbers begin again: what the first pass touched does not count as touched by the next. */
+static void test_pass_numbers_wrap(void **state) {
+  (void)state;
+  random_samples(3);
+  vlFilm *plain = new_film(), *film = new_film();
+  for (int i = 0; i < 2; i++) whole_pass(i ? film : plain, 0, 50);
+  film->pass = UINT32_MAX;
+  assert_int_equal(vl_film_begin_pass(film), VL_OK);
+  add(film, 4000, 3);
+  vl_film_abandon_pass(film);
+  assert_int_equal(film->pass, 1);
+  for (int i = 0; i < 2; i++) whole_pass(i ? film : plain, 50, 3);
+  develop(plain, one_);
+  develop(film, two_);
+  assert_memory_equal(one_, two_, sizeof one_);
+  vl_film_destroy(plain);
+  vl_film_destroy(film);
+}
+
+/* A coarse film covers the crop of the fine one, and begins where it begins. */
+static void test_coarse_def(void **state) {
+  (void)state;
+  vlFilmDef def = vl_default_film_def(33, 17);
+  const uint32_t crop[4] = {5, 3, 30, 16}, covered[4] = {1, 0, 8, 4};
+  memcpy(def.crop, crop, sizeof crop);
+  def.errors = true, def.buckets = 3;
+  vlFilmDef coarse = vl_coarse_film_def(&def, 4), same = vl_coarse_film_def(&def, 0);
+  assert_int_equal(coarse.width, 9);
+  assert_int_equal(coarse.height, 5);
+  assert_memory_equal(coarse.crop, covered, sizeof covered);
+  assert_false(coarse.errors || coarse.buckets);
+  assert_int_equal(same.width, 33);
+  assert_memory_equal(same.crop, crop, sizeof crop);
 }
 
 static void test_merge(void **state) {
@@ -351,9 +387,11 @@ static void test_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exact),      cmocka_unit_test(test_constant),      cmocka_unit_test(test_passes),
-      cmocka_unit_test(test_merge),      cmocka_unit_test(test_wrong_samples), cmocka_unit_test(test_crop_and_develop),
-      cmocka_unit_test(test_wrong_defs), cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_exact),         cmocka_unit_test(test_constant),
+      cmocka_unit_test(test_passes),        cmocka_unit_test(test_pass_numbers_wrap),
+      cmocka_unit_test(test_coarse_def),    cmocka_unit_test(test_merge),
+      cmocka_unit_test(test_wrong_samples), cmocka_unit_test(test_crop_and_develop),
+      cmocka_unit_test(test_wrong_defs),    cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

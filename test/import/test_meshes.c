@@ -84,6 +84,13 @@ static void off(void **state) {
   d = shape(&l);
   assert_true(d->normals[2] == 1 && fabs((double)d->colors[1] - 0.2140) < 1e-3 && d->colors[2] == 1);
   end_load(&l);
+  l = load_lines("s.off",
+                 "STCOFF\n3 1 0\n0 0 0 255 0 0 255 0 0\n1 0 0 255 0 0 255 1 0\n0 1 0 255 0 0 255 .25 .75\n3 0 1 2\n");
+  d = shape(&l);
+  assert_true(d->uvs[4] == 0.25f && d->uvs[5] == 0.75f && d->colors[0] == 1 && d->colors[1] == 0);
+  end_load(&l);
+  expect_error("t.off", "STOFF\n3 1 0\n0 0 0 0 0\n1 0 0 1\n", 4, "no texture coordinates");
+  expect_error("u.off", "COFF\n3 1 0\n0 0 0 1 1 1\n1 0 0 1 1\n", 4, "no colour");
   expect_error("d.off", "OF\n", 1, "must begin with OFF");
   expect_error("e.off", "OFF BINARY\n", 1, "binary");
   expect_error("f.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 6, "not there");

@@ -83,7 +83,7 @@ int target_read_marker(const Target *target, int i, int j, const Image *image, d
     const double *a = c[round[k]], *b = c[round[k + 1]];
     if (hypot(a[0] - b[0], a[1] - b[1]) < 2.4 * CELLS) return -1;
   }
-  double values[BITS * BITS], black = 0.0, white = 0.0;
+  double values[BITS * BITS] = {0.0}, black = 0.0, white = 0.0;
   for (int pass = 0; pass < CELLS * CELLS; pass++) {
     int x = pass % CELLS, y = pass / CELLS;
     double u = (x + 0.5) / CELLS, v = (y + 0.5) / CELLS, at[2];

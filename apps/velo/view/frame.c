@@ -34,7 +34,7 @@ static void fill_row(ViewFrame *frame, const vlImage *image, uint32_t y, const f
   uint8_t *to = frame->pixels + (size_t)y * frame->columns * pixel_size(frame);
   for (uint32_t x = 0; x < frame->columns; x++) {
     size_t at = ((size_t)y * frame->columns + x) * stored;
-    float v[4];
+    float v[4] = {0.0f, 0.0f, 0.0f, 0.0f};
     for (uint32_t c = 0; c < n; c++)
       v[c] = ids ? (float)((const uint32_t *)pixels)[at + c] : ((const float *)pixels)[at + c];
     if (matrix) {

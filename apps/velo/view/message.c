@@ -46,7 +46,7 @@ static bool copy_text(const json_t *item, char *text, size_t size) {
   if (strlen(from) != json_string_length(item)) return false;
   for (const char *s = from; *s; s++)
     if ((unsigned char)*s < 0x20 || *s == 0x7f) return false;
-  strcpy(text, from);
+  memcpy(text, from, strlen(from) + 1);
   return true;
 }
 
@@ -74,7 +74,7 @@ static bool read_counts(const json_t *object, const char *key, uint32_t count, u
 
 static bool read_field(const char *name, const json_t *value, MessageField *field) {
   if (strlen(name) >= sizeof field->name) return false;
-  strcpy(field->name, name);
+  memcpy(field->name, name, strlen(name) + 1);
   field->null = json_is_null(value);
   if (field->null) return true;
   if (json_is_string(value)) return copy_text(value, field->text, sizeof field->text);

@@ -14,8 +14,6 @@
 #include "view/lecture.h"
 #include "view/view.h"
 
-extern char **environ;
-
 /* Opens the page where there is a display. */
 static void open_browser(const char *address) {
   if (!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) return;

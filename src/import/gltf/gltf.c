@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "import/import.h"
+#include "import/plain.h"
 
 bool vl_gltf_choose_variant(vlGltf *g) {
   g->variant = -1;
@@ -26,19 +27,10 @@ bool vl_gltf_choose_variant(vlGltf *g) {
   return vl_gltf_fail(g, NULL, "there is no variant \"%.60s\" (%zu are there%s)", g->def->variant, count, names);
 }
 
-static void set_defaults(vlScene *scene) {
-  vlSceneDefs *s = vl_scene_defs(scene);
-  s->render.spp = 64;
-  s->render.tracer = VL_TRACER_VOLPATH;
-  s->render.max_depth = 12; /* paths through glass need many bounces */
-  s->camera_missing = true;
-  s->light_missing = true;
-}
-
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
   vlLoadDef plain = vl_default_load_def();
   vlGltf g = {.context = scene->context, .scene = scene, .def = def ? def : &plain, .path = path, .copy = SIZE_MAX};
-  set_defaults(scene);
+  vl_import_plain_settings(scene);
   bool ok = vl_gltf_open(&g) && vl_gltf_check_extensions(&g);
   if (ok) vl_gltf_check_names(&g);
   ok = ok && vl_gltf_count_unread(&g) && vl_gltf_read_buffers(&g) && vl_gltf_choose_variant(&g) &&

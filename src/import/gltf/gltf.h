@@ -153,7 +153,10 @@ enum {
 bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) __attribute__((format(printf, 3, 4)));
 bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-bool vl_gltf_fail_memory(vlGltf *g);
+static inline bool vl_gltf_fail_memory(vlGltf *g) {
+  vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+  return false;
+}
 void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* Returns true on the first call for this bit. */

@@ -42,11 +42,6 @@ bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) 
   return false;
 }
 
-bool vl_gltf_fail_memory(vlGltf *g) {
-  vl_scene_fail(g->scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
-  return false;
-}
-
 void vl_gltf_warn(vlGltf *g, vlLogLevel level, const vlGltfPlace *place, const char *format, ...) {
   char text[512];
   va_list args;

@@ -198,8 +198,8 @@ static bool add_primitive(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
                           const vlGltfNode *node, vlGroupId group, vlMat4 pose, vlGltfPrimitive *p) {
   const json_t *attributes;
   int64_t position, material;
-  size_t mode = 4, count;
-  uint32_t *indices;
+  size_t mode = 4, count = 0;
+  uint32_t *indices = NULL;
   if (!vl_gltf_object(g, at, primitive, "attributes", &attributes) ||
       !vl_gltf_index(g, VL_GLTF_KEY(at, "attributes"), attributes, "POSITION", g->accessor_count, &position) ||
       !vl_gltf_size(g, at, primitive, "mode", &mode) || !choose_material(g, at, primitive, &material))

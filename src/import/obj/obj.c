@@ -137,7 +137,7 @@ static float linear_from_srgb(double v) {
 
 /* x y z, x y z w, or x y z r g b (sRGB, as programs write it). */
 static bool read_vertex(vlObj *obj) {
-  double v[7];
+  double v[7] = {0};
   uint32_t count;
   if (!numbers(obj, "v", 3, 7, v, &count)) return false;
   if (obj->positions.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many vertices");
@@ -181,7 +181,7 @@ static bool read_uv(vlObj *obj) {
 }
 
 static bool read_normal(vlObj *obj) {
-  double v[3];
+  double v[3] = {0};
   uint32_t count;
   if (!is_broken(obj, v) && !numbers(obj, "vn", 3, 3, v, &count)) return false;
   if (obj->normals.count / 3 >= 0x7ffffff0u) return vl_obj_fail(obj, "too many normals");

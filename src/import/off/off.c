@@ -64,7 +64,7 @@ static bool number(Off *s, double *value) {
 }
 
 static bool count(Off *s, uint64_t bytes, uint32_t *n) {
-  double value;
+  double value = 0;
   if (!number(s, &value)) return false;
   if (!(value >= 0 && value < 0x2aaaaaaa) || value != floor(value)) return fail(s, "a count makes no sense", NULL);
   if (value * (double)bytes > (double)(s->end - s->at) + 1)
@@ -162,8 +162,8 @@ static bool add_triangle(Off *s, uint32_t a, uint32_t b, uint32_t c, const float
 
 /* Polygons become fans. *colored: the face has a colour. */
 static bool read_face(Off *s, bool *colored) {
-  uint32_t n;
-  double rest[8] = {0}, value;
+  uint32_t n = 0;
+  double rest[8] = {0}, value = 0;
   int more;
   if (!count(s, 2, &n)) return false;
   if (!VL_RESERVE(s->scene->context, &s->corners, (size_t)n + 1)) return fail_memory(s);

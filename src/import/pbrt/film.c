@@ -48,12 +48,12 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
  * standard observer with the same white replaces an unknown sensor. */
 static bool read_sensor_name(vlDict *dict, double *white) {
   enum { MOST = 64 };
-  const char *names[MOST], *name = vl_sensor_name(0);
+  const char *names[MOST], *plain = vl_sensor_name(0), *name = plain;
   uint32_t count = 0;
   vlImport *import = dict->import;
   while (count < MOST && vl_sensor_name(count)) names[count] = vl_sensor_name(count), count++;
   vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "sensor", &name) || strcmp(name, names[0]) == 0) return true;
+  if (!vl_dict_string(dict, "sensor", &name) || strcmp(name, plain) == 0) return true;
   *white = 6500.0;
   for (uint32_t i = 1; i < count; i++)
     if (strcmp(name, names[i]) == 0) {

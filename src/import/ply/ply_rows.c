@@ -94,7 +94,7 @@ bool vl_ply_read_vertices(vlPlyReader *r, const vlPlyElement *e) {
     if (!vl_ply_goes_on(r, i)) return false;
     for (uint32_t j = 0; j < e->property_count; j++) {
       const vlPlyProperty *p = &e->properties[j];
-      double value;
+      double value = 0;
       uint64_t n = 1;
       if (p->is_list && !vl_ply_read_length(r, p, &n)) return false;
       for (uint64_t k = 0; k < n; k++)

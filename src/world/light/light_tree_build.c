@@ -140,7 +140,7 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       b = b < 0 ? 0 : b >= BUCKETS ? BUCKETS - 1 : b;
       absorb(&buckets[b], &items[i].bounds);
     }
-    int filled[BUCKETS], fill_count = 0; /* most nodes are small and fill two or three buckets */
+    int filled[BUCKETS] = {0}, fill_count = 0; /* most nodes are small and fill two or three buckets */
     for (int b = 0; b < BUCKETS; b++)
       if (buckets[b].power != 0) filled[fill_count++] = b;
     vlLightBounds left = buckets[fill_count ? filled[0] : 0];

@@ -122,28 +122,37 @@ bool vl_old_remove(vlOldFile *file, vlOldStatement *s) {
   return vl_old_edit(file, span, "%s", "");
 }
 
-bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
+typedef struct LineBegin {
+  char text[200];
+  int length;
+} LineBegin;
+
+/* A line break, and the indentation of the statement's line. */
+static LineBegin line_of(const vlOldFile *file, const vlOldStatement *s) {
+  LineBegin result;
   int indent;
-  va_list args;
   size_t line = line_start(file, s->keyword.start, &indent);
+  snprintf(result.text, sizeof result.text, "\n%.*s", indent, file->text + line);
+  result.length = (int)strlen(result.text);
+  return result;
+}
+
+bool vl_old_before(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
+  const LineBegin suffix = line_of(file, s);
+  va_list args;
   va_start(args, format);
   char *text = format_text(file->u->context, format, args);
   va_end(args);
-  char suffix[200];
-  snprintf(suffix, sizeof suffix, "\n%.*s", indent, file->text + line);
-  return edit_parts(file, (vlOldSpan){s->keyword.start, s->keyword.start}, "", 0, text, suffix, (int)strlen(suffix));
+  return edit_parts(file, (vlOldSpan){s->keyword.start, s->keyword.start}, "", 0, text, suffix.text, suffix.length);
 }
 
 bool vl_old_after(vlOldFile *file, const vlOldStatement *s, const char *format, ...) {
-  int indent;
+  const LineBegin prefix = line_of(file, s);
   va_list args;
-  size_t line = line_start(file, s->keyword.start, &indent);
   va_start(args, format);
   char *text = format_text(file->u->context, format, args);
   va_end(args);
-  char prefix[200];
-  snprintf(prefix, sizeof prefix, "\n%.*s", indent, file->text + line);
-  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix, (int)strlen(prefix), text, "", 0);
+  bool fine = edit_parts(file, (vlOldSpan){s->whole.end, s->whole.end}, prefix.text, prefix.length, text, "", 0);
   if (fine) file->edits.items[file->edits.count - 1].order |= AFTER;
   return fine;
 }

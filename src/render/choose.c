@@ -210,7 +210,8 @@ void vl_choose_by_work(vlTracerChoice *choice, double samples) {
     trials[i].work = (trials[i].error * trials[i].cost / trials[0].cost / samples + trials[i].missing) /
                      (trials[0].error / samples + trials[0].missing);
   for (uint32_t i = 1; i < choice->count; i++) {
-    double most = trials[best].work * (trials[i].tracer == VL_TRACER_MERGING ? BIASED : best ? 1 : SURE);
+    double most = isfinite(trials[best].work) ? trials[best].work : INFINITY;
+    most *= trials[i].tracer == VL_TRACER_MERGING ? BIASED : best ? 1 : SURE;
     if (trials[i].work < most) best = i;
   }
   choice->tracer = trials[best].tracer;

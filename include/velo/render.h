@@ -273,6 +273,8 @@ struct vlSceneDefs {
   char output[512];         /**< name of the image file given in the scene's file; empty: none */
   vlSource camera_source;   /**< where the file describes the camera, for errors of vl_camera_make; file may be null */
   bool camera_missing;      /**< the file describes no camera: vl_scene_complete adds one */
+  bool tracer_missing;      /**< the file names no tracer: render.tracer is VL_TRACER_VOLPATH, and vl_choose_tracer
+                               (velo/choose.h) may find a better one */
   bool light_missing;       /**< the file describes no environment light: vl_scene_complete may add one */
 };
 

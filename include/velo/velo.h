@@ -10,6 +10,7 @@
 #include "velo/camera_file.h"
 #include "velo/channels.h"
 #include "velo/check.h"
+#include "velo/choose.h"
 #include "velo/denoise.h"
 #include "velo/drawing.h"
 #include "velo/edit.h"

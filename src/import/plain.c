@@ -12,6 +12,7 @@ void vl_import_plain_settings(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);
   s->render.spp = 64;
   s->render.tracer = VL_TRACER_VOLPATH;
+  s->tracer_missing = true;
   s->render.max_depth = 12; /* paths through glass need many bounces */
   s->camera_missing = true;
   s->light_missing = true;

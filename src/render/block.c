@@ -130,6 +130,7 @@ void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
   if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
   w->not_finite += bad;
+  w->merge_work += batch.merge_work;
   count_more(&w->paths, n);
   count_more(&w->bounce_rays, batch.bounce_rays);
   count_more(&w->shadow_rays, batch.shadow_rays);

@@ -31,6 +31,7 @@ typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
   float *rows;                                      /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
   _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker; the progress report reads them */
+  uint64_t merge_work;                              /* as vlTraceBatch.merge_work */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
   struct vlPathRecorder *recorder; /* records the paths; the film then gets no samples. Null: none */
@@ -66,6 +67,15 @@ typedef struct vlRenderRun {
  * so many that a worker is idle. */
 void vl_render_choose_blocks(vlRenderRun *r);
 uint32_t vl_render_block_count(const vlRenderRun *r);
+/* A render that only measures (choose.c). */
+typedef struct vlPilot {
+  float spread;        /* vlFilmRays.spread; texture footprints are smaller by the same factor */
+  uint32_t pass_seed;  /* of the wavelengths and times that all paths of a pass share */
+  uint64_t merge_work; /* result: as vlTraceBatch.merge_work */
+} vlPilot;
+/* As vl_render. pilot may be null. In render.c. */
+vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                         vlPilot *pilot, vlRenderStats *stats, vlError *error);
 /* Makes a run from world, film, def and sequence: rays, sampler, tracer, crop. In render.c. */
 void vl_render_prepare(vlRenderRun *r, const vlCamera *camera);
 /* Checks the arguments of a render. In render.c. */

@@ -112,6 +112,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
+  if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0) return VL_TRACER_VOLPATH;
   bool rolls = (world->moves || camera->moves) && camera->readout > 0;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
@@ -273,8 +274,20 @@ static vlResult render_passes(vlRenderRun *r, vlError *error) {
   }
 }
 
-vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
-                   vlRenderStats *stats, vlError *error) {
+static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
+  if (!pilot) return;
+  r->film_rays.spread = pilot->spread;
+  r->trace.pixel_spread *= pilot->spread, r->trace.pixel_width *= pilot->spread;
+}
+
+static void end_pilot(const vlRenderRun *r, vlPilot *pilot) {
+  if (!pilot) return;
+  pilot->merge_work = 0;
+  for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) pilot->merge_work += r->workers[i].merge_work;
+}
+
+vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                         vlPilot *pilot, vlRenderStats *stats, vlError *error) {
   vl_error_clear(error);
   vlRenderDef standard = vl_default_render_def();
   if (!def) def = &standard;
@@ -297,13 +310,21 @@ vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, c
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
   vl_render_prepare(r, &focused);
+  prepare_pilot(r, pilot);
   result = make_workers(r, world->context, error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
+  if (result == VL_OK && pilot && r->two_way) vl_two_way_share(r->two_way, pilot->pass_seed);
   if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def) != VL_OK)
     result = vl_fail_memory(error);
   if (result == VL_OK) result = render_passes(r, error);
   if (stats && r->workers) fill_stats(r, stats);
+  if (r->workers) end_pilot(r, pilot);
   vl_adaptive_destroy(&r->adaptive);
   vl_two_way_destroy(r->two_way);
   return result;
+}
+
+vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
+                   vlRenderStats *stats, vlError *error) {
+  return vl_render_pilot(world, camera, film, def, NULL, stats, error);
 }

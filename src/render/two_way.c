@@ -53,6 +53,7 @@ struct vlTwoWayRun {
   vlSplats splats;
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
+  uint32_t pass_seed;      /* of what all paths of a pass share */
   uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of their own sampler */
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
@@ -74,6 +75,10 @@ const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run) {
 }
 struct vlTwoWayRows *vl_two_way_rows(const vlTwoWayRun *run, uint32_t worker) {
   return run->workers[worker].rows;
+}
+
+void vl_two_way_share(vlTwoWayRun *run, uint32_t seed) {
+  run->pass_seed = seed;
 }
 
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch) {
@@ -179,7 +184,7 @@ static float shared_number(uint32_t seed, uint32_t index) {
 /* The same in base 3: with base 2, wavelength and time would be correlated. */
 float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
   if (!run->way.merge) return -1.0f;
-  double turn = vl_hash2(run->trace.sampler->seed, time_seed) * 0x1p-32, place = 1;
+  double turn = vl_hash2(run->pass_seed, time_seed) * 0x1p-32, place = 1;
   for (uint32_t x = index; x > 0; x /= 3) turn += (x % 3) * (place /= 3);
   return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
 }
@@ -279,8 +284,8 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
   run->index = index;
   run->stop = stop;
   run->paths = run->most_paths;
-  if (way->merge) way->shared = shared_number(run->trace.sampler->seed, index);
-  if (way->connect > 0.0f) way->turn = shared_number(run->trace.sampler->seed, index);
+  if (way->merge) way->shared = shared_number(run->pass_seed, index);
+  if (way->connect > 0.0f) way->turn = shared_number(run->pass_seed, index);
   for (;;) {
     set_radius(run, index);
     atomic_store(&run->stored, 0);
@@ -378,6 +383,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->loop = vl_loop_def(def->priority, def->cancel);
   run->exposure = (float)camera->exposure_time;
   uint64_t pixels = (uint64_t)f->width * f->height;
+  run->pass_seed = rays->sampler.seed;
   run->pixels = pixels < UINT32_MAX ? (uint32_t)pixels : UINT32_MAX;
   run->most_paths = def->light_paths;
   if (def->light_paths == VL_AS_MANY_AS_PIXELS) run->most_paths = pixels < MOST_PATHS ? (uint32_t)pixels : MOST_PATHS;

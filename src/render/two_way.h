@@ -28,6 +28,8 @@ const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run);
 /* A worker's memory for vlTraceBatch.two_way. */
 struct vlTwoWayRows *vl_two_way_rows(const vlTwoWayRun *run, uint32_t worker);
 
+/* Seeds the wavelengths and times that all paths of a pass share. They depend on the sampler's seed otherwise. */
+void vl_two_way_share(vlTwoWayRun *run, uint32_t seed);
 /* Makes a worker use this scratch memory. */
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch);
 

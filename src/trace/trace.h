@@ -75,6 +75,8 @@ typedef struct vlTraceBatch {
   float *inv_pdf[4];  /* output in spectral mode: 1 / PDF of each wavelength, nm */
   float *alpha;       /* output: 1 where the ray hits a surface, else 0 */
   uint64_t bounce_rays, shadow_rays; /* the kernel adds its numbers of rays */
+  uint64_t merge_work; /* the kernel adds the number of photons that it visits; with a BSDF, a photon counts several
+                          times (merge.hot.c) */
   struct vlTwoWayRows *two_way; /* if vlTraceDef.two_way is set: working memory of one worker, like vlTraceScratch */
   const struct vlCameraView
       *eyes; /* if two_way is set and the camera moves: the camera's view for each lane; else null */

@@ -87,7 +87,8 @@ static int run_paths(const Command *command, const Arguments *arguments) {
   return status;
 }
 
-static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}}, samplers[] = {{"samplers", 0}, {NULL, 0}},
+                    filters[] = {{"filters", 0}, {NULL, 0}};
 static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
 
 static const Option paths_options[] = {

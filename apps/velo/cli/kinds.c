@@ -5,23 +5,26 @@
 
 enum { MAX_FAMILIES = 16, MAX_CHOICES = 64 };
 
-static void fill(const vlKindFamily *family, Choice *choices) {
+static void fill(const vlKindFamily *family, const Choice *more, Choice *choices) {
   int n = 0;
   for (uint32_t i = 0; i < family->kind_count && n + 2 < MAX_CHOICES; i++) {
     if (family->rows[i]->name) choices[n++] = (Choice){family->rows[i]->name, (int)i};
     if (family->rows[i]->alias) choices[n++] = (Choice){family->rows[i]->alias, (int)i};
   }
+  for (; more->name && n + 1 < MAX_CHOICES; more++) choices[n++] = *more;
 }
 
-const Choice *kind_choices(const char *name) {
-  static Choice choices[MAX_FAMILIES][MAX_CHOICES]; /* zero-initialised, so each list ends with zeros */
+const Choice *kind_choices(const Choice *list) {
+  /* zero-initialised, so each list ends with zeros; the second list of a family has the further names */
+  static Choice choices[2 * MAX_FAMILIES + 1][MAX_CHOICES];
   const vlKindFamily *family;
   for (uint32_t i = 0; i < MAX_FAMILIES && (family = vl_kind_family(i)); i++) {
-    if (strcmp(family->name, name) != 0) continue;
-    if (!choices[i][0].name) fill(family, choices[i]);
-    return choices[i];
+    if (strcmp(family->name, list->name) != 0) continue;
+    Choice *own = choices[list[1].name ? MAX_FAMILIES + i : i];
+    if (!own[0].name) fill(family, list + 1, own);
+    return own;
   }
-  return choices[MAX_FAMILIES - 1];
+  return choices[2 * MAX_FAMILIES];
 }
 
 const char *kind_name(const char *name, int kind) {

@@ -63,7 +63,7 @@ static int unknown_option(const Command *command, const char *name, const char *
 }
 
 const Choice *option_choices(const Option *option) {
-  return option->kind == OPTION_KIND ? kind_choices(option->choices->name) : option->choices;
+  return option->kind == OPTION_KIND ? kind_choices(option->choices) : option->choices;
 }
 
 const char *choice_name(const Choice *choices, int value) {

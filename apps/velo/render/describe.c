@@ -23,7 +23,7 @@ static Facts gather(const Job *job, const vlScene *scene, const vlWorld *world) 
                         ? "thin lens"
                         : vl_projection_name(c->projection),
       .sampler = kind_name("samplers", (int)defs->render.sampler),
-      .tracer = kind_name("tracers", (int)defs->render.tracer),
+      .tracer = job->race == RACE_TRACERS ? "auto" : kind_name("tracers", (int)defs->render.tracer),
       .filter = kind_name("filters", (int)defs->film.filter.kind),
       .light_sampler = choice_name(light_sampler_choices, (int)defs->build.light_sampler),
       .color = choice_name(color_choices, (int)defs->build.color),

@@ -103,6 +103,13 @@ extern const Choice light_sampler_choices[], sensor_choices[], regularize_choice
 extern const Option render_options[];
 extern const Section render_sections[];
 
+/* The value of --tracer auto. */
+enum { TRACER_AUTO = 255 };
+
+/* What is chosen by a race before the render (race.h): the tracer, or the number of light paths of the bidirectional
+ * one. */
+typedef enum RaceKind { RACE_NONE, RACE_TRACERS, RACE_LIGHT_PATHS } RaceKind;
+
 /* The camera, image size and crop of a receipt. */
 typedef struct ReceiptCamera {
   bool given;
@@ -119,6 +126,8 @@ typedef struct Job {
   const ReceiptCamera *receipt_camera; /* replaces --camera FILE; null: none */
   const struct ReceiptPlan *receipt;   /* receipts of the images; null: none */
   bool records_files;                  /* for receipts */
+  RaceKind race;                       /* before the render */
+  bool raced;                          /* receipts name the tracer and the number of light paths */
   double channels_share,
       channels_seconds; /* time of the ground truth as a fraction of the shutter interval, unless seconds are set */
 } Job;

@@ -160,7 +160,9 @@ static bool sampler_is_open(vlSamplerKind kind) {
 
 static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
-  if (v[RENDER_TRACER].given) defs->render.tracer = (vlTracer)v[RENDER_TRACER].integer;
+  if (v[RENDER_TRACER].given)
+    defs->render.tracer =
+        v[RENDER_TRACER].integer == TRACER_AUTO ? VL_TRACER_VOLPATH : (vlTracer)v[RENDER_TRACER].integer;
   if (v[RENDER_MERGE_RADIUS].given) defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
   if (v[RENDER_LIGHT_PATHS].given) defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
   if (v[RENDER_SAMPLER].given) defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;

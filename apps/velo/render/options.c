@@ -6,8 +6,9 @@
 #include "render/job.h"
 #include "render/lens_options.h"
 
-/* Families of velo/schema.h. */
-static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+/* The first is a family of velo/schema.h; others are further names. */
+static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0}},
+                    samplers[] = {{"samplers", 0}, {NULL, 0}}, filters[] = {{"filters", 0}, {NULL, 0}};
 
 const Option render_options[] = {
     {RENDER_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
@@ -139,7 +140,11 @@ const Option render_options[] = {
     {RENDER_CONVERGENCE, 0, "convergence", OPTION_NUMBER, "D",
      "depth at which the eyes' image windows (off-axis) or axes (toe-in) meet, in scene units", 1e-9, 1e12, NULL},
     {RENDER_EYE, 0, "eye", OPTION_CHOICE, "NAME", "eyes of the stereo pair that are rendered:", 0, 0, eye_choices},
-    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "light transport algorithm:", 0, 0, tracers},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
+     "light transport algorithm; auto: chosen by a short race (docs/tracers.md), the default from 32 samples on where "
+     "the "
+     "scene names none:",
+     0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R",
      "merging, sppm: radius within which vertices of camera and light paths merge in the first pass, in scene units; "

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/lens_options.h"
 
@@ -31,13 +32,23 @@ bool receipt_option_counts(const Arguments *arguments, int option) {
 typedef struct Words {
   const char *words[2 * MAX_OPTIONS + 4];
   uint32_t count;
-  char names[MAX_OPTIONS][32], path[4100], spp[16], frame[16];
+  char names[MAX_OPTIONS][32], path[4100], spp[16], frame[16], light_paths[16];
 } Words;
 
 static void add_option(Words *w, const Option *option, const char *value) {
   snprintf(w->names[option->id], sizeof w->names[0], "--%s", option->name);
   w->words[w->count++] = w->names[option->id];
   if (option->kind != OPTION_FLAG) w->words[w->count++] = value;
+}
+
+/* The value of an option that a race replaces: the command names the result. Null: another option. */
+static const char *raced_value(Words *w, int option, const Job *job) {
+  const vlRenderDef *render = &job->defs->render;
+  if (!job->raced) return NULL;
+  if (option == RENDER_TRACER) return kind_name("tracers", (int)render->tracer);
+  if (option != RENDER_LIGHT_PATHS || render->light_paths == VL_AS_MANY_AS_PIXELS) return NULL;
+  snprintf(w->light_paths, sizeof w->light_paths, "%u", render->light_paths);
+  return w->light_paths;
 }
 
 static void find_words(Words *w, const Arguments *arguments, const Job *job, const ReceiptImage *which) {
@@ -50,8 +61,11 @@ static void find_words(Words *w, const Arguments *arguments, const Job *job, con
   w->words[w->count++] = w->path;
   for (const Option *option = render_options; option->name; option++) {
     const OptionValue *value = &arguments->values[option->id];
+    const char *raced = raced_value(w, option->id, job);
     if (option->id == RENDER_SPP)
       add_option(w, option, w->spp);
+    else if (raced)
+      add_option(w, option, raced);
     else if (option->id == RENDER_EYE && which->eye)
       add_option(w, option, which->eye);
     else if (option->id == RENDER_FRAMES && which->is_frame)

@@ -13,6 +13,7 @@
 #include "render/exposure.h"
 #include "render/lens_options.h"
 #include "render/noise.h"
+#include "render/race.h"
 #include "render/run.h"
 #include "render/shard.h"
 
@@ -119,6 +120,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = outputs_check_names(outputs);
   if (status < 0) status = shard_check(arguments);
   if (status < 0) status = noise_check(arguments);
+  if (status < 0) status = race_check(render, arguments);
   if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
@@ -282,7 +284,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
-  status = build_world(render, path);
+  status = race_plan(render, arguments);
+  if (status < 0) status = build_world(render, path);
   if (status >= 0) return status;
   vl_context_record_files(render->context, false);
   if (arguments->values[RENDER_VERBOSE].given && !kept) {
@@ -361,8 +364,9 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
     status = report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
   if (status < 0) status = prepare(&render, arguments);
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
-  if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
+  if (status < 0) status = race_run(&render, arguments);
+  if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0) status = meter_model(&render, arguments);
   if (status < 0)
     status = noise_expose(&render.outputs, render.many, &render.job.defs->render, &render.film_plan.whole.render);

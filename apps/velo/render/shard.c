@@ -98,6 +98,15 @@ static bool has_light_paths(vlTracer tracer) {
          tracer == VL_TRACER_LIGHT_PATH;
 }
 
+void shard_warn(const Arguments *arguments, vlTracer tracer) {
+  const OptionValue *v = arguments->values;
+  bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
+  if ((by_tiles || v[RENDER_TILES].given) && has_light_paths(tracer))
+    report_warning(
+        "this tracer follows light from the lamps for the whole image: each part by tiles repeats it; "
+        "parts by samples do not");
+}
+
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render) {
   const OptionValue *v = arguments->values;
   uint32_t first = 0, end = render->spp, index, count;
@@ -120,10 +129,7 @@ int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render
       return report_usage("--samples \"%s\": the image has %u samples per pixel; give --spp", v[RENDER_SAMPLES].text,
                           render->spp);
   }
-  if (status < 0 && (by_tiles || v[RENDER_TILES].given) && has_light_paths(render->tracer))
-    report_warning(
-        "this tracer follows light from the lamps for the whole image: each part by tiles repeats it; "
-        "parts by samples do not");
+  if (status < 0) shard_warn(arguments, render->tracer);
   render->first_sample = first;
   render->spp = end;
   return status;

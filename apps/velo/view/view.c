@@ -55,7 +55,8 @@ void serve_stop(Serve *serve) {
 #endif
 
 /* Families of velo/schema.h. */
-static const Choice tracers[] = {{"tracers", 0}}, samplers[] = {{"samplers", 0}}, filters[] = {{"filters", 0}};
+static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}}, samplers[] = {{"samplers", 0}, {NULL, 0}},
+                    filters[] = {{"filters", 0}, {NULL, 0}};
 
 static const Choice languages[] = {{"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
 

@@ -143,6 +143,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->integrator;
   s->render.tracer = VL_TRACER_VOLPATH;
   s->render.max_depth = 5;
+  s->tracer_missing = !choice->given;
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Integrator \"%s\"", vl_import_kind_text(&vl_tracer_family, choice->kind).text);

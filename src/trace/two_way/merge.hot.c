@@ -8,13 +8,15 @@
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
+enum { LISTED_WORK = 32 }; /* a photon with a BSDF takes as long as so many visited ones */
+
 /* An iterator over the photons of one medium (vlPhoton.medium) within the radius around p. It visits cell by cell; a
  * cell is as wide as the ball. */
 typedef struct Near {
   vlVec3 p;
   uint32_t medium, most; /* most: largest number of bounces of a photon */
   int32_t corner[3], cell[3];
-  uint32_t next, end;
+  uint32_t next, end, seen; /* seen: photons of the visited cells */
   int k;
 } Near;
 
@@ -47,6 +49,7 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
     for (int i = 0; i < 3; i++) near->cell[i] = near->corner[i] + (near->k >> i & 1);
     uint32_t bucket = vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
     near->next = map->start[bucket], near->end = map->start[bucket + 1];
+    near->seen += near->end - near->next;
     near->k++;
   }
 }
@@ -160,7 +163,9 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
       }
       r->pair[listed++] = j;
       r->count[i]++;
+      t->batch->merge_work += LISTED_WORK;
     }
+    t->batch->merge_work += near.seen;
     for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * sum[c];
   }
   if (listed) add_listed(t, n);
@@ -183,6 +188,7 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
       joined_power(t, i, x, 0.0f, power);
       for (int c = 0; c < 4; c++) sum[c] += power[c] * weight;
     }
+    t->batch->merge_work += near.seen;
     for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += p->beta[c][i] * sum[c];
   }
 }

@@ -1,0 +1,279 @@
+/* render/choose.c: vl_choose_tracer: a short race of tracers. Each renders two coarse images with different seeds. The
+ * difference of the two is its error, and the rays are its cost: their product is the error for the same time.
+ *
+ * The pixels of the coarse images are far apart, but each has the size of a pixel of the image (vlPilot.spread).
+ * Texture and edges inside of a coarse pixel would be the same noise for all tracers, and the cheapest would win. */
+#include "render/choose.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/context.h"
+#include "base/cookie.h"
+#include "base/error.h"
+#include "render/block.h"
+#include "velo/camera.h"
+
+enum {
+  LEAST_SAMPLES = 8,
+  MOST_SAMPLES = 32,
+  LEAST_PIXELS = 192,
+  MANY_PIXELS = 2048,
+  BLOCK = 4,
+  QUARTER = 4,
+  MOST_LIGHT_PATHS = 1 << 20
+};
+static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
+/* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a biased one below that of the
+ * best unbiased one times BIASED. */
+static const double SURE = 0.95, BIASED = 2.0 / 3.0;
+static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
+
+/* A tracer of the race. */
+typedef struct Row {
+  vlTracer tracer;
+  uint32_t divisor; /* pixels per light path; 0: no light paths */
+  double ray;       /* mean time of a ray, relative to a ray of VL_TRACER_VOLPATH: geometric means over 12 scenes
+                       (docs/performance.md) */
+  double path; /* expected cost of a sample, relative to a sample of VL_TRACER_VOLPATH; for the length of the race */
+} Row;
+static const Row rows[VL_MOST_TRIALS] = {
+    {VL_TRACER_VOLPATH, 0, 1.0, 1.0},
+    {VL_TRACER_BIDIRECTIONAL, 1, 1.25, 3.0},
+    {VL_TRACER_BIDIRECTIONAL, QUARTER, 1.25, 2.0},
+    {VL_TRACER_MERGING, 1, 1.25, 4.0},
+};
+static const double PHOTON = 0.015; /* time of one unit of vlTraceBatch.merge_work, relative to a ray */
+
+typedef struct Race {
+  const vlWorld *world;
+  vlFilmDef film;
+  vlCamera camera;
+  vlRenderDef def;
+  uint32_t factor; /* of the coarse images */
+  uint32_t count;
+  vlImage *images[VL_MOST_TRIALS][2];
+  size_t pixels;
+  double *base; /* by pixel and channel: the mean of all images */
+  double *sorted;
+  double least; /* added to base^2, so that black pixels do not count too much */
+} Race;
+
+/* ---- the size of the race ---------------------------------------------------------------------------------------- */
+
+/* Whether paths that merge can find light that others do not: through or by smooth surfaces. */
+static bool has_smooth(const vlWorld *world) {
+  for (size_t i = 0; i < world->materials.count; i++)
+    if (world->materials.items[i].smooth != VL_SMOOTH_NEVER || world->materials.items[i].principled) return true;
+  return false;
+}
+
+/* Chooses the number of samples and the size of the coarse images. False: the race would be too short. */
+static bool choose_size(Race *race, const vlFilmDef *film) {
+  double each = 0, pixels = (double)film->width * film->height;
+  for (uint32_t i = 0; i < race->count; i++) each += 2 * rows[i].path;
+  double samples = fmin(SHARE * pixels * race->def.spp, MOST_PATHS) / each, wanted = samples / LEAST_SAMPLES;
+  race->def.spp = LEAST_SAMPLES;
+  for (; wanted > MANY_PIXELS && race->def.spp < MOST_SAMPLES; wanted /= 2) race->def.spp *= 2;
+  if (wanted < LEAST_PIXELS) return false;
+  race->factor = 1;
+  while (race->factor < VL_MOST_COARSE && pixels / ((double)race->factor * race->factor) > wanted) race->factor++;
+  return true;
+}
+
+/* Whether the tracers with light paths render this world and film (tracer_of in render.c). */
+static bool can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film) {
+  bool rolls = (world->moves || camera->moves) && camera->readout > 0;
+  return !film->buckets && !world->has_subsurface && !rolls && world->lights.count > 0;
+}
+
+/* ---- running ----------------------------------------------------------------------------------------------------- */
+
+static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *trial, vlError *error) {
+  vlFilm *film = NULL;
+  vlRenderStats stats;
+  vlPilot pilot = {.spread = 1.0f / (float)race->factor, .pass_seed = seeds[0]};
+  vlRenderDef def = race->def;
+  def.seed = seeds[half];
+  def.tracer = rows[i].tracer;
+  def.light_paths = rows[i].divisor > 1 ? (uint32_t)(race->pixels / rows[i].divisor) : VL_AS_MANY_AS_PIXELS;
+  vlResult result = vl_film_create(race->world->context, &race->film, &film);
+  if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");
+  result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, &stats, error);
+  if (result == VL_OK) {
+    trial->cost += rows[i].ray * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
+    trial->cost += PHOTON * (double)pilot.merge_work;
+    if (vl_film_develop(film, NULL, &race->images[i][half]) != VL_OK) result = vl_fail_memory(error);
+  }
+  vl_film_destroy(film);
+  return result;
+}
+
+/* ---- errors ------------------------------------------------------------------------------------------------------ */
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double value_at(const Race *race, const vlImage *image, size_t pixel, uint32_t channel) {
+  uint32_t width = race->film.width;
+  return (double)vl_image_get(image, (uint32_t)(pixel % width), (uint32_t)(pixel / width), channel);
+}
+
+/* Mean of n values without the `low` smallest and the `high` largest. */
+static double trimmed_mean(double *values, size_t n, size_t low, size_t high) {
+  double sum = 0;
+  if (low + high >= n) return 0;
+  qsort(values, n, sizeof *values, ascending);
+  for (size_t i = low; i < n - high; i++) sum += values[i];
+  return sum / (double)(n - low - high);
+}
+
+/* All tracers have the same base, so that none has a small error because it found no light. */
+static void find_base(Race *race, uint32_t count) {
+  size_t n = 3 * race->pixels;
+  for (size_t i = 0; i < race->pixels; i++)
+    for (uint32_t c = 0; c < 3; c++) {
+      double sum = 0;
+      for (uint32_t t = 0; t < count; t++)
+        sum += 0.5 * (value_at(race, race->images[t][0], i, c) + value_at(race, race->images[t][1], i, c));
+      race->base[3 * i + c] = race->sorted[3 * i + c] = sum / count;
+    }
+  double mean = trimmed_mean(race->sorted, n, 0, n / 50); /* without lamps and fireflies */
+  race->least = 0.1 * mean * mean;
+}
+
+/* As the trimmed relMSE of a pair of seeds in bench/error.c. */
+static double error_of(Race *race, uint32_t t) {
+  for (size_t i = 0; i < race->pixels; i++) {
+    double sum = 0;
+    for (uint32_t c = 0; c < 3; c++) {
+      double base = race->base[3 * i + c];
+      double apart = value_at(race, race->images[t][0], i, c) - value_at(race, race->images[t][1], i, c);
+      sum += apart * apart / (6 * (base * base + race->least));
+    }
+    race->sorted[i] = sum;
+  }
+  return trimmed_mean(race->sorted, race->pixels, 0, (race->pixels + 999) / 1000);
+}
+
+/* The squared relative difference of block (x0, y0) between trial t and merging, trial m. It is a product of the
+ * differences of two independent pairs, so its mean has no contribution of noise. */
+static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x0, uint32_t y0) {
+  double sum = 0;
+  for (uint32_t c = 0; c < 3; c++) {
+    double mean[2][2] = {{0, 0}, {0, 0}}, both = 0;
+    for (uint32_t k = 0; k < BLOCK * BLOCK; k++) {
+      size_t pixel = (size_t)(y0 + k / BLOCK) * race->film.width + x0 + k % BLOCK;
+      for (int half = 0; half < 2; half++) {
+        mean[0][half] += value_at(race, race->images[t][half], pixel, c) / (BLOCK * BLOCK);
+        mean[1][half] += value_at(race, race->images[m][half], pixel, c) / (BLOCK * BLOCK);
+      }
+    }
+    both = 0.5 * (mean[1][0] + mean[1][1]);
+    sum += (mean[1][0] - mean[0][0]) * (mean[1][1] - mean[0][1]) / (3 * (both * both + race->least));
+  }
+  return sum;
+}
+
+/* The light that merging finds and trial t does not; 0 unless it is above three standard errors. */
+static double missing_of(Race *race, uint32_t t, uint32_t m) {
+  size_t n = 0, out;
+  double squares = 0;
+  for (uint32_t y = 0; y + BLOCK <= race->film.height; y += BLOCK)
+    for (uint32_t x = 0; x + BLOCK <= race->film.width; x += BLOCK) race->sorted[n++] = block_missing(race, t, m, x, y);
+  out = (n + 49) / 50;
+  double mean = trimmed_mean(race->sorted, n, out, out);
+  for (size_t i = out; i + out < n; i++) squares += (race->sorted[i] - mean) * (race->sorted[i] - mean);
+  double significant = n > 2 * out ? 3 * sqrt(squares) / (double)(n - 2 * out) : INFINITY;
+  return mean > significant ? mean : 0;
+}
+
+static void measure(Race *race, vlTracerChoice *choice) {
+  find_base(race, choice->count);
+  uint32_t last = choice->count - 1;
+  bool merging = choice->trials[last].tracer == VL_TRACER_MERGING;
+  for (uint32_t i = 0; i < choice->count; i++) {
+    choice->trials[i].error = error_of(race, i);
+    choice->trials[i].missing = merging && i != last ? missing_of(race, i, last) : 0;
+  }
+}
+
+/* ---- the choice -------------------------------------------------------------------------------------------------- */
+
+void vl_choose_by_work(vlTracerChoice *choice, double samples) {
+  vlTracerTrial *trials = choice->trials;
+  uint32_t best = 0;
+  for (uint32_t i = 0; i < choice->count; i++)
+    trials[i].work = (trials[i].error * trials[i].cost / trials[0].cost / samples + trials[i].missing) /
+                     (trials[0].error / samples + trials[0].missing);
+  for (uint32_t i = 1; i < choice->count; i++) {
+    double most = isfinite(trials[best].work) ? trials[best].work : INFINITY;
+    most *= trials[i].tracer == VL_TRACER_MERGING ? BIASED : best ? 1 : SURE;
+    if (trials[i].work < most) best = i;
+  }
+  choice->tracer = trials[best].tracer;
+  choice->light_paths = trials[best].light_paths;
+}
+
+/* The light paths of a row for the whole film. */
+static uint32_t light_paths_of(const Row *row, const vlFilmDef *film) {
+  uint64_t pixels = (uint64_t)film->width * film->height;
+  if (row->divisor < 2) return VL_AS_MANY_AS_PIXELS;
+  return (uint32_t)((pixels < MOST_LIGHT_PATHS ? pixels : MOST_LIGHT_PATHS) / row->divisor);
+}
+
+static vlResult run_all(Race *race, const vlFilmDef *film, vlTracerChoice *choice, vlError *error) {
+  for (uint32_t i = 0; i < race->count; i++) {
+    vlTracerTrial *trial = &choice->trials[i];
+    *trial = (vlTracerTrial){.tracer = rows[i].tracer, .light_paths = light_paths_of(&rows[i], film)};
+    for (uint32_t half = 0; half < 2; half++) {
+      vlResult result = run_once(race, i, half, trial, error);
+      if (result != VL_OK) return result;
+    }
+  }
+  choice->count = race->count;
+  return VL_OK;
+}
+
+static vlResult run_race(Race *race, const vlFilmDef *film, vlTracerChoice *choice, vlError *error) {
+  vlContext *context = race->world->context;
+  race->base = vl_alloc_array(context, 3 * race->pixels, sizeof *race->base);
+  race->sorted = vl_alloc_array(context, 3 * race->pixels, sizeof *race->sorted);
+  vlResult result = race->base && race->sorted ? run_all(race, film, choice, error) : vl_fail_memory(error);
+  if (result == VL_OK) measure(race, choice);
+  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
+    for (int half = 0; half < 2; half++) vl_image_destroy(race->images[i][half]);
+  vl_free(context, race->base);
+  vl_free(context, race->sorted);
+  return result;
+}
+
+vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film, const vlRenderDef *def,
+                          bool merging, vlTracerChoice *choice, vlError *error) {
+  vl_error_clear(error);
+  if (!world || !camera || !film || !def || !choice)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: an argument is null");
+  if (def->cookie != VL_COOKIE_RENDER) return vl_fail(error, VL_ERROR_ARGUMENT, "choose: " VL_BAD_COOKIE);
+  memset(choice, 0, sizeof *choice);
+  choice->tracer = VL_TRACER_VOLPATH;
+  choice->light_paths = def->light_paths;
+  Race race = {
+      .world = world, .def = *def, .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
+  uint32_t spp = def->spp;
+  if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;
+  vlFilmDef whole = *film;
+  whole.crop[0] = whole.crop[1] = 0, whole.crop[2] = film->width, whole.crop[3] = film->height;
+  race.film = vl_coarse_film_def(&whole, race.factor);
+  race.pixels = (size_t)race.film.width * race.film.height;
+  race.def.first_sample = race.def.sequence = 0;
+  race.def.noise = race.def.time_limit = 0;
+  race.def.merge_radius *= race.factor; /* as many photons within it as in the image; unset stays unset */
+  if (vl_camera_coarse(camera, race.factor, &race.camera) != VL_OK)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "choose: the camera has no coarse image");
+  vlResult result = run_race(&race, film, choice, error);
+  if (result == VL_OK) vl_choose_by_work(choice, (double)spp / race.def.spp);
+  return result;
+}

@@ -241,6 +241,17 @@ static inline void vl_passed_go_on(const vlTracing *t, uint32_t i) {
 void vl_stage_light_bsdf(vlTracing *t, uint32_t n);
 /* Takes one light sample for each of n paths on s->surface, with the random numbers of `dimension`. */
 void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
+/* Russian roulette: the probability that a path goes on after bounce `depth` (from 1). carried: its largest throughput
+ * times its eta scale (pbrt book 14.2.3). The efficiency 1 / (variance * time) is greatest where the probability is
+ * proportional to the throughput (Bolin and Meyer 1997). The factor depends on the scene: it grows with the light that
+ * a path still meets and falls with the rays that it still takes. The constants are the best over the scenes in
+ * docs/performance.md. The first bounces have no roulette, since it spoils the stratification of their samples. */
+static inline float vl_roulette_survival(float carried, uint32_t depth) {
+  const float factor = 2.0f;
+  const uint32_t bounces_without = 2;
+  float survive = factor * carried;
+  return depth > bounces_without && survive < 1.0f ? survive : 1.0f;
+}
 /* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);

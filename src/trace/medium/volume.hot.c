@@ -173,8 +173,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
     float most = vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
     if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
-    float carried = most * p->eta_scale[i];
-    float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
+    float survive = vl_roulette_survival(most * p->eta_scale[i], depth);
     if (!(most > 0.0f) || !(sh->u0[i] < survive)) continue;
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     float g = t->world->media.items[v->c.medium[i]].g;

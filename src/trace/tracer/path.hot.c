@@ -162,10 +162,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float b2 = p->beta[2][i] * sh->value[2][i], b3 = p->beta[3][i] * sh->value[3][i];
     float eta = p->eta_scale[i] * sh->eta_scale[i];
     float most = vl_max(vl_max(b0, b1), vl_max(b2, b3));
-    /* Russian roulette starts at the second bounce. It uses the path's throughput times its eta scale (pbrt book
-     * 14.2.3). */
-    float carried = most * eta;
-    float survive = depth > 1 && carried < 1.0f ? carried : 1.0f;
+    float survive = vl_roulette_survival(most * eta, depth);
     uint32_t lives = most > 0.0f && !(sh->flags[i] & VL_SAMPLED_NONE) && sh->u0[i] < survive ? 1 : 0;
     float inv = survive > 0.0f ? 1.0f / survive : 0.0f;
     float sum = b0 + b1 + b2 + b3;

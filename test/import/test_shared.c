@@ -108,7 +108,7 @@ static void all_meshes(void **state) {
       vlError error;
       if (!vl_ends_with(model->d_name, ".ply")) continue;
       snprintf(path, sizeof path, "%s/%s", folder, model->d_name);
-      vlResult result = vl_ply_read(context, path, false, &mesh, &error);
+      vlResult result = vl_ply_read(context, NULL, path, false, &mesh, &error);
       if (result != VL_OK) print_message("%s: %s\n", path, error.message);
       assert_int_equal(result, VL_OK);
       assert_true(mesh.vertices > 0 && mesh.triangles + mesh.quads > 0);

@@ -136,8 +136,9 @@ function showState(state) {
 function showStatus(s) {
   app.spp = s.spp;
   const error = s.error === null ? "" : `  ·  error ${(100 * s.error).toPrecision(2)} %`;
-  const end = s.spp >= s.target ? "done" : s.paused ? "paused" : `${metric(s.paths_per_second)}paths/s`;
-  byId("status").textContent = `${s.spp} of ${s.target} spp  ·  ${end}${error}`;
+  const speed = s.paths_per_second ? `  ·  ${metric(s.paths_per_second)}paths/s` : "";
+  const end = s.spp >= s.target ? "  ·  done" : s.paused ? "  ·  paused" : speed;
+  byId("status").textContent = `${s.spp} of ${s.target} spp${end}${error}`;
   byId("progress").firstElementChild.style.width = `${100 * s.spp / s.target}%`;
 }
 

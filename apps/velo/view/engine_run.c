@@ -11,11 +11,13 @@
 #include "view/engine_parts.h"
 #include "view/engine_status.h"
 
-enum { COARSEST = 32, FIRST_PIXELS = 8192 };
-static const double first_seconds =
-    0.03;                               /* of the first image after a change: others can follow it 25 times a second */
-static const double pass_seconds = 0.2; /* of a pass at the beginning; */
-static const double longest_pass = 1.0; /* later ones are longer */
+/* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before speed is known, at
+ * least. */
+enum { COARSEST = 32, FIRST_PIXELS = 8192, FEWEST_PIXELS = 2048 };
+/* Of the first image after a change: others can follow it 25 times a second. */
+static const double first_seconds = 0.03;
+static const double pass_seconds = 0.2;    /* of a pass at the beginning; */
+static const double longest_pass = 1.0;    /* later ones are longer */
 static const double publish_share = 0.03;  /* of the time, for frames, when the image is nearly done */
 static const double status_seconds = 0.25; /* between two states of the render */
 
@@ -120,6 +122,7 @@ static bool render_coarse(Engine *e, uint32_t scale) {
 static bool render_coarse_images(Engine *e) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
   double most = e->coarse_seconds > 0 ? first_seconds / e->coarse_seconds : FIRST_PIXELS;
+  if (most < FEWEST_PIXELS) most = FEWEST_PIXELS; /* fewer would hardly be quicker */
   uint32_t scale = 1;
   while (scale < COARSEST && pixels > most * scale * scale) scale++;
   for (; scale > 1; scale /= 2)

@@ -78,11 +78,7 @@ static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_put(text, "  \"pixel_aspect_x\": %.17g,\n  \"pixel_aspect_y\": %.17g,\n", ratio < 1.0 ? 1.0 / ratio : 1.0,
                 ratio < 1.0 ? 1.0 : ratio);
   vl_camera_put(text, "  \"matrix_world\": [");
-  for (int i = 0; i < 4; i++) {
-    vl_camera_put(text, "%s[", i ? ", " : "");
-    vl_camera_put_numbers(text, m + 4 * i, 4);
-    vl_camera_put(text, "]");
-  }
+  vl_camera_put_rows(text, m);
   vl_camera_put(text, "]\n}\n");
   return VL_OK;
 }

@@ -132,6 +132,8 @@ void vl_camera_put_bytes(vlCameraText *text, const char *bytes, size_t count);
 void vl_camera_put_text(vlCameraText *text, const vlCameraText *other);
 /* Appends numbers as "1, 2, 3". */
 void vl_camera_put_numbers(vlCameraText *text, const double *values, uint32_t count);
+/* Appends a 4 x 4 matrix as "[1, 2, 3, 4], [...], [...], [...]". */
+void vl_camera_put_rows(vlCameraText *text, const double m[16]);
 /* Appends a quoted string, for JSON and YAML. */
 void vl_camera_put_string(vlCameraText *text, const char *string);
 /* Returns VL_OK if the camera does not use the field or if it may be dropped. Otherwise returns an error that names the

@@ -131,11 +131,7 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
   vl_camera_put_string(text, record->name);
   vl_camera_put(text, ",\n     \"transform_matrix\": [");
-  for (int i = 0; i < 4; i++) {
-    vl_camera_put(text, "%s[", i ? ", " : "");
-    vl_camera_put_numbers(text, m + 4 * i, 4);
-    vl_camera_put(text, "]");
-  }
+  vl_camera_put_rows(text, m);
   vl_camera_put(text, "]}\n  ]\n}\n");
   return VL_OK;
 }

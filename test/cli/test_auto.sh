@@ -36,6 +36,8 @@ render() { "$VELO" render "$@"; }
   expect_text auto_is_reported 'auto: bidirectional'
   check threads render named.pbrt --tracer auto $tile -t 3 -o threads.pfm
   same threads_do_not_matter auto.pfm threads.pfm
+  check instruction_set env VELO_ISA=base "$VELO" render named.pbrt --tracer auto $tile -o base.pfm
+  same instruction_set_does_not_matter auto.pfm base.pfm
   check seed render named.pbrt --tracer auto --crop 0,0,1,1 --seed 5 -o seed.exr
   run "$VELO" image info auto.exr
   expect_text header_names_it 'bidirectional'

@@ -118,6 +118,7 @@ with tempfile.TemporaryDirectory() as folder:
     lens_scene = b'Camera "realistic" "string lensfile" "lens.dat"\nWorldBegin\n'
     try_all("lens.dat", LENS, lambda path: doctor("lens.pbrt"), [("lens.pbrt", lens_scene)])
     for name in sorted(os.listdir(os.path.join(CORPUS, "camera_file"))):
-        try_all(name, corpus("camera_file/" + name), camera, step=step)
+        if not name.endswith(".bin"):  # these have no words but names of files
+            try_all(name, corpus("camera_file/" + name), camera, step=step)
 print("%d runs" % runs)
 sys.exit(failures > 0)

@@ -48,6 +48,9 @@ render() { "$VELO" render "$@"; }
   # The default of scenes that name no tracer, from 32 samples on.
   check default render scene.pbrt $tile --max-depth 4 -t 2 -o default.pfm
   expect_text default_is_auto 'auto: bidirectional'
+  race=$(grep auto: <<<"$err")
+  check longer render scene.pbrt --crop 0,0,1,1 --max-depth 4 --spp 100 -o longer.pfm
+  expect_text a_longer_render_has_the_same_race "$race"
   check few render scene.pbrt --crop 0,0,1,1 --spp 31 -o few.pfm
   case "$err" in *auto:*) fail few_samples_have_no_race ;; *) pass few_samples_have_no_race ;; esac
   check own render named.pbrt --crop 0,0,1,1 -o own.pfm

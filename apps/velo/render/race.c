@@ -11,9 +11,10 @@
 #include "cli/signals.h"
 #include "render/shard.h"
 
-/* By default there is a race from this number of samples on. With --time, this many paths count as one second; with
- * --noise, this many samples are expected at most. */
-enum { LEAST_SAMPLES = 32, PATHS_PER_SECOND = 200000, NOISE_SAMPLES = 64 };
+/* By default there is a race from LEAST_SAMPLES on. It is planned for at most MOST_SAMPLES, so that all longer renders
+ * of an image have the same race: a film of 64 samples that is continued to 256 is that of 256. With --time,
+ * PATHS_PER_SECOND count as one second. */
+enum { LEAST_SAMPLES = 32, MOST_SAMPLES = 64, PATHS_PER_SECOND = 200000 };
 
 static bool is_asked(const Arguments *arguments) {
   const OptionValue *tracer = &arguments->values[RENDER_TRACER];
@@ -33,9 +34,8 @@ int race_check(const Render *render, const Arguments *arguments) {
 /* The number of samples per pixel by which the work of the render is estimated, for the length of the race. */
 static uint32_t expected_samples(const vlSceneDefs *defs) {
   const vlRenderDef *render = &defs->render;
-  double pixels = (double)defs->film.width * defs->film.height, most = render->spp;
+  double pixels = (double)defs->film.width * defs->film.height, most = fmin(render->spp, MOST_SAMPLES);
   if (render->time_limit > 0) most = fmin(most, render->time_limit * PATHS_PER_SECOND / pixels);
-  if (render->noise > 0) most = fmin(most, NOISE_SAMPLES);
   return (uint32_t)most;
 }
 

@@ -1,5 +1,5 @@
 /* The noise of a film's blocks: against the known standard error of normal samples, for each view; how often it is
- * below the true error; blocks at the edges of a crop. */
+ * below the true error; against the true error of rare bright samples; blocks at the edges of a crop. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,8 +12,23 @@
 enum { WIDTH = 100, HEIGHT = 70, SPP = 16 };
 static const uint32_t crop_[4] = {16, 8, 96, 70};
 
-/* A film of normal samples of a mean and a standard deviation, in grey. */
-static vlFilm *noisy_film(vlContext *context, float mean, float deviation, uint64_t seed) {
+typedef float Draw(statRng *rng, float mean, float deviation);
+
+static float draw_normal(statRng *rng, float mean, float deviation) {
+  float u = 1.0f - stat_float(rng), v = stat_float(rng);
+  return mean + deviation * sqrtf(-2 * logf(u)) * cosf(6.2831853f * v);
+}
+
+enum { RARE = 64 };
+static const float dark_sample = 0.01f, bright_sample = 2;
+
+static float draw_rare(statRng *rng, float mean, float deviation) {
+  (void)mean, (void)deviation;
+  return stat_float(rng) * RARE < 1 ? bright_sample : dark_sample;
+}
+
+/* A film of grey samples. */
+static vlFilm *film_of(vlContext *context, Draw *draw, float mean, float deviation, uint64_t seed) {
   vlFilmDef def = vl_default_film_def(WIDTH, HEIGHT);
   vlFilm *film;
   def.errors = true;
@@ -25,14 +40,17 @@ static vlFilm *noisy_film(vlContext *context, float mean, float deviation, uint6
   for (int32_t y = (int32_t)crop_[1]; y < (int32_t)crop_[3]; y++)
     for (int32_t x = (int32_t)crop_[0]; x < (int32_t)crop_[2]; x++)
       for (int s = 0; s < SPP; s++) {
-        float u = 1.0f - stat_float(&rng), v = stat_float(&rng), alpha = 1, weight = 1;
-        float value = mean + deviation * sqrtf(-2 * logf(u)) * cosf(6.2831853f * v);
+        float value = draw(&rng, mean, deviation), alpha = 1, weight = 1;
         vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &alpha, &weight};
         assert_int_equal(vl_film_add(film, &samples, NULL, NULL), 0);
       }
   vl_film_commit_pass(film);
   vl_film_set_spp(film, SPP);
   return film;
+}
+
+static vlFilm *noisy_film(vlContext *context, float mean, float deviation, uint64_t seed) {
+  return film_of(context, draw_normal, mean, deviation, seed);
 }
 
 static void blocks_of_a_crop(void **state) {
@@ -55,7 +73,7 @@ static void expected_noise(void **state) {
   vlContext *context = *state;
   const float mean = 0.25f, deviation = 0.02f;
   const double error = (double)deviation / sqrt(SPP);
-  const double srgb = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
+  const double slope = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
   vlFilm *film = noisy_film(context, mean, deviation, 1);
   for (uint32_t i = 0; i < 6; i++) { /* those of the lowest row have 6 lines: their bound is wider */
     double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1), standard;
@@ -63,7 +81,7 @@ static void expected_noise(void **state) {
     standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1);
     if (!(raw > 0.97 * error && raw < 1.06 * error)) fail_msg("block %u: noise %g, error %g", i, raw, error);
     assert_true(fabs(bright / raw - 1.5) < 1e-5);
-    assert_true(fabs(standard / (raw * srgb) - 1) < 2e-3);
+    assert_true(fabs(standard / (raw * slope) - 1) < 2e-3);
   }
   /* black and white are clipped: half of the interval remains at 0, nothing far above 1 */
   vlFilm *white = noisy_film(context, 3, deviation, 2), *black = noisy_film(context, 0, deviation, 3);
@@ -88,6 +106,30 @@ static void bound_holds(void **state) {
     vl_film_destroy(film);
   }
   if (above < 219 || above == 240) fail_msg("%d of 240 bounds hold", above);
+}
+
+static double srgb(double x) {
+  x = x < 0 ? 0 : x > 1 ? 1 : x;
+  return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+}
+
+/* 78 % of the pixels have no bright sample and no variance. The true error is a sum over the binomial distribution of
+ * a pixel's bright samples. The noise may be above it, since it is a bound, but not below. */
+static void rare_light_is_not_missed(void **state) {
+  vlContext *context = *state;
+  const double p = 1.0 / RARE, mean = (1 - p) * (double)dark_sample + p * (double)bright_sample;
+  double probability = pow(1 - p, SPP), square = 0;
+  for (int k = 0; k <= SPP; k++) {
+    double d = srgb(((SPP - k) * (double)dark_sample + k * (double)bright_sample) / SPP) - srgb(mean);
+    square += probability * d * d;
+    probability *= (double)(SPP - k) / (k + 1) * p / (1 - p);
+  }
+  vlFilm *film = film_of(context, draw_rare, 0, 0, 5);
+  for (uint32_t i = 0; i < 6; i++) {
+    double noise = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1) / sqrt(square);
+    if (!(noise > 1 && noise < 1.5)) fail_msg("block %u: %g times the true error, %g", i, noise, sqrt(square));
+  }
+  vl_film_destroy(film);
 }
 
 static void without_samples(void **state) {
@@ -120,6 +162,7 @@ static int end(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_of_a_crop), cmocka_unit_test(expected_noise),
-                                     cmocka_unit_test(bound_holds), cmocka_unit_test(without_samples)};
+                                     cmocka_unit_test(bound_holds), cmocka_unit_test(rare_light_is_not_missed),
+                                     cmocka_unit_test(without_samples)};
   return cmocka_run_group_tests(tests, begin, end);
 }

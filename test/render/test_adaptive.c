@@ -49,7 +49,7 @@ static void filled(void **state) {
   int adaptive = 0;
   for (int tracer = 0; tracer < TRACERS; tracer++) {
     vlFilm *parts = make_film(true), *whole = make_film(true);
-    vlRenderDef def = render_def((vlTracer)tracer, 0.05, 40);
+    vlRenderDef def = render_def((vlTracer)tracer, 0.04, 40);
     vlRenderStats stats;
     assert_int_equal(vl_render(loaded.world, &loaded.camera, parts, &def, &stats, NULL), VL_OK);
     adaptive += stats.mean_spp < stats.spp;

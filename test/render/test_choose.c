@@ -107,8 +107,8 @@ static void the_same_choice(void **state) {
   (void)state;
   vlTracerChoice one = choice_of((How){.threads = 1});
   assert_int_equal(one.tracer, VL_TRACER_BIDIRECTIONAL);
-  assert_int_equal(one.count, 3); /* nothing smooth: no merging */
-  assert_true(one.trials[1].work < 0.5);
+  assert_int_equal(one.count, 3);         /* nothing smooth: no merging */
+  assert_true(one.trials[1].work < 0.75); /* far from a tie */
   static const How others[] = {{.threads = 3}, {.threads = 1, .crop = 40}, {.threads = 2, .seed = 7, .first = 100}};
   for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
     vlTracerChoice other = choice_of(others[k]);

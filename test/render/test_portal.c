@@ -2,7 +2,7 @@
  * Behind a portal and beside it there is no light. */
 #include "render/shots.h"
 
-enum { SIZE = 16, SEEDS = 10, BLOCKS = 4, SKY = 32 };
+enum { SIZE = 16, SEEDS = 20, BLOCKS = 4, SKY = 32 };
 
 /* Walls at -1 and 1; a window in the ceiling (y = 1): |x - 0.2| < 0.4, |z| < 0.3. */
 static void add_room(Stage *s) {
@@ -81,7 +81,7 @@ static Blocks measure(vlTracer tracer, bool portal, uint32_t spp) {
   return b;
 }
 
-/* z of each block, and of all together. Student's t with 18 degrees of freedom: |t| > 4.5 by chance 3e-4. */
+/* z of each block, and of all together. Student's t with 38 degrees of freedom: |t| > 4.5 by chance 6e-5. */
 static void compare(const char *what, const Blocks *a, const Blocks *b) {
   double difference = 0, variance = 0, total = 0;
   for (int k = 0; k < BLOCKS * BLOCKS; k++) {

@@ -103,7 +103,7 @@ static double noise(vlTracer tracer) {
 static void less_noise(void **state) {
   (void)state;
   double path = noise(VL_TRACER_PATH), both = noise(VL_TRACER_BIDIRECTIONAL);
-  if (!(both < path / 8)) fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
+  if (!(both < path / 5)) fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
 }
 
 /* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... everywhere. */

@@ -145,6 +145,19 @@ static vlResult set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *
 static vlResult set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
   SET(scene, lights, vl_scene_add_light, id, def, "light", error);
 }
+static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
+  SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
+}
+
+/* Calls set (one of the above). After success the object's mark has a new generation. The id must be checked before. */
+#define SET_AND_MARK(scene, marks, set, id, def, error)                           \
+  do {                                                                            \
+    vlSceneMark *mark = mark_of(scene, &(scene)->marks, (id).index);              \
+    if (!mark) return vl_fail_memory(error);                                      \
+    vlResult changed = set(scene, id, def, error);                                \
+    if (changed == VL_OK) mark->generation = vl_context_number((scene)->context); \
+    return changed;                                                               \
+  } while (0)
 
 vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef *def, vlError *error) {
   vlResult result = check(scene, ITEM(scene, textures, id) != NULL, "texture", error);
@@ -152,11 +165,7 @@ vlResult vl_scene_set_texture(vlScene *scene, vlTextureId id, const vlTextureDef
   if (def && def->spectrum != scene->textures.items[id.index - 1].spectrum)
     return vl_fail(error, VL_ERROR_ARGUMENT, "texture: a texture of %s cannot become one of %s",
                    def->spectrum ? "floats" : "colours", def->spectrum ? "colours" : "floats");
-  vlSceneMark *mark = mark_of(scene, &scene->texture_marks, id.index);
-  if (!mark) return vl_fail_memory(error);
-  result = set_texture(scene, id, def, error);
-  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
-  return result;
+  SET_AND_MARK(scene, texture_marks, set_texture, id, def, error);
 }
 
 vlResult vl_scene_set_material(vlScene *scene, vlMaterialId id, const vlMaterialDef *def, vlError *error) {
@@ -170,25 +179,13 @@ vlResult vl_scene_set_emission(vlScene *scene, vlEmissionId id, const vlEmission
 vlResult vl_scene_set_light(vlScene *scene, vlLightId id, const vlLightDef *def, vlError *error) {
   vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
   if (result != VL_OK) return result;
-  vlSceneMark *mark = mark_of(scene, &scene->light_marks, id.index);
-  if (!mark) return vl_fail_memory(error);
-  result = set_light(scene, id, def, error);
-  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
-  return result;
-}
-
-static vlResult set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
-  SET(scene, media, vl_scene_add_medium, id, def, "medium", error);
+  SET_AND_MARK(scene, light_marks, set_light, id, def, error);
 }
 
 vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *def, vlError *error) {
   vlResult result = check(scene, ITEM(scene, media, id) != NULL, "medium", error);
   if (result != VL_OK) return result;
-  vlSceneMark *mark = mark_of(scene, &scene->medium_marks, id.index);
-  if (!mark) return vl_fail_memory(error);
-  result = set_medium(scene, id, def, error);
-  if (result == VL_OK) mark->generation = vl_context_number(scene->context);
-  return result;
+  SET_AND_MARK(scene, medium_marks, set_medium, id, def, error);
 }
 
 /* ---- shapes, lights ---------------------------------------------------------------------------------------------- */

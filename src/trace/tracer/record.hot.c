@@ -197,6 +197,7 @@ void vl_record_shaded(vlTracing *t, uint32_t n) {
   }
 }
 
+/* After the scattering, of the four wavelengths. */
 static float largest_throughput(const vlPathVertex *v) {
   float most = 0.0f;
   for (int c = 0; c < 4; c++) most = vl_max(most, v->throughput[c] * v->factor[c]);
@@ -214,8 +215,9 @@ void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t count, uint32_t depth)
     v->lobe = sh->flags[i] & (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
     v->pdf = none ? 0.0f : sh->pdf[i];
     for (int c = 0; c < 4; c++) v->factor[c] = none ? 0.0f : sh->value[c][i];
-    v->survival = vl_roulette_survival(largest_throughput(v) * p->eta_scale[i], depth);
-    v->fate = none || !(largest_throughput(v) > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
+    float most = largest_throughput(v);
+    v->survival = vl_roulette_survival(most * p->eta_scale[i], depth);
+    v->fate = none || !(most > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
   }
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
@@ -241,8 +243,9 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v) continue;
-    v->survival = vl_roulette_survival(largest_throughput(v) * p->eta_scale[i], depth);
-    v->fate = largest_throughput(v) > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
+    float most = largest_throughput(v);
+    v->survival = vl_roulette_survival(most * p->eta_scale[i], depth);
+    v->fate = most > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
   }
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = t->s->order[k];

@@ -202,6 +202,61 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
                        "noisy_blocks", s.noisy_blocks);
 }
 
+typedef struct Choosing {
+  const vlWorld *world;
+  const vlCamera *camera;
+  vlFilmDef film;
+  vlRenderDef def;
+  vlTracerChoice choice;
+  vlError error;
+} Choosing;
+static vlResult run_choice(void *user) {
+  Choosing *c = user;
+  return vl_choose_tracer(c->world, c->camera, &c->film, &c->def, true, &c->choice, &c->error);
+}
+
+static PyObject *trial_list(const vlKindFamily *tracers, const vlTracerChoice *choice) {
+  PyObject *list = PyList_New(0);
+  for (uint32_t i = 0; list && i < choice->count; i++) {
+    const vlTracerTrial *t = &choice->trials[i];
+    PyObject *trial =
+        Py_BuildValue("{s:s,s:I,s:d,s:d,s:d,s:d}", "tracer", tracers->rows[t->tracer]->name, "light_paths",
+                      t->light_paths, "error", t->error, "missing", t->missing, "cost", t->cost, "work", t->work);
+    if (!trial || PyList_Append(list, trial) < 0) Py_CLEAR(list);
+    Py_XDECREF(trial);
+  }
+  return list;
+}
+
+/* choose_tracer(world, camera, settings, spp): ({"tracer": name, "light_paths": number}, [trials]) */
+static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
+  (void)module;
+  World *world;
+  Camera *camera;
+  Settings *settings;
+  unsigned spp;
+  if (!PyArg_ParseTuple(arguments, "O!O!O!I:choose_tracer", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
+                        &camera, base_types[TYPE_SETTINGS], &settings, &spp))
+    return NULL;
+  if (!world->world) return raise_usage("the world is closed");
+  LongCall call;
+  if (!long_call_begin(&call, world->context, Py_None)) return NULL;
+  Choosing c = {
+      .world = world->world, .camera = &camera->camera, .film = settings->defs.film, .def = settings->defs.render};
+  c.def.spp = spp, c.def.cancel = call.cancel;
+  bool busy = false;
+  world->users++;
+  vlResult done;
+  bool fine = long_call_run(&call, &busy, run_choice, &c, &done);
+  long_call_end(&call);
+  world->users--;
+  if (!fine) return NULL;
+  if (done != VL_OK) return raise_result(done, &c.error);
+  const vlKindFamily *tracers = vl_kind_family_find("tracers");
+  return Py_BuildValue("{s:s,s:I},N", "tracer", tracers->rows[c.choice.tracer]->name, "light_paths",
+                       c.choice.light_paths, trial_list(tracers, &c.choice));
+}
+
 typedef struct Truth {
   const vlWorld *world;
   const vlCamera *camera;
@@ -371,6 +426,7 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
 PyMethodDef render_functions[] = {
     {"scene_settings", scene_settings, METH_O, "A copy of a scene's settings."},
     {"render", render, METH_VARARGS, "Adds samples to a film."},
+    {"choose_tracer", choose_tracer, METH_VARARGS, "The race of the tracers."},
     {"channels", channels, METH_VARARGS, "Ground truth."},
     {"boxes", boxes, METH_VARARGS, "Bounding boxes of objects and instances."},
     {"autofocus", autofocus, METH_VARARGS, "The focus distance for a pixel."},

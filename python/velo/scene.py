@@ -20,6 +20,7 @@ _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "
 _ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file")
 # Settings that the world depends on; the others belong to the film and the render.
 _BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
+_MOST_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
 
 
 class World(_velo.World):
@@ -295,13 +296,15 @@ class Scene(_velo.Scene):
         film: adds samples to this film, until it has spp per pixel.
         denoise: denoises the colours.
         Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,
-        max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()).
+        max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()). tracer="auto": the
+        tracer that choose_tracer names.
 
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
         settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         self._film = target
         world = self._build(settings)
+        self._choose(world, view, target, settings, keywords)
         _velo.render(world, view, target, settings, progress)
         return self._develop(world, view, target, settings, channels, denoise)
 
@@ -317,6 +320,7 @@ class Scene(_velo.Scene):
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         self._film = target
         world = self._build(settings)
+        self._choose(world, view, target, settings, keywords)
         for factor in coarse:
             yield self._coarse(world, view, settings, factor, channels)
         total = settings.get("spp")
@@ -361,8 +365,27 @@ class Scene(_velo.Scene):
             resolution = camera.resolution
         if ("error" in channels or denoise) and film is None:
             keywords.setdefault("errors", True)
-        settings = self.settings(resolution=resolution, crop=crop, **keywords)
+        known = {name: value for name, value in keywords.items() if (name, value) != ("tracer", "auto")}
+        settings = self.settings(resolution=resolution, crop=crop, **known)
         return settings, self._camera_for(camera, settings)
+
+    @staticmethod
+    def _choose(world: World, view: Camera, film: Film, settings: Any, keywords: dict[str, Any]) -> None:
+        if keywords.get("tracer") != "auto":
+            return
+        if film.spp:
+            raise UsageError('tracer="auto": the film has samples of a tracer already; give its name')
+        chosen, _ = _velo.choose_tracer(world, view, settings, min(settings.get("spp"), _MOST_RACED))
+        for name, value in chosen.items():
+            settings.set(name, value)
+
+    def choose_tracer(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+                      **keywords: Any) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+        """A short race of tracers (docs/tracers.md): (the keywords of render with which it has the least error for the same
+        time, the trials). A trial has tracer, light_paths, error, missing, cost, and work: error times cost over that of the
+        first. Without trials the image is too small for a race. camera, resolution, further keywords: as render."""
+        settings, view = self._prepare(camera, resolution, None, (), None, False, keywords)
+        return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MOST_RACED))
 
     def _develop(self, world: World, view: Camera, film: Film, settings: Any, channels: Sequence[str],
                  denoise: bool) -> Image:

@@ -19,15 +19,16 @@ enum {
   LEAST_SAMPLES = 8,
   MOST_SAMPLES = 32,
   LEAST_PIXELS = 192,
-  MANY_PIXELS = 2048,
+  MANY_PIXELS = 700,
   BLOCK = 4,
+  AROUND = 2, /* pixels on each side */
   QUARTER = 4,
   MOST_LIGHT_PATHS = 1 << 20
 };
 static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a biased one below that of the
  * best unbiased one times BIASED. */
-static const double SURE = 0.95, BIASED = 2.0 / 3.0;
+static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
 
 /* A tracer of the race. */
@@ -55,7 +56,7 @@ typedef struct Race {
   uint32_t count;
   vlImage *images[VL_MOST_TRIALS][2];
   size_t pixels;
-  double *base; /* by pixel and channel: the mean of all images */
+  double *base; /* by pixel and channel: what a relative error is relative to */
   double *sorted;
   double least; /* added to base^2, so that black pixels do not count too much */
 } Race;
@@ -131,16 +132,34 @@ static double trimmed_mean(double *values, size_t n, size_t low, size_t high) {
   return sum / (double)(n - low - high);
 }
 
-/* All tracers have the same base, so that none has a small error because it found no light. */
+/* The mean of trial t's two images in the square of `around` pixels on each side of pixel (x, y). */
+static double mean_around(const Race *race, uint32_t t, uint32_t x, uint32_t y, uint32_t c, uint32_t around) {
+  uint32_t x0 = x > around ? x - around : 0, y0 = y > around ? y - around : 0, n = 0;
+  double sum = 0;
+  for (uint32_t j = y0; j <= y + around && j < race->film.height; j++)
+    for (uint32_t i = x0; i <= x + around && i < race->film.width; i++, n++) {
+      size_t pixel = (size_t)j * race->film.width + i;
+      sum += 0.5 * (value_at(race, race->images[t][0], pixel, c) + value_at(race, race->images[t][1], pixel, c));
+    }
+  return sum / n;
+}
+
+/* The median of mean_around over the tracers. */
+static double median_around(const Race *race, uint32_t count, size_t i, uint32_t around) {
+  double means[VL_MOST_TRIALS];
+  uint32_t x = (uint32_t)(i / 3 % race->film.width), y = (uint32_t)(i / 3 / race->film.width);
+  for (uint32_t t = 0; t < count; t++) means[t] = mean_around(race, t, x, y, (uint32_t)(i % 3), around);
+  qsort(means, count, sizeof *means, ascending);
+  return 0.5 * (means[(count - 1) / 2] + means[count / 2]);
+}
+
+/* All tracers have the same base, so that none has a small error because it found no light. The mean of a pixel would
+ * be large where one tracer has a firefly, and would make the firefly's error small: the median does not follow it.
+ * Where all are noisy most pixels are too dark: the neighbours say how bright they are. */
 static void find_base(Race *race, uint32_t count) {
   size_t n = 3 * race->pixels;
-  for (size_t i = 0; i < race->pixels; i++)
-    for (uint32_t c = 0; c < 3; c++) {
-      double sum = 0;
-      for (uint32_t t = 0; t < count; t++)
-        sum += 0.5 * (value_at(race, race->images[t][0], i, c) + value_at(race, race->images[t][1], i, c));
-      race->base[3 * i + c] = race->sorted[3 * i + c] = sum / count;
-    }
+  for (size_t i = 0; i < n; i++)
+    race->base[i] = race->sorted[i] = fmax(median_around(race, count, i, 0), median_around(race, count, i, AROUND));
   double mean = trimmed_mean(race->sorted, n, 0, n / 50); /* without lamps and fireflies */
   race->least = 0.1 * mean * mean;
 }

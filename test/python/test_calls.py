@@ -376,5 +376,24 @@ def coarse_images_come_first():
         camera.coarse(0)
 
 
+# ---- the choice of a tracer -----------------------------------------------------------------------------------------
+
+@case
+def auto_is_the_tracer_that_wins_the_race():
+    scene = velo.load(os.path.join(os.path.dirname(cases.PINHOLE), "..", "features", "two_way.pbrt"))
+    size, crop = (216, 160), (80, 64, 96, 80)
+    chosen, trials = scene.choose_tracer(spp=32, resolution=size)
+    assert chosen["tracer"] == "bidirectional" and len(trials) >= 3 and trials[0]["work"] == 1, (chosen, trials)
+    assert min(trial["work"] for trial in trials) < 0.85
+    assert scene.choose_tracer(spp=32, resolution=size, seed=7) == (chosen, trials)
+    keywords = dict(spp=32, resolution=size, crop=crop)
+    auto = numpy.asarray(scene.render(tracer="auto", **keywords))
+    assert numpy.array_equal(auto, numpy.asarray(scene.render(**chosen, **keywords)))
+    assert not numpy.array_equal(auto, numpy.asarray(scene.render(tracer="path", **keywords)))
+    assert scene.choose_tracer(spp=1, resolution=(16, 16)) == ({"tracer": "volpath", "light_paths": 0xffffffff}, [])
+    with raises(velo.UsageError, "has samples"):
+        scene.render(tracer="auto", film=scene.film, spp=64, resolution=size)
+
+
 if __name__ == "__main__":
     cases.main()

@@ -10,8 +10,8 @@
 #include "color/rgb_table.h"
 
 typedef struct vlColorKernels {
-  /* Samples 4 wavelengths per path from u in [0,1), u + 1/4, u + 2/4 and u + 3/4 (mod 1). The density is proportional
-   * to the observer's sensitivity (vl_visible_lambda). Also writes 1 / density in nm. */
+  /* Samples 4 wavelengths per path from u in [0,1), u + 1/4, u + 2/4 and u + 3/4 (mod 1). The density is that of
+   * vl_visible_lambda. Also writes 1 / density in nm. */
   void (*visible_wavelengths)(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]);
   /* Like visible_wavelengths, with a uniform density from low to low + span (nm). */
   void (*uniform_wavelengths)(float low, float span, uint32_t n, const float *u, float *const lambda[4],

@@ -8,22 +8,13 @@ static inline float turned(float u, int channel) {
   return v >= 1.0f ? v - 1.0f : v;
 }
 
-/* The four hero wavelengths are u rotated by quarters, so that they stratify the range. The density is that of
- * vl_visible_pdf, since 1 / cosh^2(atanh t) = 1 - t^2. */
+/* The four wavelengths are u rotated by quarters, so that they stratify the range. */
 static void visible_wavelengths(uint32_t n, const float *u, float *const lambda[4], float *const inv_pdf[4]) {
   uint32_t count = VL_PAD(n);
   for (int c = 0; c < 4; c++) {
     float *l = lambda[c], *p = inv_pdf[c];
     /* must vectorise */
-    VL_SIMD for (uint32_t i = 0; i < count; i++) {
-      float v = turned(u[i], c);
-      float t = 0.85691062f - 1.82750197f * v;
-      float x = 538.0f - 69.4444445f * vl_ln((1.0f + t) / (1.0f - t));
-      /* rounding may leave the range slightly */
-      x = x > 360.0f ? x : 360.0f;
-      l[i] = x < 830.0f ? x : 830.0f;
-      p[i] = 253.819720f / (1.0f - t * t);
-    }
+    VL_SIMD for (uint32_t i = 0; i < count; i++) l[i] = vl_visible_lambda(turned(u[i], c), &p[i]);
   }
 }
 

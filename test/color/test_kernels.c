@@ -106,9 +106,9 @@ static void test_inline(void **state) {
     float high = fmaxf(fmaxf(input.r[i], input.g[i]), input.b[i]);
     assert_true(x[8][i] == 2 * high);
     for (int c = 0; c < 4; c++) {
-      float lambda = x[c][i], v = input.u[i] + 0.25f * (float)c;
+      float lambda = x[c][i], v = input.u[i] + 0.25f * (float)c, inv_pdf;
       assert_true(lambda >= 360 && lambda <= 830);
-      assert_float_equal(lambda, vl_visible_lambda(v >= 1 ? v - 1 : v), 1e-3);
+      assert_true(lambda == vl_visible_lambda(v >= 1 ? v - 1 : v, &inv_pdf) && x[4 + c][i] == inv_pdf);
       assert_float_equal(x[4 + c][i] * vl_visible_pdf(lambda), 1.0, 2e-4);
       assert_true(x[22 + c][i] == vl_sigmoid(s, lambda));
       assert_true(x[26 + c][i] == vl_dense_at(dense_pool, lambda));
@@ -126,14 +126,103 @@ static void test_inline(void **state) {
 static void test_density(void **state) {
   (void)state;
   double sum = 0;
-  for (int i = 0; i < 4700; i++) sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)i) * 0.1;
-  assert_float_equal(sum, 1.0, 1e-4);
+  for (int i = 0; i < 4700; i++) {
+    float pdf = vl_visible_pdf(360.05f + 0.1f * (float)i);
+    assert_true(pdf > 2.3e-4f); /* narrow spectral lines get no extreme weights */
+    sum += (double)pdf * 0.1;
+  }
+  assert_float_equal(sum, 1.0, 1e-5);
+  assert_true(vl_visible_pdf(359.9f) == 0 && vl_visible_pdf(830.1f) == 0);
   sum = 0;
   int at = 0;
-  for (int i = 0; i < 100; i++) {
-    double l = (double)vl_visible_lambda((float)(i + 1) / 101.0f);
+  float inv_pdf;
+  for (int i = 0; i < 1000; i++) {
+    double l = (double)vl_visible_lambda((float)(i + 1) / 1001.0f, &inv_pdf);
     for (; 360.05 + 0.1 * at < l; at++) sum += (double)vl_visible_pdf(360.05f + 0.1f * (float)at) * 0.1;
-    assert_float_equal(sum, (i + 1) / 101.0, 2e-3);
+    assert_float_equal(sum, (i + 1) / 1001.0, 4e-4);
+  }
+  assert_true(vl_visible_lambda(0, &inv_pdf) == 360 && vl_visible_lambda(0x1.fffffep-1f, &inv_pdf) > 829.9f);
+  for (int k = 0; k + 1 < VL_VISIBLE_KNOTS; k++) { /* no jump between two segments */
+    const float *row = vl_visible_knots + 4 * k;
+    float before = row[4] - 0x1p-24f;
+    assert_float_equal(vl_visible_lambda(before, &inv_pdf), row[5], 1e-3);
+    assert_float_equal(inv_pdf * row[6], 1.0, 1e-3);
+    assert_float_equal(row[4] - row[0], (row[2] + row[6]) / 2 * (row[5] - row[1]), 1e-6);
+  }
+}
+
+/* Random wavelengths in intervals of 10 nm against the density, by chi^2: each of the four has it. */
+static void test_samples(void **state) {
+  (void)state;
+  enum { BINS = 47, ROUNDS = 100 };
+  static batch x;
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf);
+  double count[4][BINS] = {{0}};
+  for (int round = 0; round < ROUNDS; round++) {
+    for (int i = 0; i < PAD; i++) x.u[i] = uniform();
+    vl_color_kernels(vl_isa_best())->visible_wavelengths(PAD, x.u, lambda, inv_pdf);
+    for (int c = 0; c < 4; c++)
+      for (int i = 0; i < PAD; i++) count[c][(int)fminf((lambda[c][i] - 360) / 10, BINS - 1)]++;
+  }
+  for (int c = 0; c < 4; c++) {
+    double chi2 = 0;
+    for (int b = 0; b < BINS; b++) {
+      double expected = 0;
+      for (int i = 0; i < 100; i++) expected += (double)vl_visible_pdf(360.05f + 10 * (float)b + 0.1f * (float)i) * 0.1;
+      expected *= (double)PAD * ROUNDS;
+      chi2 += (count[c][b] - expected) * (count[c][b] - expected) / expected;
+    }
+    assert_true(chi2 < 90); /* 46 degrees of freedom: exceeded with probability 1e-4 */
+  }
+}
+
+/* The density of the pbrt book 4.5.4 (Radziszewski et al. 2009), for comparison. */
+static float luminance_lambda(float u, float *inv_pdf) {
+  float t = 0.85691062f - 1.82750197f * u;
+  *inv_pdf = 253.819720f / (1 - t * t);
+  return 538 - 138.888889f * atanhf(t);
+}
+
+/* Variance of one sample's linear sRGB, relative to the squared mean, as the mean over R, G, B: a reflectance under
+ * daylight, seen at four rotated wavelengths. */
+static double colour_noise(float (*sample)(float, float *), const float reflectance[3]) {
+  enum { STEPS = 4096 };
+  static batch x;
+  const vlColorKernels *k = vl_color_kernels(vl_isa_best());
+  float *lambda[4] = ROWS(x.lambda), *inv_pdf[4] = ROWS(x.inv_pdf), *out[4] = ROWS(x.out);
+  const float *l[4] = ROWS(x.lambda), *p[4] = ROWS(x.inv_pdf), *o[4] = ROWS(x.out);
+  float m[9], *rgb[3] = {x.r, x.g, x.b};
+  vl_rgb_from_xyz(VL_SPACE_SRGB, m);
+  double sum[3] = {0}, squares[3] = {0}, noise = 0;
+  for (int first = 0; first < STEPS; first += PAD) {
+    int n = STEPS - first < PAD ? STEPS - first : PAD;
+    for (int i = 0; i < PAD; i++)
+      for (int c = 0; c < 4; c++)
+        lambda[c][i] = sample((float)fmod(((float)(first + i) + 0.5f) / STEPS + 0.25f * (float)c, 1), &inv_pdf[c][i]);
+    vlSigmoid s = vl_rgb_table_lookup(vl_rgb_table(VL_SPACE_SRGB), reflectance[0], reflectance[1], reflectance[2]);
+    for (int i = 0; i < PAD; i++) x.c0[i] = s.c0, x.c1[i] = s.c1, x.c2[i] = s.c2;
+    k->light_eval(PAD, x.c0, x.c1, x.c2, NULL, vl_space_illuminant(VL_SPACE_SRGB), l, out);
+    k->rgb_from_radiance(vl_cie_xyz0, m, PAD, o, l, p, x.r, x.g, x.b);
+    for (int c = 0; c < 3; c++)
+      for (int i = 0; i < n; i++) sum[c] += (double)rgb[c][i], squares[c] += (double)rgb[c][i] * (double)rgb[c][i];
+  }
+  for (int c = 0; c < 3; c++) noise += (squares[c] * STEPS / (sum[c] * sum[c]) - 1) / 3;
+  return noise;
+}
+
+static void test_colour_noise(void **state) {
+  (void)state;
+  static const struct {
+    float reflectance[3];
+    double most; /* relative variance */
+  } rows[] = {{{0.8f, 0.8f, 0.8f}, 0.004},
+              {{0.8f, 0.5f, 0.3f}, 0.004},
+              {{0.63f, 0.065f, 0.05f}, 0.025},
+              {{0.1f, 0.15f, 0.7f}, 0.025}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    double noise = colour_noise(vl_visible_lambda, rows[i].reflectance);
+    double before = colour_noise(luminance_lambda, rows[i].reflectance);
+    assert_true(noise < rows[i].most && before > 8 * rows[i].most);
   }
 }
 
@@ -165,10 +254,8 @@ static void test_white(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bits),
-      cmocka_unit_test(test_inline),
-      cmocka_unit_test(test_density),
-      cmocka_unit_test(test_white),
+      cmocka_unit_test(test_bits),    cmocka_unit_test(test_inline),       cmocka_unit_test(test_density),
+      cmocka_unit_test(test_samples), cmocka_unit_test(test_colour_noise), cmocka_unit_test(test_white),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

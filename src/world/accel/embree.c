@@ -197,25 +197,36 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
 }
 
+/* Whether the shape's texture lets ray `id` pass at a hit. */
+static __attribute__((noinline)) bool alpha_passes(const Query *q, const vlWorldShape *shape, uint32_t prim,
+                                                   unsigned id, uint32_t inst, const vlShapeHit *hit) {
+  vlLocalRay r = local_ray(q, id, inst);
+  vlSurfacePoint point;
+  vl_shape_point(shape, prim, hit, &point);
+  vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                       vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
+  return vl_alpha_passes(q->world, shape, &r, prim, (float)hit->t, &at);
+}
+
 static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
                      bool shadow, double *t) {
   const Query *q = query_of(context);
-  uint32_t inst = instance_of(q->world, context->instID[0]);
+  uint32_t inst = instance_of(q->world, context->instID[0]), id = *hit_row(ray, n, ID, i);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
   if (shadow && shape->pass_shadow) return false;
-  vlLocalRay r = local_ray(q, *hit_row(ray, n, ID, i), inst);
+  const vlRays *rays = q->rays;
+  double o[3] = {rays->ox[id], rays->oy[id], rays->oz[id]}, d[3] = {rays->dx[id], rays->dy[id], rays->dz[id]};
+  if (inst != VL_NONE) {
+    vlLocalRay r = local_ray(q, id, inst);
+    memcpy(o, r.o, sizeof o);
+    memcpy(d, r.d, sizeof d);
+  }
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
-  while (vl_shape_intersect(shape, prim, r.o, r.d, t_min, t_max, &hit)) {
-    if (shape->alpha >= 0) {
-      vlSurfacePoint point;
-      vl_shape_point(shape, prim, &hit, &point);
-      vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
-                           vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-      if (vl_alpha_passes(q->world, shape, &r, prim, (float)hit.t, &at)) {
-        t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
-        continue;
-      }
+  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0 && alpha_passes(q, shape, prim, id, inst, &hit)) {
+      t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
+      continue;
     }
     *t = hit.t;
     return true;

@@ -21,7 +21,7 @@
 #include "velo/velo.h"
 #include "world/world.h"
 
-enum { ROUNDS = 5, SPHERES = 64, RINGS = 88, SEGMENTS = 90, SIZE = 512 };
+enum { ROUNDS = 5, PACKET = 8 /* as in src/world/accel */, SPHERES = 64, RINGS = 88, SEGMENTS = 90, SIZE = 512 };
 
 /* ---- the scene: lumpy spheres in a room with a lamp -------------------------------------------------------------- */
 
@@ -128,7 +128,7 @@ static void record(void *user, int kind, uint32_t n, const vlRays *rays) {
 
 typedef struct Bare {
   const Record *record;
-  RTCScene scene;
+  const vlWorld *world;
   int only; /* kind of ray; -1: all */
   uint64_t sum[64];
 } Bare;
@@ -141,27 +141,28 @@ typedef struct Query {
 #else
   struct RTCIntersectContext context;
 #endif
+  const vlWorld *world;
   const vlRays *rays;
   void *nearest;
   uint32_t first;
 } Query;
 
 #if VELO_EMBREE_MAJOR >= 4
-#define CONTEXT(c)                        \
-  vlRays rays = rays_of(c);               \
-  Query query = {.rays = &rays};          \
-  struct RTCIntersectArguments closest;   \
-  struct RTCOccludedArguments any;        \
-  rtcInitRayQueryContext(&query.context); \
-  rtcInitIntersectArguments(&closest);    \
-  rtcInitOccludedArguments(&any);         \
+#define CONTEXT(c)                               \
+  vlRays rays = rays_of(c);                      \
+  Query query = {.world = world, .rays = &rays}; \
+  struct RTCIntersectArguments closest;          \
+  struct RTCOccludedArguments any;               \
+  rtcInitRayQueryContext(&query.context);        \
+  rtcInitIntersectArguments(&closest);           \
+  rtcInitOccludedArguments(&any);                \
   closest.context = any.context = &query.context;
 #define CLOSEST(ray) , (ray), &closest
 #define ANY(ray) , (ray), &any
 #else
-#define CONTEXT(c)               \
-  vlRays rays = rays_of(c);      \
-  Query query = {.rays = &rays}; \
+#define CONTEXT(c)                               \
+  vlRays rays = rays_of(c);                      \
+  Query query = {.world = world, .rays = &rays}; \
   rtcInitIntersectContext(&query.context);
 #define CLOSEST(ray) , &query.context, (ray)
 #define ANY(ray) , &query.context, (ray)
@@ -178,16 +179,17 @@ static vlRays rays_of(const Chunk *c) {
                   .t_max = c->ray[7]};
 }
 
-static uint64_t bare_packets(RTCScene scene, const Chunk *c) {
+static uint64_t bare_packets(const vlWorld *world, const Chunk *c) {
+  RTCScene scene = world->accel.scene;
   CONTEXT(c)
 #if VELO_EMBREE_MAJOR < 4
   query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 #endif
   uint64_t sum = 0;
-  for (uint32_t first = 0; first < c->n; first += 16) {
-    struct RTCRayHit16 q;
-    int valid[16] __attribute__((aligned(64)));
-    for (uint32_t k = 0; k < 16; k++) {
+  for (uint32_t first = 0; first < c->n; first += PACKET) {
+    struct RTCRayHit8 q;
+    int valid[PACKET] __attribute__((aligned(32)));
+    for (uint32_t k = 0; k < PACKET; k++) {
       uint32_t i = first + k < c->n ? first + k : c->n - 1;
       valid[k] = first + k < c->n ? -1 : 0;
       q.ray.org_x[k] = c->ray[0][i], q.ray.org_y[k] = c->ray[1][i], q.ray.org_z[k] = c->ray[2][i];
@@ -196,13 +198,14 @@ static uint64_t bare_packets(RTCScene scene, const Chunk *c) {
       q.ray.time[k] = 0, q.ray.mask[k] = (unsigned)-1, q.ray.flags[k] = 0, q.ray.id[k] = i;
       q.hit.geomID[k] = q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
-    rtcIntersect16(valid, scene CLOSEST(&q));
-    for (uint32_t k = 0; k < 16; k++) sum += q.hit.primID[k];
+    rtcIntersect8(valid, scene CLOSEST(&q));
+    for (uint32_t k = 0; k < PACKET; k++) sum += q.hit.primID[k];
   }
   return sum;
 }
 
-static uint64_t bare_single(RTCScene scene, const Chunk *c) {
+static uint64_t bare_single(const vlWorld *world, const Chunk *c) {
+  RTCScene scene = world->accel.scene;
   CONTEXT(c)
   uint64_t sum = 0;
   for (uint32_t i = 0; i < c->n; i++) {
@@ -228,12 +231,12 @@ static void bare_chunk(void *user, uint32_t index, uint32_t worker) {
   const Chunk *c = &b->record->chunks[index];
   if (b->only >= 0 && c->kind != b->only) return;
   unsigned state = vl_accel_enter();
-  b->sum[worker & 63] += c->kind == 0 ? bare_packets(b->scene, c) : bare_single(b->scene, c);
+  b->sum[worker & 63] += c->kind == 0 ? bare_packets(b->world, c) : bare_single(b->world, c);
   vl_accel_leave(state);
 }
 
-static double time_bare(vlContext *context, const Record *r, RTCScene scene, int only) {
-  Bare b = {r, scene, only, {0}};
+static double time_bare(vlContext *context, const Record *r, const vlWorld *world, int only) {
+  Bare b = {r, world, only, {0}};
   double start = vl_seconds();
   vl_parallel_for(context, (uint32_t)r->count, bare_chunk, &b);
   return vl_seconds() - start;
@@ -302,7 +305,7 @@ int main(int argc, char **argv) {
   defs->render.spp = (uint32_t)strtoul(samples, NULL, 10);
   vlWorldInfo info;
   vl_world_info(world, &info);
-  static const char *const names[3] = {"camera, in sixteens", "bounce", "shadow"};
+  static const char *const names[3] = {"camera, in packets", "bounce", "shadow"};
   Record log = {.mutex = PTHREAD_MUTEX_INITIALIZER};
   world->accel.log = record;
   world->accel.log_user = &log;
@@ -315,7 +318,7 @@ int main(int argc, char **argv) {
   double bare[ROUNDS], ours[ROUNDS], bare_work[ROUNDS], our_work[ROUNDS];
   for (int i = 0; i < ROUNDS; i++) {
     double begin = processor_seconds();
-    bare[i] = time_bare(context, &log, world->accel.scene, -1);
+    bare[i] = time_bare(context, &log, world, -1);
     bare_work[i] = processor_seconds() - begin;
     begin = processor_seconds();
     ours[i] = render_once(context, world, defs).seconds;
@@ -324,7 +327,7 @@ int main(int argc, char **argv) {
   double b = median(bare, ROUNDS), o = median(ours, ROUNDS);
   for (int kind = 0; kind < 3; kind++) {
     double t[3];
-    for (int i = 0; i < 3; i++) t[i] = time_bare(context, &log, world->accel.scene, kind);
+    for (int i = 0; i < 3; i++) t[i] = time_bare(context, &log, world, kind);
     double m = median(t, 3);
     printf("Embree %-20s %9.3f M rays %8.3f s %8.2f M rays/s %5.1f %% of the render's time\n", names[kind],
            1e-6 * (double)log.rays[kind], m, 1e-6 * (double)log.rays[kind] / m, 100 * m / o);

@@ -273,7 +273,8 @@ struct vlWorld {
   VL_ARRAY(void *) blocks;                /* memory blocks owned by the world, such as dense spectra */
   int32_t *texture_memo;                  /* used during the build only: maps scene texture and role to the node */
   uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
-  bool has_interfaces, has_subsurface; /* a material is an interface; a shape has subsurface scattering */
+  bool has_interfaces, has_mixtures; /* a material is an interface; a material is mixed */
+  bool has_subsurface;               /* a shape has subsurface scattering */
   bool by_channel; /* a medium (vlWorldMedium.by_channel) or a material (vlWorldPrincipled.by_channel) attenuates light
                       per channel of linear sRGB */
   uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */

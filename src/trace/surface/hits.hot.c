@@ -142,6 +142,11 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
   vlHits *h = &t->s->hits_a;
   vl_closest_hits(t, n, camera);
   if (!camera) t->batch->bounce_rays += n;
+  const vlWorldShape *shapes = t->world->shapes.items;
+  if (!t->world->has_interfaces && !t->world->has_mixtures) {
+    for (uint32_t i = 0; i < n; i++) h->material[i] = h->shape[i] == VL_NONE ? 0 : shapes[h->shape[i]].material;
+    return;
+  }
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
     if (t->world->has_interfaces) pass_interfaces(t, p, h, i, camera ? t->batch->t_max : NULL);

@@ -190,6 +190,35 @@ static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, ui
   }
 }
 
+/* upsample for lanes from first on, with the same operations. */
+static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t count, float rgb[3][VL_LANES],
+                           uint32_t first, float *const out[4]) {
+  if (up->rgb_mode || count < VL_LANES / 4) {
+    for (uint32_t k = 0; k < count; k++) upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
+    return;
+  }
+  VL_ROW float lambda[4][VL_LANES], value[4][VL_LANES];
+  for (int c = 0; c < 4; c++)
+    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->paths->lambda[c][first + (k < count ? k : count - 1)];
+  const float *p = up->table->coefficients;
+  float most = up->albedo ? 1.0f : VL_INFINITY;
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t k = 0; k < VL_LANES; k++) {
+    float red = rgb[0][k], green = rgb[1][k], blue = rgb[2][k];
+    red = red > most ? most : red, green = green > most ? most : green, blue = blue > most ? most : blue;
+    float m = vl_max(red, vl_max(green, blue));
+    float scale = up->albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
+    vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
+    vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
+    value[0][k] = scale * vl_sigmoid(s, lambda[0][k]), value[1][k] = scale * vl_sigmoid(s, lambda[1][k]);
+    value[2][k] = scale * vl_sigmoid(s, lambda[2][k]), value[3][k] = scale * vl_sigmoid(s, lambda[3][k]);
+  }
+  for (int c = 0; c < 4; c++)
+    for (uint32_t k = 0; k < count; k++)
+      out[c][first + k] = up->illuminant ? value[c][k] * vl_dense_at(up->illuminant, lambda[c][k]) : value[c][k];
+}
+
 static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, float *const out[4]) {
   const vlMipmap *mip = r->world->images.items[node->image].mipmap;
   Upsampling up = upsampling_of(r, node);
@@ -200,9 +229,15 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
   }
   Lookups l;
   for (uint32_t first = r->first; first < r->last; first += l.count) {
+    VL_ROW float rgb[3][VL_LANES];
     look_up(r, node, mip, first, &l);
-    for (uint32_t k = 0; k < l.count; k++)
-      upsample(r, &up, vl_plain_rgb(mip, vl_image_value(node, mip, &l.at[k])), first + k, out);
+    for (uint32_t k = 0; k < VL_LANES; k++) {
+      uint32_t j = k < l.count ? k : l.count - 1;
+      vlVec3 c =
+          j == k ? vl_plain_rgb(mip, vl_image_value(node, mip, &l.at[k])) : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
+      rgb[0][k] = c.x, rgb[1][k] = c.y, rgb[2][k] = c.z;
+    }
+    upsample_lanes(r, &up, l.count, rgb, first, out);
   }
 }
 

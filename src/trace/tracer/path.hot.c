@@ -70,35 +70,62 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
   vl_stage_lights(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
 }
 
+/* Shadow rays for the light samples that contribute, in the order of the lanes, and their radiance, weighted by BSDF
+ * and multiple importance sampling. Returns their number. */
+static uint32_t make_shadow_rays(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  const vlPaths *p = &s->b;
+  const vlSurface *f = &s->surface;
+  const vlShade *sh = &s->shade;
+  const vlLightSamples *l = &s->light;
+  vlShadowRays *q = &s->shadow;
+  uint32_t padded = VL_PAD(n), *lit = s->slot;
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t i = 0; i < padded; i++) {
+    float v0 = sh->value[0][i], v1 = sh->value[1][i], v2 = sh->value[2][i], v3 = sh->value[3][i],
+          sum = v0 + v1 + v2 + v3;
+    vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 o =
+        vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    int distant = l->distant[i], delta = l->delta[i];
+    float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
+    float mis = vl_power_heuristic(l->pdf[i], sh->pdf[i]), weight = delta ? 1.0f : mis;
+    lit[i] = (l->pdf[i] > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
+    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z;
+    q->dx[i] = distant ? w.x : x, q->dy[i] = distant ? w.y : y, q->dz[i] = distant ? w.z : z;
+    q->t_max[i] = distant ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
+    q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * weight;
+    q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * weight;
+    q->radiance[2][i] = p->beta[2][i] * v2 * l->radiance[2][i] * weight;
+    q->radiance[3][i] = p->beta[3][i] * v3 * l->radiance[3][i] * weight;
+  }
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (!lit[i]) continue;
+    uint32_t k = count++;
+    q->lane[k] = p->lane[i];
+    if (p->time) q->time[k] = vl_path_time(p, i);
+    if (k == i) continue;
+    q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
+    q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
+    q->t_max[k] = q->t_max[i];
+    for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
+  }
+  return count;
+}
+
 /* Makes shadow rays for the light samples, weighted by BSDF and multiple importance sampling. Unoccluded rays add
  * their radiance. */
 static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
   if (world->lights.count == 0) return;
   vlPaths *p = &s->b;
   vl_stage_light_samples(t, n, p, dimension);
   vl_stage_light_bsdf(t, n);
-  const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
-  uint32_t count = 0;
-  for (uint32_t i = 0; i < n; i++) {
-    if (!(l->pdf[i] > 0.0f)) continue;
-    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
-    if (!(sum > 0.0f) && sum == sum) continue;
-    float weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], sh->pdf[i]);
-    vlVec3 at = vl_vec3(s->surface.px[i], s->surface.py[i], s->surface.pz[i]);
-    vlVec3 g = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
-    vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
-    vlVec3 d = l->distant[i] ? w : vl_vec3(l->tx[i] - o.x, l->ty[i] - o.y, l->tz[i] - o.z);
-    q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
-    q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
-    q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
-    for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * sh->value[c][i] * l->radiance[c][i] * weight;
-    if (p->time) q->time[count] = vl_path_time(p, i);
-    q->lane[count++] = p->lane[i];
-  }
+  uint32_t count = make_shadow_rays(t, n);
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;

@@ -9,6 +9,7 @@
 #include "world/accel/accel.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,13 +124,20 @@ static inline __attribute__((always_inline)) void read_hit(const struct RTCFilte
   hit->instance = instance_of(hit->world, *hit_row(args->hit, n, INST, i));
   hit->geometry = *hit_row(args->hit, n, GEOM, i);
   hit->primitive = *hit_row(args->hit, n, PRIM, i);
+  for (int k = 0; k < 3; k++) hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
+  if (n == 1) { /* the members lie one after the other, as in RTCRay */
+    memcpy(hit->o, args->ray, (TIME + 1) * sizeof(float));
+    return;
+  }
   for (int k = 0; k < 3; k++) {
-    hit->normal[k] = *ray_row(args->hit, n, NORMAL + k, i);
     hit->o[k] = *ray_row(args->ray, n, ORIGIN + k, i);
     hit->d[k] = *ray_row(args->ray, n, DIRECTION + k, i);
   }
   hit->time = *ray_row(args->ray, n, TIME, i);
 }
+_Static_assert(offsetof(vlNearest, time) - offsetof(vlNearest, o) == TIME * sizeof(float) &&
+                   offsetof(vlNearest, d) - offsetof(vlNearest, o) == DIRECTION * sizeof(float),
+               "the layout of a single ray");
 
 static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                    unsigned i, vlNearest *known) {
@@ -155,6 +163,7 @@ static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFil
 
 /* The filter for VL_BITS_PORTABLE, for triangles that need no other filter. */
 static void filter_nearest(const struct RTCFilterFunctionNArguments *args) {
+  if (!query_of(args->context)->nearest) return;
   if (args->N == 1) { /* single rays, as constants: the compiler then knows all offsets */
     if (args->valid[0] == -1 && !is_nearest(args, 1, 0)) args->valid[0] = 0;
     return;
@@ -188,25 +197,36 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
 }
 
+/* Whether the shape's texture lets ray `id` pass at a hit. */
+static __attribute__((noinline)) bool alpha_passes(const Query *q, const vlWorldShape *shape, uint32_t prim,
+                                                   unsigned id, uint32_t inst, const vlShapeHit *hit) {
+  vlLocalRay r = local_ray(q, id, inst);
+  vlSurfacePoint point;
+  vl_shape_point(shape, prim, hit, &point);
+  vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                       vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
+  return vl_alpha_passes(q->world, shape, &r, prim, (float)hit->t, &at);
+}
+
 static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
                      bool shadow, double *t) {
   const Query *q = query_of(context);
-  uint32_t inst = instance_of(q->world, context->instID[0]);
+  uint32_t inst = instance_of(q->world, context->instID[0]), id = *hit_row(ray, n, ID, i);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
   if (shadow && shape->pass_shadow) return false;
-  vlLocalRay r = local_ray(q, *hit_row(ray, n, ID, i), inst);
+  const vlRays *rays = q->rays;
+  double o[3] = {rays->ox[id], rays->oy[id], rays->oz[id]}, d[3] = {rays->dx[id], rays->dy[id], rays->dz[id]};
+  if (inst != VL_NONE) {
+    vlLocalRay r = local_ray(q, id, inst);
+    memcpy(o, r.o, sizeof o);
+    memcpy(d, r.d, sizeof d);
+  }
   double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
   vlShapeHit hit;
-  while (vl_shape_intersect(shape, prim, r.o, r.d, t_min, t_max, &hit)) {
-    if (shape->alpha >= 0) {
-      vlSurfacePoint point;
-      vl_shape_point(shape, prim, &hit, &point);
-      vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
-                           vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-      if (vl_alpha_passes(q->world, shape, &r, prim, (float)hit.t, &at)) {
-        t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
-        continue;
-      }
+  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0 && alpha_passes(q, shape, prim, id, inst, &hit)) {
+      t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
+      continue;
     }
     *t = hit.t;
     return true;
@@ -540,6 +560,9 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
 /* ---- tracing ----------------------------------------------------------------------------------------------------- */
 
 /* Macros that hide the difference between the queries of Embree 3 and 4. */
+/* Camera rays in a packet: as many as fit into the vectors of the widest set without fused multiply-add. */
+enum { PACKET = 8 };
+
 #if VELO_EMBREE_MAJOR >= 4
 #define BEGIN_QUERY(query, r, coherent)                                                               \
   Query query;                                                                                        \
@@ -555,7 +578,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
-#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), (ray), &closest_arguments)
+#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), (ray), &closest_arguments)
 #else
 #define BEGIN_QUERY(query, r, coherent)                                         \
   Query query;                                                                  \
@@ -564,7 +587,7 @@ void vl_accel_destroy(vlContext *context, vlAccel *a) {
   query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
-#define INTERSECT16(valid, scene, ray) rtcIntersect16((valid), (scene), &query.context, (ray))
+#define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), &query.context, (ray))
 #endif
 
 static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsigned inst, uint32_t *shape,
@@ -585,53 +608,66 @@ static bool is_near(const vlRays *r, uint32_t i) {
   return fabsf(r->ox[i]) < 1.8e18f && fabsf(r->oy[i]) < 1.8e18f && fabsf(r->oz[i]) < 1.8e18f;
 }
 
-static void closest_16(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
-                       uint32_t *instance, float *t) {
-  BEGIN_QUERY(query, r, true);
-  vlNearest nearest[16];
-  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = nearest;
-  for (uint32_t first = 0; first < n; first += 16) {
-    query.first = first;
-    for (uint32_t k = 0; k < 16; k++) nearest[k].t = INFINITY;
-    struct RTCRayHit16 q;
-    int valid[16] __attribute__((aligned(64)));
-    for (uint32_t k = 0; k < 16; k++) {
-      uint32_t i = first + k < n ? first + k : n - 1;
-      bool near = is_near(r, i);
-      valid[k] = first + k < n && near ? -1 : 0;
-      q.ray.org_x[k] = r->ox[i], q.ray.org_y[k] = r->oy[i], q.ray.org_z[k] = r->oz[i];
-      q.ray.dir_x[k] = r->dx[i], q.ray.dir_y[k] = r->dy[i], q.ray.dir_z[k] = r->dz[i];
-      q.ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
-      q.ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-      q.ray.time[k] = r->time ? r->time[i] : 0, q.ray.mask[k] = (unsigned)-1, q.ray.id[k] = i, q.ray.flags[k] = 0;
-      if (!near) { /* Embree may check lanes that are not valid; this one hits nothing */
-        q.ray.org_x[k] = q.ray.org_y[k] = q.ray.org_z[k] = 0.0f;
-        q.ray.tnear[k] = q.ray.tfar[k] = INFINITY;
-      }
-      q.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-      q.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+/* Rays first to first + PACKET - 1 as a packet. Lanes past the last ray, and rays too far away, are not valid. */
+static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r, uint32_t first, uint32_t n) {
+  uint32_t at[PACKET];
+  for (uint32_t k = 0; k < PACKET; k++) at[k] = first + k < n ? first + k : n - 1;
+  for (uint32_t k = 0; k < PACKET; k++) {
+    uint32_t i = at[k];
+    valid[k] = first + k < n ? -1 : 0;
+    q->ray.org_x[k] = r->ox[i], q->ray.org_y[k] = r->oy[i], q->ray.org_z[k] = r->oz[i];
+    q->ray.dir_x[k] = r->dx[i], q->ray.dir_y[k] = r->dy[i], q->ray.dir_z[k] = r->dz[i];
+    q->ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
+    q->ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
+    q->ray.time[k] = r->time ? r->time[i] : 0, q->ray.mask[k] = (unsigned)-1, q->ray.id[k] = i, q->ray.flags[k] = 0;
+    q->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    q->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    if (!is_near(r, i)) { /* Embree may check lanes that are not valid; this one hits nothing */
+      valid[k] = 0;
+      q->ray.org_x[k] = q->ray.org_y[k] = q->ray.org_z[k] = 0.0f;
+      q->ray.tnear[k] = q->ray.tfar[k] = INFINITY;
     }
-    INTERSECT16(valid, world->accel.scene, &q);
-    for (uint32_t k = 0; k < 16 && first + k < n; k++) t[first + k] = query.nearest ? nearest[k].t : q.ray.tfar[k];
-    for (uint32_t k = 0; k < 16 && first + k < n; k++)
+  }
+}
+
+static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, uint32_t *shape, uint32_t *prim,
+                            uint32_t *instance, float *t) {
+  BEGIN_QUERY(query, r, true);
+  vlNearest nearest[PACKET];
+  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = nearest;
+  for (uint32_t first = 0; first < n; first += PACKET) {
+    query.first = first;
+    for (uint32_t k = 0; k < PACKET; k++) nearest[k].t = INFINITY;
+    struct RTCRayHit8 q;
+    int valid[PACKET] __attribute__((aligned(32)));
+    fill_packet(&q, valid, r, first, n);
+    INTERSECT8(valid, world->accel.scene, &q);
+    for (uint32_t k = 0; k < PACKET && first + k < n; k++) t[first + k] = query.nearest ? nearest[k].t : q.ray.tfar[k];
+    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
                 &instance[first + k]);
   }
 }
 
-static void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
-  q->org_x = r->ox[i], q->org_y = r->oy[i], q->org_z = r->oz[i];
-  q->dir_x = r->dx[i], q->dir_y = r->dy[i], q->dir_z = r->dz[i];
-  q->tnear = r->t_min ? r->t_min[i] : 0.0f;
+/* Embree loads origin and direction as vectors of four. Stores of the same size reach these loads without waiting for
+ * the cache. */
+typedef float Four __attribute__((vector_size(16)));
+_Static_assert(offsetof(struct RTCRay, dir_x) == sizeof(Four) && offsetof(struct RTCRay, tfar) == 2 * sizeof(Four),
+               "a ray begins with two vectors of four");
+static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
+  Four origin = {r->ox[i], r->oy[i], r->oz[i], r->t_min ? r->t_min[i] : 0.0f};
+  Four direction = {r->dx[i], r->dy[i], r->dz[i], r->time ? r->time[i] : 0.0f};
+  memcpy(&q->org_x, &origin, sizeof origin);
+  memcpy(&q->dir_x, &direction, sizeof direction);
   q->tfar = r->t_max ? r->t_max[i] : INFINITY;
-  q->time = r->time ? r->time[i] : 0, q->mask = (unsigned)-1, q->id = i, q->flags = 0;
+  q->mask = (unsigned)-1, q->id = i, q->flags = 0;
 }
 
 void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                       uint32_t *prim, uint32_t *instance, float *t) {
   if (world->accel.log) world->accel.log(world->accel.log_user, coherent ? 0 : 1, n, rays);
   if (coherent) {
-    closest_16(world, n, rays, shape, prim, instance, t);
+    closest_packets(world, n, rays, shape, prim, instance, t);
     return;
   }
   BEGIN_QUERY(query, rays, false);

@@ -21,9 +21,10 @@
 typedef struct vlNearest {
   float t; /* for triangles Embree's distance, for other shapes velo's; infinity: no hit yet */
   uint32_t instance, geometry, primitive;
-  const vlWorld *world;        /* null: t is velo's own, and the following members are not set */
-  float normal[3], o[3], d[3]; /* normal (not normalised) and ray, in the space of the shape's group */
-  float time;
+  const vlWorld *world; /* null: t is velo's own, and the following members are not set */
+  /* Normal (not normalised) and ray, in the space of the shape's group. The ray has Embree's layout (RTCRay). */
+  float normal[3];
+  float o[3], t_min, d[3], time;
 } vlNearest;
 
 /* Distance along a ray, in units of d, to the plane through `corner` with normal n. The order of operations is that of

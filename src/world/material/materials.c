@@ -307,7 +307,9 @@ vlResult vl_world_add_materials(vlWorld *world, const vlScene *scene, vlError *e
   for (int kind = 0; r == VL_OK && kind < KINDS; kind++)
     for (size_t i = 0; i < world->materials.count; i++)
       if ((int)world->materials.items[i].kind == kind) world->rank[i] = next++;
-  for (size_t i = 0; i < world->materials.count; i++)
+  for (size_t i = 0; i < world->materials.count; i++) {
     world->has_interfaces = world->has_interfaces || world->materials.items[i].kind == VL_MATERIAL_INTERFACE;
+    world->has_mixtures = world->has_mixtures || world->materials.items[i].kind == VL_MATERIAL_MIX;
+  }
   return r;
 }

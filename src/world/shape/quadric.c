@@ -75,6 +75,18 @@ static bool try_root(const Quadric *s, const double o[3], const double d[3], dou
   return true;
 }
 
+/* Whether a ray clearly misses the sphere or cylinder between t_min and t_max: both roots are negative, or both are
+ * beyond t_max, or its distance from the centre or axis is larger than the radius; the latter two by more than rounding
+ * errors. o2: squared distance of its origin; a, half_b, c: the coefficients of the equation for t. It spares most
+ * misses divisions and square roots. */
+static inline bool clearly_misses(double o2, double a, double half_b, double c, double r, double t_min, double t_max) {
+  const double margin = 1e-12; /* several thousand rounding errors */
+  if (c > 0 && half_b >= 0 && t_min >= 0) return true;
+  if (half_b + a * t_max < 0 && (a * t_max + 2 * half_b) * t_max + c > margin * o2) return true;
+  double scale = o2 * a;
+  return scale - half_b * half_b > r * r * a * (1 + 1e-9) + scale * margin;
+}
+
 static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const double go[3], const double gd[3],
                               double t_min, double t_max, vlShapeHit *hit) {
   Quadric quadric = load(shape, prim), *s = &quadric;
@@ -86,7 +98,8 @@ static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const do
   double r = s->radius;
   double a = d[0] * d[0] + d[1] * d[1] + (sphere ? d[2] * d[2] : 0);
   double half_b = o[0] * d[0] + o[1] * d[1] + (sphere ? o[2] * d[2] : 0);
-  if (!(a > 0)) return false;
+  double o2 = o[0] * o[0] + o[1] * o[1] + (sphere ? o[2] * o[2] : 0), c = o2 - r * r;
+  if (!(a > 0) || clearly_misses(o2, a, half_b, c, r, t_min, t_max)) return false;
   /* Computes the discriminant from the vector between the axis (or centre) and the nearest point of the ray (pbrt book
    * 6.8.3), which avoids cancellation. */
   double k = half_b / a, l2 = 0;
@@ -97,7 +110,6 @@ static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const do
   double disc = a * (r - sqrt(l2)) * (r + sqrt(l2));
   if (disc < 0) return false;
   double root = sqrt(disc), q = half_b < 0 ? -half_b + root : -half_b - root;
-  double c = o[0] * o[0] + o[1] * o[1] + (sphere ? o[2] * o[2] : 0) - r * r;
   double t0 = q / a, t1 = q != 0 ? c / q : t0;
   if (t0 > t1) {
     double t = t0;
@@ -107,6 +119,12 @@ static bool quadric_intersect(const vlWorldShape *shape, uint32_t prim, const do
   return try_root(s, o, d, t0, t_min, t_max, hit) || try_root(s, o, d, t1, t_min, t_max, hit);
 }
 
+/* The polar angle of a sphere's limit z. Most limits are poles, for which the compiler computes it. */
+static inline double theta_of(double z, double r) {
+  if (z == -r) return vl_acos(-1.0f);
+  return z == r ? vl_acos(1.0f) : vl_acos(vl_clamp((float)(z / r), -1, 1));
+}
+
 /* Partial derivatives over (u, v) in shape space, and uv. */
 static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu[3], double dpdv[3], float uv[2]) {
   double phi = angle_of(p);
@@ -114,8 +132,7 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
   dpdu[0] = -s->phi_max * p[1], dpdu[1] = s->phi_max * p[0], dpdu[2] = 0;
   if (s->kind == VL_SHAPE_SPHERE) {
     double r = s->radius;
-    double low = vl_acos(vl_clamp((float)(s->z_min / r), -1, 1)),
-           high = vl_acos(vl_clamp((float)(s->z_max / r), -1, 1));
+    double low = theta_of(s->z_min, r), high = theta_of(s->z_max, r);
     double theta = vl_acos(vl_clamp((float)(p[2] / r), -1, 1));
     uv[1] = (float)((theta - low) / (high - low));
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);

@@ -131,19 +131,52 @@ static inline int32_t vl_to_index(float x) { /* floor(x), defined for any float 
   return f == f ? (int32_t)f : 0;
 }
 
+/* The weights of the four texels around a point, and where these texels start in the level. */
+typedef struct vlTexelSquare {
+  float w[4];
+  size_t at[4];
+} vlTexelSquare;
+static inline vlTexel vl_blend_texels(const vlMipmap *mip, const vlMipLevel *l, const vlTexelSquare *q) {
+  vlTexel r = {{0, 0, 0, 0}};
+  if (mip->is_bytes) {
+    const uint8_t *a = l->bytes + q->at[0], *b = l->bytes + q->at[1], *c = l->bytes + q->at[2],
+                  *d = l->bytes + q->at[3];
+    for (uint32_t i = 0; i < mip->channels; i++) {
+      const float *value = mip->decode[i];
+      r.c[i] = q->w[0] * value[a[i]] + q->w[1] * value[b[i]] + q->w[2] * value[c[i]] + q->w[3] * value[d[i]];
+    }
+    return r;
+  }
+  const float *a = l->floats + q->at[0], *b = l->floats + q->at[1], *c = l->floats + q->at[2],
+              *d = l->floats + q->at[3];
+  for (uint32_t i = 0; i < mip->channels; i++)
+    r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
+  return r;
+}
 /* Bilinear lookup in one level. (s, t) = (0, 0) is the top left corner of the image. */
 static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
-  float x = s * (float)mip->levels[level].width - 0.5f, y = t * (float)mip->levels[level].height - 0.5f;
+  const vlMipLevel *l = &mip->levels[level];
+  float x = s * (float)l->width - 0.5f, y = t * (float)l->height - 0.5f;
   int32_t xi = vl_to_index(x), yi = vl_to_index(y);
   float dx = x - (float)xi, dy = y - (float)yi;
+  const float w[4] = {(1 - dx) * (1 - dy), dx * (1 - dy), (1 - dx) * dy, dx * dy};
+  if (wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f) {
+    int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_index(xi + 1, (int32_t)l->width, wrap);
+    int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_index(yi + 1, (int32_t)l->height, wrap_t);
+    if ((x0 | x1 | y0 | y1) >= 0) { /* no texel is outside */
+      size_t n = mip->channels, row0 = (size_t)y0 * l->width, row1 = (size_t)y1 * l->width;
+      vlTexelSquare q = {
+          {w[0], w[1], w[2], w[3]},
+          {(row0 + (size_t)x0) * n, (row0 + (size_t)x1) * n, (row1 + (size_t)x0) * n, (row1 + (size_t)x1) * n}};
+      return vl_blend_texels(mip, l, &q);
+    }
+  }
   vlTexel a = vl_texel_2(mip, level, xi, yi, wrap, wrap_t), b = vl_texel_2(mip, level, xi + 1, yi, wrap, wrap_t);
   vlTexel c = vl_texel_2(mip, level, xi, yi + 1, wrap, wrap_t),
           d = vl_texel_2(mip, level, xi + 1, yi + 1, wrap, wrap_t), r;
-  for (int i = 0; i < 4; i++)
-    r.c[i] = (1 - dx) * (1 - dy) * a.c[i] + dx * (1 - dy) * b.c[i] + (1 - dx) * dy * c.c[i] + dx * dy * d.c[i];
+  for (int i = 0; i < 4; i++) r.c[i] = w[0] * a.c[i] + w[1] * b.c[i] + w[2] * c.c[i] + w[3] * d.c[i];
   return r;
 }
-
 static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
   return vl_bilinear_2(mip, level, s, t, wrap, wrap);
 }

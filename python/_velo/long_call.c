@@ -33,6 +33,7 @@ struct Waiting {
 static Waiting *running;
 static long running_pid;
 static bool shutting_down;
+static pthread_t shutter; /* the thread that ends the interpreter; only if shutting_down */
 
 /* ---- the thread of the call -------------------------------------------------------------------------------------- */
 
@@ -150,6 +151,16 @@ bool long_call_begin(LongCall *call, const Context *context, PyObject *callback)
   return result == VL_OK;
 }
 
+/* The interpreter ends, and this is not the thread that ends it, so it never runs Python again: it waits for the end of
+ * the process, as Python's own threads do. An exception would be printed, and Python aborts when a thread prints then.
+ */
+static void wait_for_the_end(void) {
+  if (pthread_equal(pthread_self(), shutter)) return;
+  Py_BEGIN_ALLOW_THREADS;
+  for (;;) pause();
+  Py_END_ALLOW_THREADS;
+}
+
 bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult *result) {
   Waiting w = {.call = c, .body = body, .user = user};
   pthread_t thread;
@@ -157,6 +168,7 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   *result = VL_ERROR_MEMORY;
   c->waiting = &w;
   if (running_pid != (long)getpid()) running = NULL, running_pid = (long)getpid();
+  if (shutting_down) wait_for_the_end();
   if (shutting_down) return raise_usage("the interpreter is shutting down"), false;
   w.next = running;
   running = &w;
@@ -174,6 +186,7 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   }
   sem_destroy(&w.wake);
   sem_destroy(&w.answered);
+  if (shutting_down) wait_for_the_end();
   *result = w.result;
   if (!started) raise_result(VL_ERROR_MEMORY, NULL);
   return !PyErr_Occurred();
@@ -187,6 +200,7 @@ void long_call_end(LongCall *call) {
 PyObject *shut_down(PyObject *module, PyObject *unused) {
   (void)module, (void)unused;
   const int MOST = 5000; /* ms */
+  shutter = pthread_self();
   shutting_down = true;
   if (running_pid != (long)getpid()) running = NULL;
   for (int i = 0; running && i < MOST; i++) {

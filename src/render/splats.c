@@ -14,21 +14,36 @@ static void add(vlSplatSum *sum, float value) {
   if (high) atomic_fetch_add_explicit(&sum->high, high, memory_order_relaxed);
 }
 
+/* The pixels along one axis whose filter covers a film point, from the crop window's edge, and the filter's values. */
+typedef struct Taps {
+  uint32_t first, count;
+  double value[2 * VL_FILTER_RADIUS_MAX + 1];
+} Taps;
+
+static void find_taps(const vlSplats *s, int axis, float at, uint32_t edge, uint32_t size, Taps *taps) {
+  const vlPixelFilter *f = s->filter;
+  double x = at, radius = axis ? f->radius_y : f->radius_x;
+  int32_t first = (int32_t)floor(x - 0.5 - radius) + 1, low = (int32_t)edge, high = (int32_t)(edge + size);
+  if (first < low) first = low;
+  taps->first = (uint32_t)(first - low);
+  taps->count = 0;
+  for (int32_t p = first; p < high && p + 0.5 <= x + radius; p++)
+    taps->value[taps->count++] = vl_filter_value(f, axis, x - p - 0.5);
+}
+
 bool vl_splats_add(vlSplats *s, float x, float y, const float color[3]) {
   float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2])));
   float sum = color[0] + color[1] + color[2];
   if (!(most < 0x1p35f && sum == sum)) return false;
-  const vlPixelFilter *f = s->filter;
-  int32_t first_x = (int32_t)floor((double)x - 0.5 - (double)f->radius_x) + 1;
-  int32_t first_y = (int32_t)floor((double)y - 0.5 - (double)f->radius_y) + 1;
-  for (int32_t py = first_y; (double)py + 0.5 <= (double)y + (double)f->radius_y; py++) {
-    if (py < (int32_t)s->y0 || py >= (int32_t)(s->y0 + s->height)) continue;
-    double wy = vl_filter_value(f, 1, (double)y - (double)py - 0.5) * s->scale[1];
-    for (int32_t px = first_x; (double)px + 0.5 <= (double)x + (double)f->radius_x; px++) {
-      if (px < (int32_t)s->x0 || px >= (int32_t)(s->x0 + s->width)) continue;
-      double w = wy * vl_filter_value(f, 0, (double)x - (double)px - 0.5) * s->scale[0];
-      vlSplat *to = &s->pixels[(size_t)(py - (int32_t)s->y0) * s->width + (size_t)(px - (int32_t)s->x0)];
-      for (int c = 0; c < 3; c++) add(&to->color[c], (float)(w * (double)color[c]));
+  Taps across, down;
+  find_taps(s, 0, x, s->x0, s->width, &across);
+  find_taps(s, 1, y, s->y0, s->height, &down);
+  for (uint32_t j = 0; j < down.count; j++) {
+    vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
+    double wy = down.value[j] * s->scale[1];
+    for (uint32_t i = 0; i < across.count; i++) {
+      double w = wy * across.value[i] * s->scale[0];
+      for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(w * (double)color[c]));
     }
   }
   return true;

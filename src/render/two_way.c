@@ -57,8 +57,8 @@ struct vlTwoWayRun {
   uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of their own sampler */
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
-  vlLightVertex *vertices; /* the pass's vertices, in any order */
-  uint32_t *order, *counts, vertex_capacity;
+  vlLightVertex *vertices, *sorted_vertices; /* the pass's vertices, in any order and sorted */
+  uint32_t *counts, vertex_capacity;
   atomic_uint_least64_t left;
   atomic_uint_least64_t stored;
   vlStop *stop;
@@ -134,38 +134,36 @@ static void leave(void *user, uint32_t n, const vlLightVertex *vertices) {
   if (at + n <= run->vertex_capacity) memcpy(run->vertices + at, vertices, n * sizeof *vertices);
 }
 
-/* Lists the pass's vertices by group, path and bounce. A counting sort by path; the few vertices of a path are then
+/* Sorts the pass's vertices by group, path and bounce. A counting sort by path; the few vertices of a path are then
  * sorted by bounce. */
-static void order_vertices(vlTwoWayRun *run, uint32_t count) {
+static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
   vlLightVertices *inner = &run->way.inner;
+  vlLightVertex *sorted = run->sorted_vertices;
   uint32_t *start = run->counts, paths = inner->paths, groups = inner->groups, each = paths / groups;
   memset(start, 0, ((size_t)paths + 1) * sizeof *start);
 #define PLACE(X) ((X)->path % groups * each + (X)->path / groups)
   for (uint32_t i = 0; i < count; i++) start[PLACE(&run->vertices[i]) + 1]++;
   for (uint32_t i = 0; i < paths; i++) start[i + 1] += start[i];
   for (uint32_t g = 0; g <= groups; g++) inner->start[g] = start[g * each];
-  for (uint32_t i = 0; i < count; i++) run->order[start[PLACE(&run->vertices[i])]++] = i;
+  for (uint32_t i = 0; i < count; i++) sorted[start[PLACE(&run->vertices[i])]++] = run->vertices[i];
 #undef PLACE
   for (uint32_t k = 1; k < count; k++) {
-    uint32_t moving = run->order[k], at = k;
-    const vlLightVertex *x = &run->vertices[moving];
-    for (; at > 0; at--) {
-      const vlLightVertex *y = &run->vertices[run->order[at - 1]];
-      if (y->path != x->path || y->bounce < x->bounce) break;
-      run->order[at] = run->order[at - 1];
-    }
-    run->order[at] = moving;
+    vlLightVertex moving = sorted[k];
+    uint32_t at = k;
+    for (; at > 0 && sorted[at - 1].path == moving.path && sorted[at - 1].bounce > moving.bounce; at--)
+      sorted[at] = sorted[at - 1];
+    if (at != k) sorted[at] = moving;
   }
-  inner->vertices = run->vertices, inner->order = run->order;
+  inner->vertices = sorted;
 }
 
 static vlResult grow_vertices(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   uint64_t capacity = wanted + wanted / 4;
   vl_free(run->context, run->vertices);
-  vl_free(run->context, run->order);
+  vl_free(run->context, run->sorted_vertices);
   run->vertices = vl_alloc_array(run->context, capacity, sizeof *run->vertices);
-  run->order = vl_alloc_array(run->context, capacity, sizeof *run->order);
-  bool good = run->vertices && run->order;
+  run->sorted_vertices = vl_alloc_array(run->context, capacity, sizeof *run->sorted_vertices);
+  bool good = run->vertices && run->sorted_vertices;
   run->vertex_capacity = good ? (uint32_t)capacity : 0;
   return good ? VL_OK : vl_fail_memory(error);
 }
@@ -300,7 +298,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
       if (result != VL_OK) return result;
       continue;
     }
-    if (way->inner.paths) order_vertices(run, (uint32_t)left);
+    if (way->inner.paths) sort_vertices(run, (uint32_t)left);
     if (!way->merge) return VL_OK;
     if (stored <= run->capacity) {
       vl_photon_map_build(&way->map, run->photons, (uint32_t)stored, sqrtf(way->map.radius2), run->sorted, run->start,
@@ -446,7 +444,7 @@ void vl_two_way_destroy(vlTwoWayRun *run) {
   vl_free(context, run->sorted);
   vl_free(context, run->start);
   vl_free(context, run->vertices);
-  vl_free(context, run->order);
+  vl_free(context, run->sorted_vertices);
   vl_free(context, run->counts);
   vl_free(context, run);
 }

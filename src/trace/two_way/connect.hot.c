@@ -43,55 +43,87 @@ static End end_of(const vlTracing *t, uint32_t i, uint32_t depth) {
   return e;
 }
 
-/* What the connection would contribute if it were visible, up to a constant factor. */
-static float worth_of(const vlTwoWay *way, const End *e, const vlLightVertex *x) {
-  if (x->bounce > e->room) return 0.0f;
-  vlVec3 to = vl_vec3(x->p[0] - e->p.x, x->p[1] - e->p.y, x->p[2] - e->p.z);
-  float d2 = vl_length2(to);
-  if (!(d2 > 0.0f)) return 0.0f;
-  float inv2 = 1.0f / d2, inv = __builtin_sqrtf(inv2);
-  float here = vl_dot(e->n, to) * inv, there = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), to) * inv;
-  float flat_here = vl_abs(vl_dot(e->g, to)) * inv,
-        flat_there = vl_abs(vl_dot(vl_vec3(x->g[0], x->g[1], x->g[2]), to)) * inv;
-  here = e->diffuse ? here : vl_max(vl_abs(here), 0.01f);
-  if (!(here > 0.0f) || !(there > 0.0f)) return 0.0f;
-  float power = 0.0f;
-  for (int c = 0; c < 4; c++) power += e->tint[c] * x->power[c];
-  float others = (e->ways * there * flat_here + x->back * here * flat_there) * VL_INV_PI;
-  return power * here * flat_there / (way->connect * d2 + others);
-}
-
-/* Chooses a vertex for lane i. Returns its index, or VL_NONE. *factor: 1 / (its probability * light paths). */
-static uint32_t choose(const vlTracing *t, uint32_t i, uint32_t depth, float *factor) {
-  const vlTwoWay *way = t->def->two_way;
-  const vlLightVertices *inner = &way->inner;
-  const vlPaths *p = &t->s->b;
-  uint32_t group = t->batch->two_way->group[p->lane[i]], first = inner->start[group];
-  uint32_t count = inner->start[group + 1] - first, chosen = VL_NONE;
-  if (count == 0 || vl_all_specular(t->world, t->s, i)) return VL_NONE;
-  uint32_t seed = vl_hash3((uint32_t)p->px[i] ^ t->def->sampler->seed, (uint32_t)p->py[i], p->index[i]);
-  seed = vl_hash2(seed, depth);
-  End e = end_of(t, i, depth);
-  uint32_t at[CANDIDATES];
+/* Draws lane i's candidates, one from each of CANDIDATES equal parts of its group's vertices, and prefetches them.
+ * False: the lane does not connect. */
+static bool draw(const vlTracing *t, uint32_t i, uint32_t seed, uint32_t at[CANDIDATES]) {
+  const vlLightVertices *inner = &t->def->two_way->inner;
+  uint32_t group = t->batch->two_way->group[t->s->b.lane[i]], first = inner->start[group];
+  uint32_t count = inner->start[group + 1] - first;
+  if (count == 0 || vl_all_specular(t->world, t->s, i)) return false;
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     float u = ((float)k + vl_unit_float(vl_hash(seed + 1 + k))) * (1.0f / CANDIDATES);
     uint32_t place = (uint32_t)(u * (float)count);
-    at[k] = inner->order[first + (place < count ? place : count - 1)];
+    at[k] = first + (place < count ? place : count - 1);
     __builtin_prefetch(&inner->vertices[at[k]]);
   }
-  float u = vl_unit_float(vl_hash(seed)), sum = 0.0f, kept = 0.0f;
+  return true;
+}
+
+/* What the connections to the candidates would contribute if they were visible, up to a common factor. */
+static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDIDATES], float worth[CANDIDATES]) {
+  _Alignas(64) float p[3][CANDIDATES], g[3][CANDIDATES], n[3][CANDIDATES], power[4][CANDIDATES];
+  _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
   for (uint32_t k = 0; k < CANDIDATES; k++) {
-    float worth = worth_of(way, &e, &inner->vertices[at[k]]);
-    if (!(worth > 0.0f) || !(worth < VL_INFINITY)) continue;
-    sum += worth;
-    float share = worth / sum;
+    const vlLightVertex *x = &way->inner.vertices[at[k]];
+    for (int j = 0; j < 3; j++) p[j][k] = x->p[j], g[j][k] = x->g[j], n[j][k] = x->n[j];
+    for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
+    back[k] = x->back, near[k] = x->bounce > e->room ? 0.0f : 1.0f;
+  }
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t k = 0; k < CANDIDATES; k++) {
+    vlVec3 to = vl_vec3(p[0][k] - e->p.x, p[1][k] - e->p.y, p[2][k] - e->p.z);
+    float d2 = vl_length2(to), inv2 = 1.0f / d2, inv = __builtin_sqrtf(inv2);
+    float here = vl_dot(e->n, to) * inv, there = -vl_dot(vl_vec3(n[0][k], n[1][k], n[2][k]), to) * inv;
+    float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
+    float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
+    here = e->diffuse ? here : vl_max(vl_abs(here), 0.01f);
+    float sum = e->tint[0] * power[0][k] + e->tint[1] * power[1][k] + e->tint[2] * power[2][k];
+    sum += e->tint[3] * power[3][k];
+    float others = (e->ways * there * flat_here + back[k] * here * flat_there) * VL_INV_PI;
+    float w = sum * here * flat_there / (way->connect * d2 + others);
+    int good = (near[k] > 0.0f) & (d2 > 0.0f) & (here > 0.0f) & (there > 0.0f) & (w > 0.0f) & (w < VL_INFINITY);
+    worth[k] = good ? w : 0.0f;
+  }
+}
+
+/* Chooses one of lane i's candidates. Returns its index, or VL_NONE. *factor: 1 / (its probability * light paths). */
+static uint32_t choose(const vlTracing *t, uint32_t i, uint32_t depth, uint32_t seed, const uint32_t at[CANDIDATES],
+                       float *factor) {
+  const vlTwoWay *way = t->def->two_way;
+  const vlLightVertices *inner = &way->inner;
+  End e = end_of(t, i, depth);
+  float worth[CANDIDATES], u = vl_unit_float(vl_hash(seed)), sum = 0.0f, kept = 0.0f;
+  uint32_t chosen = VL_NONE, group = t->batch->two_way->group[t->s->b.lane[i]];
+  worths_of(way, &e, at, worth);
+  for (uint32_t k = 0; k < CANDIDATES; k++) {
+    if (!(worth[k] > 0.0f)) continue;
+    sum += worth[k];
+    float share = worth[k] / sum;
     bool take = u < share;
     u = take ? u / share : (u - share) / (1.0f - share);
-    if (take) chosen = at[k], kept = worth;
+    if (take) chosen = at[k], kept = worth[k];
   }
-  float paths = (float)(inner->paths / inner->groups);
-  if (chosen != VL_NONE) *factor = sum / (kept * CANDIDATES) * (float)count / paths;
+  float paths = (float)(inner->paths / inner->groups), count = (float)(inner->start[group + 1] - inner->start[group]);
+  if (chosen != VL_NONE) *factor = sum / (kept * CANDIDATES) * count / paths;
   return chosen;
+}
+
+/* Chooses a vertex for each of n lanes, or VL_NONE. Candidates are drawn some lanes ahead of their use, since most of
+ * them are not in the cache. */
+static void choose_all(vlTracing *t, uint32_t n, uint32_t depth, uint32_t *chosen, float *factor) {
+  enum { AHEAD = 8 };
+  uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
+  bool drawn[AHEAD];
+  const vlPaths *p = &t->s->b;
+  for (uint32_t k = 0; k < n + AHEAD; k++) {
+    uint32_t slot = k % AHEAD, i = k - AHEAD;
+    if (k >= AHEAD) chosen[i] = drawn[slot] ? choose(t, i, depth, seed[slot], at[slot], &factor[i]) : VL_NONE;
+    if (k >= n) continue;
+    seed[slot] = vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
+    seed[slot] = vl_hash2(seed[slot], depth);
+    drawn[slot] = draw(t, k, seed[slot], at[slot]);
+  }
 }
 
 /* Adds lane i's connection to x as shadow ray `count`. */
@@ -128,8 +160,8 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7], *factor = s->rows[8];
   if (depth + 2 > t->def->max_depth) return;
   uint32_t found = 0;
+  choose_all(t, n, depth, r->first, factor);
   for (uint32_t i = 0; i < n; i++) {
-    r->first[i] = choose(t, i, depth, &factor[i]);
     vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
     if (r->first[i] != VL_NONE) {
       const float *p = inner->vertices[r->first[i]].p;

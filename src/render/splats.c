@@ -14,39 +14,85 @@ static void add(vlSplatSum *sum, float value) {
   if (high) atomic_fetch_add_explicit(&sum->high, high, memory_order_relaxed);
 }
 
-/* The pixels along one axis whose filter covers a film point, from the crop window's edge, and the filter's values. */
-typedef struct Taps {
-  uint32_t first, count;
-  double value[2 * VL_FILTER_RADIUS_MAX + 1];
-} Taps;
+/* ---- the filter -------------------------------------------------------------------------------------------------- */
 
-static void find_taps(const vlSplats *s, int axis, float at, uint32_t edge, uint32_t size, Taps *taps) {
-  const vlPixelFilter *f = s->filter;
-  double x = at, radius = axis ? f->radius_y : f->radius_x;
-  int32_t first = (int32_t)floor(x - 0.5 - radius) + 1, low = (int32_t)edge, high = (int32_t)(edge + size);
-  if (first < low) first = low;
-  taps->first = (uint32_t)(first - low);
-  taps->count = 0;
-  for (int32_t p = first; p < high && p + 0.5 <= x + radius; p++)
-    taps->value[taps->count++] = vl_filter_value(f, axis, x - p - 0.5);
+enum { STEPS = 1024 }; /* of the filter's table, per pixel: linear interpolation is exact to 1e-6 */
+
+static uint32_t table_size(const vlPixelFilter *f, int axis) {
+  return (uint32_t)ceilf(axis ? f->radius_y : f->radius_x) * STEPS + 2;
 }
 
-bool vl_splats_add(vlSplats *s, float x, float y, const float color[3]) {
+static vlResult make_table(vlContext *context, vlSplats *s, int axis) {
+  const vlPixelFilter *f = s->filter;
+  uint32_t n = table_size(f, axis);
+  double radius = axis ? f->radius_y : f->radius_x, step = radius / (n - 2), sum = 0;
+  s->values[axis] = vl_alloc_array(context, n, sizeof *s->values[axis]);
+  if (!s->values[axis]) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < n; i++) s->values[axis][i] = vl_filter_value(f, axis, fmin(i * step, radius));
+  for (uint32_t i = 0; i + 2 < n; i++) sum += vl_filter_value(f, axis, (i + 0.5) * step);
+  for (uint32_t i = 0; i < n; i++) s->values[axis][i] /= 2 * sum * step;
+  s->per_step[axis] = 1 / step;
+  return VL_OK;
+}
+
+static double filter_at(const vlSplats *s, int axis, double x) {
+  double at = fabs(x) * s->per_step[axis];
+  uint32_t k = (uint32_t)at;
+  const double *v = s->values[axis] + k;
+  return v[0] + (at - k) * (v[1] - v[0]);
+}
+
+/* ---- adding ------------------------------------------------------------------------------------------------------ */
+
+/* The pixels of the crop window, along one axis and from its edge, whose filter covers a film point. */
+typedef struct Taps {
+  uint32_t first, count;
+} Taps;
+
+static Taps find_taps(const vlSplats *s, int axis, float at) {
+  double x = at, radius = axis ? s->filter->radius_y : s->filter->radius_x;
+  int32_t low = (int32_t)(axis ? s->y0 : s->x0), high = low + (int32_t)(axis ? s->height : s->width);
+  int32_t first = (int32_t)floor(x - 0.5 - radius) + 1, last = (int32_t)floor(x - 0.5 + radius);
+  if (first < low) first = low;
+  if (last >= high) last = high - 1;
+  return (Taps){(uint32_t)(first - low), last < first ? 0 : (uint32_t)(last - first + 1)};
+}
+
+/* Adds one color. */
+static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
   float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2])));
   float sum = color[0] + color[1] + color[2];
   if (!(most < 0x1p35f && sum == sum)) return false;
-  Taps across, down;
-  find_taps(s, 0, x, s->x0, s->width, &across);
-  find_taps(s, 1, y, s->y0, s->height, &down);
+  Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
+  double value[2 * VL_FILTER_RADIUS_MAX + 1];
+  for (uint32_t i = 0; i < across.count; i++) value[i] = filter_at(s, 0, (double)x - (s->x0 + across.first + i) - 0.5);
   for (uint32_t j = 0; j < down.count; j++) {
     vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
-    double wy = down.value[j] * s->scale[1];
-    for (uint32_t i = 0; i < across.count; i++) {
-      double w = wy * across.value[i] * s->scale[0];
-      for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(w * (double)color[c]));
-    }
+    double wy = filter_at(s, 1, (double)y - (s->y0 + down.first + j) - 0.5);
+    for (uint32_t i = 0; i < across.count; i++)
+      for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(wy * value[i] * (double)color[c]));
   }
   return true;
+}
+
+/* The pixels of a pass's splats are anywhere in the image, so most are not in the cache. */
+static void prefetch(const vlSplats *s, float x, float y) {
+  Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
+  if (!across.count) return;
+  for (uint32_t j = 0; j < down.count; j++) {
+    const vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
+    for (uint32_t i = 0; i < across.count; i++) __builtin_prefetch(row + i, 1);
+  }
+}
+
+uint32_t vl_splats_add(vlSplats *s, uint32_t n, const float *x, const float *y, float *const color[3]) {
+  enum { AHEAD = 4 };
+  uint32_t bad = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    if (i + AHEAD < n) prefetch(s, x[i + AHEAD], y[i + AHEAD]);
+    bad += !add_one(s, x[i], y[i], (const float[3]){color[0][i], color[1][i], color[2][i]});
+  }
+  return bad;
 }
 
 void vl_splats_take(vlSplats *s, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,
@@ -70,24 +116,19 @@ void vl_splats_clear(vlSplats *s) {
   memset((void *)s->pixels, 0, (size_t)s->width * s->height * sizeof *s->pixels);
 }
 
-static double filter_integral(const vlPixelFilter *f, int axis) {
-  enum { STEPS = 4096 };
-  double radius = (double)(axis ? f->radius_y : f->radius_x), sum = 0;
-  for (int i = 0; i < STEPS; i++) sum += vl_filter_value(f, axis, (i + 0.5) / STEPS * radius);
-  return 2 * radius * sum / STEPS;
-}
-
 vlResult vl_splats_make(vlContext *context, const vlFilmDef *film, vlSplats *s) {
   memset(s, 0, sizeof *s);
   s->x0 = film->crop[0], s->y0 = film->crop[1];
   s->width = film->crop[2] - film->crop[0], s->height = film->crop[3] - film->crop[1];
   s->filter = &film->filter;
-  for (int i = 0; i < 2; i++) s->scale[i] = 1 / filter_integral(&film->filter, i);
+  for (int i = 0; i < 2; i++)
+    if (make_table(context, s, i) != VL_OK) return VL_ERROR_MEMORY;
   s->pixels = vl_alloc_zero(context, (size_t)s->width * s->height, sizeof *s->pixels);
   return s->pixels ? VL_OK : VL_ERROR_MEMORY;
 }
 
 void vl_splats_free(vlContext *context, vlSplats *s) {
+  for (int i = 0; i < 2; i++) vl_free(context, s->values[i]);
   vl_free(context, s->pixels);
-  s->pixels = NULL;
+  *s = (vlSplats){0};
 }

@@ -20,15 +20,16 @@ typedef struct vlSplats {
   vlSplat *pixels; /* by pixel of the crop window */
   uint32_t x0, y0, width, height;
   const vlPixelFilter *filter;
-  double scale[2]; /* makes the filter's integral 1 */
+  double *values[2], per_step[2]; /* along x and y: the filter at equal steps from 0 to its radius, scaled to an
+                                     integral of 1; steps per pixel */
 } vlSplats;
 
 /* film must outlive the splats. Error: MEMORY. */
 vlResult vl_splats_make(vlContext *context, const vlFilmDef *film, vlSplats *splats);
 void vl_splats_free(vlContext *context, vlSplats *splats);
-/* Adds the color, times the filter, to all pixels whose filter covers the film point x, y (pixels). Any thread. False:
- * the color is not finite. */
-bool vl_splats_add(vlSplats *splats, float x, float y, const float color[3]);
+/* Adds n colors, times the filter, to all pixels whose filter covers the film points x, y (pixels). Any thread. Returns
+ * how many of the colors are not finite; these are left out. */
+uint32_t vl_splats_add(vlSplats *splats, uint32_t n, const float *x, const float *y, float *const color[3]);
 /* Moves the sums of n pixels to their samples, whose filter weights are `weight`, and clears the sums. To be called
  * once per pixel and pass, on any thread. */
 void vl_splats_take(vlSplats *splats, uint32_t n, const int32_t *px, const int32_t *py, const float *weight, float *r,

@@ -103,10 +103,7 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, float 
     expose.inv_pdf[c] = rgb ? NULL : inv_pdf[c];
   }
   vl_film_expose(run->film, run->trace.isa, &expose, w->color[0], w->color[1], w->color[2]);
-  for (uint32_t i = 0; i < n; i++) {
-    const float color[3] = {w->color[0][i], w->color[1][i], w->color[2][i]};
-    w->not_finite += !vl_splats_add(&run->splats, x[i], y[i], color);
-  }
+  w->not_finite += vl_splats_add(&run->splats, n, x, y, (float *const[3]){w->color[0], w->color[1], w->color[2]});
 }
 
 void vl_two_way_drop_splats(vlTwoWayRun *run) {

@@ -69,7 +69,8 @@ static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDI
     for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
     back[k] = x->back, near[k] = x->bounce > e->room ? 0.0f : 1.0f;
   }
-  /* must vectorise */
+  int diffuse = e->diffuse;
+  /* one vector of 8 */
   VL_SIMD
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     vlVec3 to = vl_vec3(p[0][k] - e->p.x, p[1][k] - e->p.y, p[2][k] - e->p.z);
@@ -77,7 +78,8 @@ static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDI
     float here = vl_dot(e->n, to) * inv, there = -vl_dot(vl_vec3(n[0][k], n[1][k], n[2][k]), to) * inv;
     float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
     float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
-    here = e->diffuse ? here : vl_max(vl_abs(here), 0.01f);
+    float bent = vl_max(vl_abs(here), 0.01f);
+    here = diffuse ? here : bent;
     float sum = e->tint[0] * power[0][k] + e->tint[1] * power[1][k] + e->tint[2] * power[2][k];
     sum += e->tint[3] * power[3][k];
     float others = (e->ways * there * flat_here + back[k] * here * flat_there) * VL_INV_PI;

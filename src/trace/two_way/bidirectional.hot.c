@@ -32,10 +32,16 @@ static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHi
   add_radiance(t, p, i, met->radiance, weight);
 }
 
-static void add_sky(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
-  for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-    vlHitLight met = vl_hit_infinite(t->world, p, i, k);
-    add_hit_light(t, p, i, &met, VL_INFINITY, NULL, first);
+/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
+static void add_sky(vlTracing *t, const vlPaths *p, const uint32_t *lanes, uint32_t count, bool first) {
+  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
+    vlSkyHits sky;
+    vl_hit_sky(t->world, p, lanes, count, k, &sky);
+    for (uint32_t j = 0; j < count; j++) {
+      vlHitLight met = {.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[j]};
+      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][j];
+      add_hit_light(t, p, lanes[j], &met, VL_INFINITY, NULL, first);
+    }
   }
 }
 
@@ -47,14 +53,20 @@ static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first)
 /* first: no other strategy competes, as for camera rays. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
+  uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = t->s->volume.event[i];
     if (vl_has_media(t) && event != VL_IN_SKY && event != VL_ON_SURFACE) continue;
     if (h->shape[i] == VL_NONE)
-      add_sky(t, &t->s->a, i, first);
+      missed[count++] = i;
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
       add_emission(t, &t->s->a, i, first);
+    if (count == VL_SKY_BLOCK) {
+      add_sky(t, &t->s->a, missed, count, first);
+      count = 0;
+    }
   }
+  add_sky(t, &t->s->a, missed, count, first);
 }
 
 /* ---- one vertex -------------------------------------------------------------------------------------------------- */

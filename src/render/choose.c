@@ -23,7 +23,8 @@ enum {
   BLOCK = 4,
   AROUND = 2, /* pixels on each side */
   QUARTER = 4,
-  MOST_LIGHT_PATHS = 1 << 20
+  MOST_LIGHT_PATHS = 1 << 20,
+  FEW_FACES = 4096
 };
 static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a biased one below that of the
@@ -35,15 +36,16 @@ static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
 typedef struct Row {
   vlTracer tracer;
   uint32_t divisor; /* pixels per light path; 0: no light paths */
-  double ray;       /* mean time of a ray, relative to a ray of VL_TRACER_VOLPATH: geometric means over 12 scenes
-                       (docs/performance.md) */
+  double ray[2];    /* mean time of a ray, relative to a ray of VL_TRACER_VOLPATH, in worlds of more and of fewer than
+                       FEW_FACES: geometric means over 13 scenes (docs/performance.md). Rays are cheap in small worlds, and
+                       the rest of the work counts more. */
   double path; /* expected cost of a sample, relative to a sample of VL_TRACER_VOLPATH; for the length of the race */
 } Row;
 static const Row rows[VL_MOST_TRIALS] = {
-    {VL_TRACER_VOLPATH, 0, 1.0, 1.0},
-    {VL_TRACER_BIDIRECTIONAL, 1, 1.25, 3.0},
-    {VL_TRACER_BIDIRECTIONAL, QUARTER, 1.25, 2.0},
-    {VL_TRACER_MERGING, 1, 1.25, 4.0},
+    {VL_TRACER_VOLPATH, 0, {1.0, 1.0}, 1.0},
+    {VL_TRACER_BIDIRECTIONAL, 1, {1.2, 1.4}, 3.0},
+    {VL_TRACER_BIDIRECTIONAL, QUARTER, {1.2, 1.4}, 2.0},
+    {VL_TRACER_MERGING, 1, {1.2, 1.4}, 4.0},
 };
 static const double PHOTON = 0.015; /* time of one unit of vlTraceBatch.merge_work, relative to a ray */
 
@@ -54,6 +56,7 @@ typedef struct Race {
   vlRenderDef def;
   uint32_t factor; /* of the coarse images */
   uint32_t count;
+  bool small; /* the world has few faces */
   vlImage *images[VL_MOST_TRIALS][2];
   size_t pixels;
   double *base; /* by pixel and channel: what a relative error is relative to */
@@ -68,6 +71,12 @@ static bool has_smooth(const vlWorld *world) {
   for (size_t i = 0; i < world->materials.count; i++)
     if (world->materials.items[i].smooth != VL_SMOOTH_NEVER || world->materials.items[i].principled) return true;
   return false;
+}
+
+static bool has_few_faces(const vlWorld *world) {
+  uint64_t faces = 0;
+  for (size_t i = 0; i < world->shapes.count; i++) faces += world->shapes.items[i].faces;
+  return faces < FEW_FACES;
 }
 
 /* Chooses the number of samples and the size of the coarse images. False: the race would be too short. */
@@ -103,7 +112,7 @@ static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *t
   if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");
   result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, &stats, error);
   if (result == VL_OK) {
-    trial->cost += rows[i].ray * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
+    trial->cost += rows[i].ray[race->small] * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
     trial->cost += PHOTON * (double)pilot.merge_work;
     if (vl_film_develop(film, NULL, &race->images[i][half]) != VL_OK) result = vl_fail_memory(error);
   }
@@ -279,8 +288,10 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   memset(choice, 0, sizeof *choice);
   choice->tracer = VL_TRACER_VOLPATH;
   choice->light_paths = def->light_paths;
-  Race race = {
-      .world = world, .def = *def, .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
+  Race race = {.world = world,
+               .def = *def,
+               .small = has_few_faces(world),
+               .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
   uint32_t spp = def->spp;
   if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;
   vlFilmDef whole = *film;

@@ -11,12 +11,12 @@ vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *f, int ax
   double radius = axis ? f->radius_y : f->radius_x, sum = 0;
   uint32_t steps = (uint32_t)ceil(radius) * VL_FILTER_STEPS;
   double step = radius / steps;
-  *curve = (vlFilterCurve){.radius = radius, .per_step = 1 / step};
+  *curve = (vlFilterCurve){.steps = steps, .per_step = 1 / step};
   curve->values = vl_alloc_array(context, (size_t)steps + 2, sizeof *curve->values);
   if (!curve->values) return VL_ERROR_MEMORY;
   for (uint32_t i = 0; i < steps; i++) sum += vl_filter_value(f, axis, (i + 0.5) * step);
   for (uint32_t i = 0; i < steps + 2; i++)
-    curve->values[i] = (float)(vl_filter_value(f, axis, fmin(i * step, radius)) / (2 * sum * step));
+    curve->values[i] = vl_filter_value(f, axis, fmin(i * step, radius)) / (2 * sum * step);
   return VL_OK;
 }
 
@@ -46,9 +46,9 @@ void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y) {
   for (int c = 0; c < 4; c++) g->color[c][at] = color[c];
   for (uint32_t k = 0; k <= 2 * r->border[0]; k++)
-    g->x[k][at] = vl_filter_curve_at(&r->curve[0], x - 0.5f - ((float)k - (float)r->border[0]));
+    g->x[k][at] = (float)vl_filter_curve_at(&r->curve[0], (double)x - 0.5 - ((double)k - r->border[0]));
   for (uint32_t k = 0; k <= 2 * r->border[1]; k++)
-    g->y[k][at] = vl_filter_curve_at(&r->curve[1], y - 0.5f - ((float)k - (float)r->border[1]));
+    g->y[k][at] = (float)vl_filter_curve_at(&r->curve[1], (double)y - 0.5 - ((double)k - r->border[1]));
 }
 
 /* Adds one neighbour of each pixel of a row. n: pixels; x, y: its filter values there. */

@@ -17,16 +17,16 @@ enum { VL_SHARED_GRID = (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) * (VL_SHARED_SID
 /* The pixel filter along x and y, at equal steps from 0 to its radius, scaled to an integral of 1. */
 enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
 typedef struct vlFilterCurve {
-  float *values;
-  double radius, per_step;
+  double *values;
+  double steps, per_step; /* number of steps, and steps per pixel */
 } vlFilterCurve;
-/* Errors: MEMORY. */
+/* Error: MEMORY. */
 vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
-static inline float vl_filter_curve_at(const vlFilterCurve *c, float x) {
-  float at = (x < 0.0f ? -x : x) * (float)c->per_step;
-  if (!(at < (float)(c->radius * c->per_step))) return 0.0f;
-  uint32_t k = (uint32_t)(int32_t)at;
-  return c->values[k] + (at - (float)k) * (c->values[k + 1] - c->values[k]);
+static inline double vl_filter_curve_at(const vlFilterCurve *c, double x) {
+  double at = (x < 0 ? -x : x) * c->per_step;
+  if (!(at <= c->steps)) return 0;
+  uint32_t k = (uint32_t)at;
+  return c->values[k] + (at - k) * (c->values[k + 1] - c->values[k]);
 }
 
 /* Whether pixels share samples: the filter has no negative lobes, reaches beyond its pixel and not too far. */
@@ -39,11 +39,11 @@ typedef struct vlReconstruction {
 vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r);
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
 
-/* The samples of one index in a block and its border, row by row. */
+/* The samples of one index in a block and its border, row by row. x, y: the filter's values along an axis in the pixels
+ * around, from the one that is border[0] (border[1]) pixels before the sample's own. */
 typedef struct vlSharedGrid {
   float color[4][VL_SHARED_GRID]; /* red, green, blue, alpha */
-  float x[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID], y[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID]; /* the filter's values
-                                                                                     for the pixels around */
+  float x[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID], y[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID];
 } vlSharedGrid;
 
 /* A block: its pixels, from x0, y0 on, without the border. */

@@ -88,7 +88,7 @@ static size_t grids_size(void) {
 
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (vl_filter_shares(&film->filter) ? grids_size() : 0);
+  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (def->share_samples ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
@@ -153,7 +153,7 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
   r->film_rays.centred = r->def->centred;
-  r->shares = vl_filter_shares(&f->filter) && !r->def->centred && !f->buckets;
+  r->shares = r->def->share_samples && vl_filter_shares(&f->filter) && !r->def->centred && !f->buckets;
   r->film_rays.uniform = r->shares;
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);

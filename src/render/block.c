@@ -213,7 +213,8 @@ static void trace_shared(const vlRenderRun *r, vlRenderWorker *w, const vlShared
     }
 }
 
-/* Adds one sample of each pixel of the block to the film: the mean over all samples of index s that the filter covers. */
+/* Adds one sample of each pixel of the block to the film: the mean over all samples of index s that the filter covers.
+ */
 static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   float *const color[4] = {row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA)};

@@ -65,8 +65,8 @@ static void add_neighbour(uint32_t n, const float *restrict x, const float *rest
   }
 }
 
-void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block, float *const color[4],
-                      float *weight) {
+void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block,
+                      float *const color[4], float *weight) {
   uint32_t bx = r->border[0], by = r->border[1], stride = block->width + 2 * bx;
   for (uint32_t j = 0; j < block->height; j++) {
     float sums[5][VL_SHARED_SIDE];

@@ -1,7 +1,7 @@
 /* render/reconstruct.h: the pixel filter over all samples that it covers. A sample's film point is uniform in its own
  * pixel, and the sample counts in every pixel whose filter covers the point (pbrt, 3rd edition, 7.8). So a pixel has
- * about 1 / integral(f^2) times as many samples as it takes itself: 2.25 times for the triangle of radius 1, 3 times for
- * pbrt's Gaussian. The samples of neighbouring pixels have their errors in common.
+ * about 1 / integral(f^2) times as many samples as it takes itself: 2.25 times for the triangle of radius 1, 3 times
+ * for pbrt's Gaussian. The samples of neighbouring pixels have their errors in common.
  *
  * A block of pixels also renders the samples of the pixels around it that its filters reach. So a block depends on no
  * other block, and crop windows, tiles and passes do not change the image. */
@@ -55,7 +55,7 @@ typedef struct vlSharedBlock {
 /* Stores the sample of grid point `at`, whose film point is (x, y) from its pixel's corner. */
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y);
 /* The weighted means of the samples over the block's pixels, row by row, and their weights. */
-void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block, float *const color[4],
-                      float *weight);
+void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block,
+                      float *const color[4], float *weight);
 
 #endif

@@ -213,22 +213,30 @@ static void trace_shared(const vlRenderRun *r, vlRenderWorker *w, const vlShared
     }
 }
 
-/* Adds one sample of each pixel of the block to the film: the mean over all samples of index s that the filter covers.
- */
-static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid) {
+/* Adds one sample of each pixel of the block's rows [first, last) to the film: the mean over all samples of the grid
+ * that the filter covers. */
+static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid,
+                     uint32_t first, uint32_t last) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   float *const color[4] = {row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA)};
   bool some = r->adaptive.in_pass < r->adaptive.blocks;
-  uint32_t n = 0;
-  vl_shared_gather(&r->reconstruction, grid, b, color, rows.weight);
-  for (uint32_t i = 0; i < b->width * b->height; i++) {
-    uint32_t x = (uint32_t)b->x0 + i % b->width, y = (uint32_t)b->y0 + i / b->width;
-    if (!(rows.weight[i] > 0.0f) || (some && !vl_adaptive_has(&r->adaptive, x, y))) continue;
-    rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.weight[n] = rows.weight[i];
-    for (int c = 0; c < 4; c++) color[c][n] = color[c][i];
-    n++;
-  }
+  uint32_t n = 0, i = 0;
+  vl_shared_gather(&r->reconstruction, grid, b, first, last, color, rows.weight);
+  for (uint32_t y = first; y < last; y++)
+    for (uint32_t x = 0; x < b->width; x++, i++) {
+      uint32_t px = (uint32_t)b->x0 + x, py = (uint32_t)b->y0 + y;
+      if (!(rows.weight[i] > 0.0f) || (some && !vl_adaptive_has(&r->adaptive, px, py))) continue;
+      rows.px[n] = (int32_t)px, rows.py[n] = (int32_t)py, rows.weight[n] = rows.weight[i];
+      for (int c = 0; c < 4; c++) color[c][n] = color[c][i];
+      n++;
+    }
   add_to_film(r, w, n);
+}
+
+static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid) {
+  uint32_t rows = VL_BATCH / VL_SHARED_SIDE;
+  for (uint32_t y = 0; y < b->height; y += rows)
+    add_rows(r, w, b, grid, y, b->height - y < rows ? b->height : y + rows);
 }
 
 uint32_t vl_render_block_count(const vlRenderRun *r) {
@@ -237,9 +245,14 @@ uint32_t vl_render_block_count(const vlRenderRun *r) {
 
 void vl_render_choose_blocks(vlRenderRun *r) {
   uint32_t threads = vl_context_threads(r->world->context);
-  r->span_x = r->pass_samples <= 2 || r->shares ? 2 : 1;
-  r->span_y = r->pass_samples <= 1 || r->shares ? 2 : 1;
-  if (vl_render_block_count(r) < 2 * threads) r->span_y = 1;
+  r->span_x = r->pass_samples <= 2 ? 2 : 1;
+  r->span_y = r->pass_samples <= 1 ? 2 : 1;
+  if (r->shares) /* the larger a block, the fewer samples its border has in comparison; adaptive blocks are 32 x 32 */
+    r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
+  while (r->span_y > 1 && vl_render_block_count(r) < 2 * threads) {
+    r->span_y /= 2;
+    if (vl_render_block_count(r) < 2 * threads) r->span_x = r->span_x > 1 ? r->span_x / 2 : 1;
+  }
   if (vl_render_block_count(r) < 2 * threads) r->span_x = 1;
 }
 

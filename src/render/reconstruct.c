@@ -65,10 +65,10 @@ static void add_neighbour(uint32_t n, const float *restrict x, const float *rest
   }
 }
 
-void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block,
-                      float *const color[4], float *weight) {
+void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block, uint32_t first,
+                      uint32_t last, float *const color[4], float *weight) {
   uint32_t bx = r->border[0], by = r->border[1], stride = block->width + 2 * bx;
-  for (uint32_t j = 0; j < block->height; j++) {
+  for (uint32_t j = first; j < last; j++) {
     float sums[5][VL_SHARED_SIDE];
     memset(sums, 0, sizeof sums);
     for (uint32_t v = 0; v <= 2 * by; v++)
@@ -78,7 +78,7 @@ void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vl
                       g->color[2] + at, g->color[3] + at, sums);
       }
     for (uint32_t i = 0; i < block->width; i++) {
-      size_t to = (size_t)j * block->width + i;
+      size_t to = (size_t)(j - first) * block->width + i;
       float inv = sums[4][i] > 0.0f ? 1.0f / sums[4][i] : 0.0f;
       for (int c = 0; c < 4; c++) color[c][to] = sums[c][i] * inv;
       weight[to] = sums[4][i];

@@ -10,7 +10,7 @@
 
 #include "film/film.h"
 
-enum { VL_SHARED_SIDE = 32, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 4 };
+enum { VL_SHARED_SIDE = 64, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };
 /* Most samples of a block with its border, for one sample index. */
 enum { VL_SHARED_GRID = (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) * (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) };
 
@@ -54,8 +54,9 @@ typedef struct vlSharedBlock {
 
 /* Stores the sample of grid point `at`, whose film point is (x, y) from its pixel's corner. */
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y);
-/* The weighted means of the samples over the block's pixels, row by row, and their weights. */
-void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block,
-                      float *const color[4], float *weight);
+/* The weighted means of the samples over the pixels of the block's rows [first, last), row by row, and their weights.
+ */
+void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block, uint32_t first,
+                      uint32_t last, float *const color[4], float *weight);
 
 #endif

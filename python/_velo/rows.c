@@ -42,6 +42,7 @@ static const vlParameter scene_array[] = {
     SCENE(BOOL, render.centred),
     SCENE(BOOL, render.same_wavelengths),
     SCENE(BOOL, render.sharp_textures),
+    SCENE(BOOL, render.share_samples),
     SCENE(BOOL, render.transparent),
     SCENE(DOUBLE, render.merge_radius),
     SCENE(COUNT, render.light_paths),

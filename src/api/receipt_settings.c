@@ -98,6 +98,7 @@ static const Field render_fields[] = {FIELD_FAMILY(vlRenderDef, tracer, "tracers
                                       FIELD_BOOL(vlRenderDef, centred),
                                       FIELD_BOOL(vlRenderDef, same_wavelengths),
                                       FIELD_BOOL(vlRenderDef, sharp_textures),
+                                      FIELD_BOOL(vlRenderDef, share_samples),
                                       FIELD_BOOL(vlRenderDef, transparent),
                                       FIELD_DOUBLE(vlRenderDef, merge_radius),
                                       FIELD_COUNT(vlRenderDef, light_paths),

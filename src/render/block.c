@@ -1,6 +1,8 @@
 /* render/block.c: see block.h. */
 #include "render/block.h"
 
+#include <math.h>
+
 #include "film/expose.h"
 
 enum { TILE_PIXELS = VL_RENDER_TILE * VL_RENDER_TILE };
@@ -82,7 +84,8 @@ static void clear_background(uint32_t n, const float *alpha, float *const radian
     for (uint32_t i = 0; i < n; i++) radiance[c][i] = alpha[i] > 0.0f ? radiance[c][i] : 0.0f;
 }
 
-void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
+/* Traces and exposes the n samples that the worker's rows list: alpha, red, green, blue. */
+static void trace_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   const vlCameraCompiled *camera = &r->film_rays.camera;
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   const vlCameraRays rays = rows.rays;
@@ -122,18 +125,118 @@ void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
     vl_film_add_spectra(r->film, &spectra);
   }
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
-  if (r->two_way)
-    vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
   if (w->recorder) return;
-  vlFilmSamples add = {n, rows.px, rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), batch.alpha, rows.weight};
-  int32_t bad_x = 0, bad_y = 0;
-  uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
-  if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
-  w->not_finite += bad;
   w->merge_work += batch.merge_work;
   count_more(&w->paths, n);
   count_more(&w->bounce_rays, batch.bounce_rays);
   count_more(&w->shadow_rays, batch.shadow_rays);
+}
+
+/* Adds the n samples in the worker's rows to the film. */
+static void add_to_film(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  if (r->two_way)
+    vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
+  if (w->recorder) return;
+  vlFilmSamples add = {n, rows.px, rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA), rows.weight};
+  int32_t bad_x = 0, bad_y = 0;
+  uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
+  if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
+  w->not_finite += bad;
+}
+
+void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
+  trace_batch(r, w, n);
+  add_to_film(r, w, n);
+}
+
+/* ---- blocks whose pixels share samples --------------------------------------------------------------------------- */
+
+/* The block's pixels inside the crop window; false: there are none in this pass. */
+static bool shared_block(const vlRenderRun *r, uint32_t block, vlSharedBlock *b) {
+  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x;
+  uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
+  uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
+  uint32_t x1 = x0 + r->span_x * VL_RENDER_TILE, y1 = y0 + r->span_y * VL_RENDER_TILE;
+  if (x0 < r->crop[0]) x0 = r->crop[0];
+  if (y0 < r->crop[1]) y0 = r->crop[1];
+  if (x1 > r->crop[2]) x1 = r->crop[2];
+  if (y1 > r->crop[3]) y1 = r->crop[3];
+  *b = (vlSharedBlock){(int32_t)x0, (int32_t)y0, x1 - x0, y1 - y0};
+  if (r->adaptive.in_pass == r->adaptive.blocks) return true;
+  for (uint32_t y = y0; y < y1; y++)
+    for (uint32_t x = x0; x < x1; x++)
+      if (vl_adaptive_has(&r->adaptive, x, y)) return true;
+  return false;
+}
+
+/* Moves the n traced samples of the batch to their places in the worker's grids. */
+static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first, uint32_t n) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  uint32_t bx = r->reconstruction.border[0], by = r->reconstruction.border[1], stride = b->width + 2 * bx;
+  for (uint32_t i = 0; i < n; i++) {
+    float color[4] = {row(w, RED)[i], row(w, GREEN)[i], row(w, BLUE)[i], row(w, ALPHA)[i]};
+    int32_t x = rows.px[i] - b->x0, y = rows.py[i] - b->y0;
+    float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))), sum = color[0] + color[1] + color[2];
+    bool good = most < 0x1p39f && sum == sum && color[3] - color[3] == 0.0f;
+    bool own = x >= 0 && y >= 0 && (uint32_t)x < b->width && (uint32_t)y < b->height;
+    if (!good && own && w->not_finite++ == 0) w->bad_x = rows.px[i], w->bad_y = rows.py[i];
+    for (int c = 0; !good && c < 4; c++) color[c] = 0.0f;
+    uint32_t at = (uint32_t)(y + (int32_t)by) * stride + (uint32_t)(x + (int32_t)bx);
+    float far = 1e9f; /* counts in no pixel */
+    vl_shared_store(&r->reconstruction, &w->grids[rows.index[i] - first], at, color, good ? rows.film_x[i] : far,
+                    rows.film_y[i]);
+  }
+}
+
+/* Traces the samples [first, first + count) of a block and its border. */
+static void trace_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first,
+                         uint32_t count) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  int32_t bx = (int32_t)r->reconstruction.border[0], by = (int32_t)r->reconstruction.border[1];
+  uint32_t width = b->width + 2 * (uint32_t)bx, height = b->height + 2 * (uint32_t)by;
+  uint32_t total = width * height * count, batches = (total + VL_BATCH - 1) / VL_BATCH, done = 0, n = 0, filled = 0;
+  uint32_t side = 1;
+  while (side < width || side < height) side *= 2;
+  for (uint32_t s = first; s < first + count; s++)
+    for (uint32_t m = 0; m < side * side; m++) { /* Morton order, for coherent packets */
+      uint32_t x = morton_half(m), y = morton_half(m >> 1);
+      if (x >= width || y >= height) continue;
+      rows.px[n] = b->x0 - bx + (int32_t)x, rows.py[n] = b->y0 - by + (int32_t)y, rows.index[n] = s;
+      n++, filled++;
+      if (filled < (uint64_t)total * (done + 1) / batches) continue;
+      for (uint32_t i = n; i < VL_PAD(n); i++)
+        rows.px[i] = rows.px[n - 1], rows.py[i] = rows.py[n - 1], rows.index[i] = rows.index[n - 1];
+      trace_batch(r, w, n);
+      store_batch(r, w, b, first, n);
+      done++, n = 0;
+    }
+}
+
+/* Adds one sample of each pixel of the block's rows [first, last) to the film: the mean over all samples of the grid
+ * that the filter covers. */
+static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid,
+                     uint32_t first, uint32_t last) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  float *const color[4] = {row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA)};
+  bool some = r->adaptive.in_pass < r->adaptive.blocks;
+  uint32_t n = 0, i = 0;
+  vl_shared_gather(&r->reconstruction, grid, b, first, last, color, rows.weight);
+  for (uint32_t y = first; y < last; y++)
+    for (uint32_t x = 0; x < b->width; x++, i++) {
+      uint32_t px = (uint32_t)b->x0 + x, py = (uint32_t)b->y0 + y;
+      if (!(rows.weight[i] > 0.0f) || (some && !vl_adaptive_has(&r->adaptive, px, py))) continue;
+      rows.px[n] = (int32_t)px, rows.py[n] = (int32_t)py, rows.weight[n] = rows.weight[i];
+      for (int c = 0; c < 4; c++) color[c][n] = color[c][i];
+      n++;
+    }
+  add_to_film(r, w, n);
+}
+
+static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid) {
+  uint32_t rows = VL_BATCH / VL_SHARED_SIDE;
+  for (uint32_t y = 0; y < b->height; y += rows)
+    add_rows(r, w, b, grid, y, b->height - y < rows ? b->height : y + rows);
 }
 
 uint32_t vl_render_block_count(const vlRenderRun *r) {
@@ -144,7 +247,12 @@ void vl_render_choose_blocks(vlRenderRun *r) {
   uint32_t threads = vl_context_threads(r->world->context);
   r->span_x = r->pass_samples <= 2 ? 2 : 1;
   r->span_y = r->pass_samples <= 1 ? 2 : 1;
-  if (vl_render_block_count(r) < 2 * threads) r->span_y = 1;
+  if (r->shares) /* the larger a block, the fewer samples its border has in comparison; adaptive blocks are 32 x 32 */
+    r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
+  while (r->span_y > 1 && vl_render_block_count(r) < 2 * threads) {
+    r->span_y /= 2;
+    if (vl_render_block_count(r) < 2 * threads) r->span_x = r->span_x > 1 ? r->span_x / 2 : 1;
+  }
   if (vl_render_block_count(r) < 2 * threads) r->span_x = 1;
 }
 
@@ -155,9 +263,16 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
   unsigned state = vl_accel_enter();
   uint32_t end = r->first_sample + r->pass_samples;
   for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->stop.stopped);) {
-    uint32_t most = VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y), count = end - s < most ? end - s : most;
-    uint32_t n = list_samples(r, w, block, s, count);
-    if (n) vl_render_batch(r, w, n);
+    uint32_t most = r->shares ? VL_SHARED_SAMPLES : VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y);
+    uint32_t count = end - s < most ? end - s : most;
+    vlSharedBlock b;
+    if (!r->shares) {
+      uint32_t n = list_samples(r, w, block, s, count);
+      if (n) vl_render_batch(r, w, n);
+    } else if (shared_block(r, block, &b)) {
+      trace_shared(r, w, &b, s, count);
+      for (uint32_t k = 0; k < count; k++) add_shared(r, w, &b, &w->grids[k]);
+    }
     s += count;
     vl_accel_leave(state); /* the user's callback runs with its own floating-point state */
     vl_stop_check(&r->stop);

@@ -13,6 +13,7 @@
 #include "film/film.h"
 #include "render/adaptive.h"
 #include "render/film_rays.h"
+#include "render/reconstruct.h"
 #include "render/stop.h"
 #include "render/two_way.h"
 #include "trace/trace.h"
@@ -31,6 +32,7 @@ typedef struct vlRenderWorker {
   vlTraceScratch *scratch;
   float *rows;                                      /* VL_RENDER_ROWS arrays of VL_ROW_SIZE */
   _Atomic uint64_t paths, bounce_rays, shadow_rays; /* written by the worker; the progress report reads them */
+  vlSharedGrid *grids;                              /* VL_SHARED_SAMPLES of them; null: pixels share no samples */
   uint64_t merge_work;                              /* as vlTraceBatch.merge_work */
   uint64_t not_finite;
   int32_t bad_x, bad_y;
@@ -47,6 +49,8 @@ typedef struct vlRenderRun {
   const vlTraceKernels *trace_kernels;
   vlTwoWayRun *two_way; /* null: a tracer without light paths */
   bool rgb_mode;
+  bool shares; /* pixels share samples */
+  vlReconstruction reconstruction;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;
   uint32_t span_x, span_y; /* tiles of a block, the unit of work of a worker */

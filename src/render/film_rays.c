@@ -43,7 +43,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->sampler_kernels = vl_sampler_kernels(isa);
   f->filter_kernels = vl_filter_kernels(isa);
   f->lens = camera->lens_radius > 0;
-  f->middle = f->moves = f->centred = false;
+  f->middle = f->moves = f->centred = f->uniform = false;
   f->shared = -1.0f;
   f->spread = 1.0f;
 }
@@ -56,8 +56,10 @@ void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
   k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
-  f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
-  for (uint32_t i = 0; i < VL_PAD(n); i++)
+  if (!f->uniform) f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
+  for (uint32_t i = 0; f->uniform && i < VL_PAD(n); i++)
+    r->film_x[i] = r->film_u[i], r->film_y[i] = r->film_v[i], r->weight[i] = 1.0f;
+  for (uint32_t i = 0; !f->uniform && i < VL_PAD(n); i++)
     r->film_x[i] = r->film_x[i] * f->spread + 0.5f, r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
   for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
   if (f->middle || f->centred || f->shared >= 0.0f)

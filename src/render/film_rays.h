@@ -19,6 +19,7 @@ typedef struct vlFilmRays {
   bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
   float shared; /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
   float spread; /* film samples are drawn from this part of the pixel's filter around its centre; 1: from all of it */
+  bool uniform; /* film points are uniform in the pixel (reconstruct.h), not drawn from its filter */
   bool middle;  /* all times are the middle of the shutter's time */
   bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1; false: seconds */
 } vlFilmRays;

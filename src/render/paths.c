@@ -288,6 +288,7 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
     c.run.film = c.film;
     c.run.sequence.length = own.sequence ? own.sequence : vl_sampler_sequence(own.sampler, own.spp);
     vl_render_prepare(&c.run, &focused);
+    c.run.shares = c.run.film_rays.uniform = false;
     c.run.workers = &c.worker;
     result = make_memory(&c, count, error);
   }

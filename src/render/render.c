@@ -82,9 +82,13 @@ static size_t round_up(size_t size) {
   return (size + 63) & ~(size_t)63;
 }
 
+static size_t grids_size(void) {
+  return round_up(VL_SHARED_SAMPLES * sizeof(vlSharedGrid));
+}
+
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size()) + rows;
+  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (def->share_samples ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
@@ -95,14 +99,16 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   uint32_t threads = vl_context_threads(context);
   size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size());
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  char *block = vl_film_scratch(r->film, head + threads * (scratch + rows));
+  size_t grids = r->shares ? grids_size() : 0;
+  char *block = vl_film_scratch(r->film, head + threads * (scratch + rows + grids));
   if (!block) return vl_fail_memory(error);
   r->workers = (vlRenderWorker *)(void *)block;
   memset(block, 0, head);
   for (uint32_t i = 0; i < threads; i++) {
-    char *own = block + head + i * (scratch + rows);
+    char *own = block + head + i * (scratch + rows + grids);
     r->workers[i].scratch = (vlTraceScratch *)(void *)own;
     r->workers[i].rows = (float *)(void *)(own + scratch);
+    if (grids) r->workers[i].grids = (vlSharedGrid *)(void *)(own + scratch + rows);
   }
   return VL_OK;
 }
@@ -147,6 +153,8 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
   r->film_rays.centred = r->def->centred;
+  r->shares = r->def->share_samples && vl_filter_shares(&f->filter) && !r->def->centred && !f->buckets;
+  r->film_rays.uniform = r->shares;
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
   r->rgb_mode = world->def.color == VL_COLOR_RGB;
@@ -276,6 +284,7 @@ static vlResult render_passes(vlRenderRun *r, vlError *error) {
 
 static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
   if (!pilot) return;
+  r->shares = r->film_rays.uniform = false;
   r->film_rays.spread = pilot->spread;
   r->trace.pixel_spread *= pilot->spread, r->trace.pixel_width *= pilot->spread;
 }
@@ -312,6 +321,9 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vl_render_prepare(r, &focused);
   prepare_pilot(r, pilot);
   result = make_workers(r, world->context, error);
+  if (result == VL_OK && r->shares &&
+      vl_reconstruction_make(world->context, &vl_film_def(film)->filter, &r->reconstruction) != VL_OK)
+    result = vl_fail_memory(error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   if (result == VL_OK && pilot && r->two_way) vl_two_way_share(r->two_way, pilot->pass_seed);
   if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def) != VL_OK)
@@ -321,6 +333,7 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (r->workers) end_pilot(r, pilot);
   vl_adaptive_destroy(&r->adaptive);
   vl_two_way_destroy(r->two_way);
+  vl_reconstruction_free(world->context, &r->reconstruction);
   return result;
 }
 

@@ -14,34 +14,6 @@ static void add(vlSplatSum *sum, float value) {
   if (high) atomic_fetch_add_explicit(&sum->high, high, memory_order_relaxed);
 }
 
-/* ---- the filter -------------------------------------------------------------------------------------------------- */
-
-enum { STEPS = 1024 }; /* of the filter's table, per pixel: linear interpolation is exact to 1e-6 */
-
-static uint32_t table_size(const vlPixelFilter *f, int axis) {
-  return (uint32_t)ceilf(axis ? f->radius_y : f->radius_x) * STEPS + 2;
-}
-
-static vlResult make_table(vlContext *context, vlSplats *s, int axis) {
-  const vlPixelFilter *f = s->filter;
-  uint32_t n = table_size(f, axis);
-  double radius = axis ? f->radius_y : f->radius_x, step = radius / (n - 2), sum = 0;
-  s->values[axis] = vl_alloc_array(context, n, sizeof *s->values[axis]);
-  if (!s->values[axis]) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < n; i++) s->values[axis][i] = vl_filter_value(f, axis, fmin(i * step, radius));
-  for (uint32_t i = 0; i + 2 < n; i++) sum += vl_filter_value(f, axis, (i + 0.5) * step);
-  for (uint32_t i = 0; i < n; i++) s->values[axis][i] /= 2 * sum * step;
-  s->per_step[axis] = 1 / step;
-  return VL_OK;
-}
-
-static double filter_at(const vlSplats *s, int axis, double x) {
-  double at = fabs(x) * s->per_step[axis];
-  uint32_t k = (uint32_t)at;
-  const double *v = s->values[axis] + k;
-  return v[0] + (at - k) * (v[1] - v[0]);
-}
-
 /* ---- adding ------------------------------------------------------------------------------------------------------ */
 
 /* The pixels of the crop window, along one axis and from its edge, whose filter covers a film point. */
@@ -65,10 +37,11 @@ static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
   if (!(most < 0x1p35f && sum == sum)) return false;
   Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
   double value[2 * VL_FILTER_RADIUS_MAX + 1];
-  for (uint32_t i = 0; i < across.count; i++) value[i] = filter_at(s, 0, (double)x - (s->x0 + across.first + i) - 0.5);
+  for (uint32_t i = 0; i < across.count; i++)
+    value[i] = vl_filter_curve_at(&s->curve[0], (double)x - (s->x0 + across.first + i) - 0.5);
   for (uint32_t j = 0; j < down.count; j++) {
     vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
-    double wy = filter_at(s, 1, (double)y - (s->y0 + down.first + j) - 0.5);
+    double wy = vl_filter_curve_at(&s->curve[1], (double)y - (s->y0 + down.first + j) - 0.5);
     for (uint32_t i = 0; i < across.count; i++)
       for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(wy * value[i] * (double)color[c]));
   }
@@ -122,13 +95,13 @@ vlResult vl_splats_make(vlContext *context, const vlFilmDef *film, vlSplats *s) 
   s->width = film->crop[2] - film->crop[0], s->height = film->crop[3] - film->crop[1];
   s->filter = &film->filter;
   for (int i = 0; i < 2; i++)
-    if (make_table(context, s, i) != VL_OK) return VL_ERROR_MEMORY;
+    if (vl_filter_curve_make(context, s->filter, i, &s->curve[i]) != VL_OK) return VL_ERROR_MEMORY;
   s->pixels = vl_alloc_zero(context, (size_t)s->width * s->height, sizeof *s->pixels);
   return s->pixels ? VL_OK : VL_ERROR_MEMORY;
 }
 
 void vl_splats_free(vlContext *context, vlSplats *s) {
-  for (int i = 0; i < 2; i++) vl_free(context, s->values[i]);
+  for (int i = 0; i < 2; i++) vl_free(context, s->curve[i].values);
   vl_free(context, s->pixels);
   *s = (vlSplats){0};
 }

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "film/film.h"
+#include "render/reconstruct.h"
 
 /* A sum of 128 bits in two words. Threads add without a lock: each addition carries into the high word itself. */
 typedef struct vlSplatSum {
@@ -20,8 +21,7 @@ typedef struct vlSplats {
   vlSplat *pixels; /* by pixel of the crop window */
   uint32_t x0, y0, width, height;
   const vlPixelFilter *filter;
-  double *values[2], per_step[2]; /* along x and y: the filter at equal steps from 0 to its radius, scaled to an
-                                     integral of 1; steps per pixel */
+  vlFilterCurve curve[2]; /* the filter along x and y */
 } vlSplats;
 
 /* film must outlive the splats. Error: MEMORY. */

@@ -21,6 +21,7 @@ enum {
   RENDER_TRACER,
   RENDER_SAMPLER,
   RENDER_FILTER,
+  RENDER_FILTER_SAMPLES,
   RENDER_LIGHT_SAMPLER,
   RENDER_REGULARIZE,
   RENDER_MERGE_RADIUS,
@@ -96,9 +97,9 @@ enum {
   RENDER_LENS /* the first of lens_options.h */
 };
 
-extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], color_choices[], view_choices[],
-    isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[], framing_choices[], walls_choices[],
-    up_choices[];
+extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], filter_samples_choices[],
+    color_choices[], view_choices[], isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[],
+    framing_choices[], walls_choices[], up_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];

@@ -37,6 +37,7 @@ const Choice sensor_choices[] = {
 };
 const Choice light_sampler_choices[] = {
     {"bvh", VL_LIGHT_SAMPLER_BVH}, {"power", VL_LIGHT_SAMPLER_POWER}, {"uniform", VL_LIGHT_SAMPLER_UNIFORM}, {NULL, 0}};
+const Choice filter_samples_choices[] = {{"own", 0}, {"shared", 1}, {NULL, 0}};
 const Choice regularize_choices[] = {{"off", 0}, {"on", 1}, {NULL, 0}};
 const Choice color_choices[] = {{"spectral", VL_COLOR_SPECTRAL}, {"rgb", VL_COLOR_RGB}, {NULL, 0}};
 const Choice view_choices[] = {{"standard", VL_VIEW_STANDARD},
@@ -168,6 +169,7 @@ static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   if (v[RENDER_SAMPLER].given) defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;
   if (v[RENDER_FILTER].given) defs->film.filter = vl_default_pixel_filter((vlPixelFilterKind)v[RENDER_FILTER].integer);
   if (v[RENDER_LIGHT_SAMPLER].given) defs->build.light_sampler = (vlLightSampler)v[RENDER_LIGHT_SAMPLER].integer;
+  if (v[RENDER_FILTER_SAMPLES].given) defs->render.share_samples = v[RENDER_FILTER_SAMPLES].integer == 1;
   if (v[RENDER_REGULARIZE].given) defs->build.regularize = v[RENDER_REGULARIZE].integer == 1;
   if (v[RENDER_SENSOR].given) defs->film.sensor = vl_sensor_name((uint32_t)v[RENDER_SENSOR].integer);
   if (v[RENDER_COLOR].given) defs->build.color = (vlColorMode)v[RENDER_COLOR].integer;

@@ -22,7 +22,7 @@ static inline uint32_t vl_dimension_seed(const vlSampler *s, uint32_t dimension,
   return vl_hash3(s->seed, dimension, salt);
 }
 static inline uint32_t vl_pixel_key(int32_t px, int32_t py, uint32_t dimension_seed) {
-  return vl_hash(vl_hash((uint32_t)px | (uint32_t)py << 16) ^ dimension_seed);
+  return vl_hash(vl_hash(((uint32_t)px & 0xffffu) | (uint32_t)py << 16) ^ dimension_seed);
 }
 
 static inline void vl_pixel_keys(uint32_t n, const int32_t *px, const int32_t *py, uint32_t seed, uint32_t *key) {

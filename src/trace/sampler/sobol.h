@@ -45,7 +45,7 @@ VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSe
   uint32_t mask = (1u << shift) - 1;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
-    uint32_t morton = vl_morton((uint32_t)px[i], (uint32_t)py[i]);
+    uint32_t morton = vl_morton((uint32_t)px[i] & 0xffffu, (uint32_t)py[i] & 0xffffu);
     uint32_t other = 0;
     if (wide) other = vl_hash(((morton >> 1) >> (31 - shift)) ^ vl_hash(index[i] >> shift));
     uint32_t j = vl_sobol_shuffled(morton << shift | (index[i] & mask), seed.shuffle ^ other);

@@ -70,17 +70,24 @@ export class Paths {
   // Where the pixel's value is from; the largest path of a firefly is named.
   summary(answer) {
     const n = answer.samples, largest = answer.paths.reduce((a, b) => b.share > (a?.share ?? -1) ? b : a, null);
-    let text = `${n} sample${n > 1 ? "s" : ""} by ${answer.tracer}: mean ${colour(answer.mean)}.`;
+    const around = answer.counted === n ? "" : ` (${answer.counted} with those of the pixels around)`;
+    let text = `${n} sample${n > 1 ? "s" : ""}${around} by ${answer.tracer}: mean ${colour(answer.mean)}.`;
     if (answer.dropped) text += ` ${answer.dropped} not finite.`;
     const best = largest?.contributions.reduce((a, b) => Math.hypot(...b.rgb) > Math.hypot(...(a?.rgb || [0])) ? b : a, null);
-    if (!best || largest.share < 4 / n) return text;
+    if (!best || largest.share < 4 / answer.counted) return text;
     const v = largest.vertices[best.vertex], where = v.object ? ` at ${called(v.object)}` : "";
-    return `${text} Sample ${largest.sample} brings ${percent(largest.share)}: ${light(best)}${best.object ? `, ${called(best.object)},` : ""}${where},`
+    return `${text} Sample ${this.name(largest)} brings ${percent(largest.share)}: ${light(best)}${best.object ? `, ${called(best.object)},` : ""}${where},`
       + ` vertex ${best.vertex}, weight ${short(best.weight, 3)}${best.bsdf_pdf !== undefined ? `, densities ${short(best.light_pdf, 3)} and ${short(best.bsdf_pdf, 3)}` : ""}.`;
   }
 
+  // The number of a path's sample, with its pixel if that is a neighbour of the pixel asked for.
+  name(path) {
+    const [x, y] = path.pixel, own = x === this.answer.pixel[0] && y === this.answer.pixel[1];
+    return own ? path.sample : `${path.sample} of pixel ${x},${y}`;
+  }
+
   entry(path, index) {
-    const head = `sample ${path.sample}: ${percent(path.share)}, ${path.vertices.length} ${path.vertices.length === 1 ? "vertex" : "vertices"}`;
+    const head = `sample ${this.name(path)}: ${percent(path.share)}, ${path.vertices.length} ${path.vertices.length === 1 ? "vertex" : "vertices"}`;
     const box = make("details", { class: "path" }, make("summary", { textContent: head }));
     box.open = index === 0;
     box.addEventListener("toggle", () => {

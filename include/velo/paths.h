@@ -78,14 +78,16 @@ typedef struct vlPathContribution {
   float rgb[3];      /**< the same in the film's colour space, times vlPath.camera_weight */
 } vlPathContribution;
 
-/** A path: one sample of the pixel. */
+/** A path: one sample that counts in the pixel. */
 typedef struct vlPath {
-  uint32_t sample;     /**< index of the sample in the pixel */
+  int32_t x, y;        /**< the pixel in which the sample was taken: the pixel itself, or one of its neighbours (then
+                          it may lie outside the image) if pixels share samples (vlRenderDef.share_samples) */
+  uint32_t sample;     /**< index of the sample in that pixel */
   float film[2];       /**< film point, pixels from the image's top left corner */
   float origin[3];     /**< the camera ray */
   float direction[3];  /**< unit length */
   float time;          /**< seconds; if something in the world moves: the world's time, 0 to 1 */
-  float filter_weight; /**< weight of the sample in the pixel */
+  float filter_weight; /**< weight of the sample in the pixel whose paths these are */
   float camera_weight; /**< factor of the lens (vignetting) on the radiance; 0: the camera has no ray here, or the
                           sample shows the removed background */
   float lambda[4];     /**< wavelengths, nm; 0 in RGB mode */
@@ -102,17 +104,19 @@ typedef struct vlPath {
 typedef struct vlPixelPaths {
   uint32_t x, y;       /**< the pixel */
   vlTracer tracer;     /**< the tracer that was used */
-  uint32_t count;      /**< number of paths */
-  const vlPath *paths; /**< in the order of samples */
+  uint32_t samples;    /**< number of samples per pixel that were traced */
+  uint32_t count;      /**< number of paths: samples, or more if pixels share samples */
+  const vlPath *paths; /**< in the order of samples; of one index the pixel's own comes first */
   double mean[3];      /**< sum of filter_weight * rgb over the sum of filter_weight, over the samples that are finite:
                           the pixel of a film with these samples, without its exposure */
   uint32_t dropped;    /**< number of samples that are not finite */
 } vlPixelPaths;
 
-/** Traces samples first to first + count - 1 of a pixel again, and records them. The random numbers, the tracer's code
- * and the bits of each path's rgb are those of vl_render with the same world, camera, film def and render def, of
- * which first_sample, noise, time_limit and progress are ignored. count is 1 to 2^20. *paths is owned by the caller
- * (vl_pixel_paths_destroy). A null render def means the default.
+/** Traces samples first to first + count - 1 of a pixel again, and records them. If pixels share samples, these are the
+ * samples of the same indices that the pixel and its neighbours took and that count in the pixel. The random numbers,
+ * the tracer's code and the bits of each path's rgb are those of vl_render with the same world, camera, film def and
+ * render def, of which first_sample, noise, time_limit and progress are ignored. count is 1 to 2^20. *paths is owned by
+ * the caller (vl_pixel_paths_destroy). A null render def means the default.
  *
  * Errors: ARGUMENT: a pixel outside the film's crop, a camera of another size, a tracer other than path and volpath.
  * MEMORY. CANCELLED: def->cancel was requested; the call looks after at most 256 paths. It runs on the calling thread

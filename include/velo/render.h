@@ -194,7 +194,7 @@ typedef struct vlRenderDef {
   /** Each pixel counts all samples that its filter covers, also those of its neighbours, instead of samples of its own
    * that are drawn from the filter: two to three times as many for the same work (docs/filters.md). The errors of
    * neighbouring pixels are then correlated. Ignored for filters with negative lobes or a radius above 2.5 pixels, for
-   * films with spectra, and if centred. Ground truth and vl_trace_paths have the pixels' own samples. Default false. */
+   * films with spectra, and if centred. Default true. */
   bool share_samples;
   /** Samples whose camera ray meets nothing, or a backdrop, have no radiance: the image is premultiplied by its alpha.
    * Light paths that connect to the camera are not affected. Default false. */

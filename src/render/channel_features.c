@@ -61,6 +61,7 @@ static void add(const vlChannelPass *p, vlChannelWorker *w, float *total) {
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   float total[VL_TILE_PIXELS] = {0};
   vlFilmRays rays = p->image;
+  rays.uniform = false; /* few samples: each is of its own pixel, drawn from the filter */
   uint32_t spp = vl_channel_spp(p, tile), samples = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES, n = 0;
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);

@@ -4,6 +4,7 @@
 
 #include "render/cryptomatte.h"
 #include "render/film_rays.h"
+#include "render/reconstruct.h"
 #include "render/stop.h"
 #include "trace/ground_truth/ground_truth.h"
 #include "velo/channels.h"
@@ -46,6 +47,14 @@ typedef struct vlTally {
   vlTallyEntry slots[VL_TALLY_SLOTS];
 } vlTally;
 
+/* The first hit of a sample of the image: ids (0: none), film point, depth (infinity: nothing was hit, or not asked).
+ */
+typedef struct vlSampleHit {
+  uint32_t ids[3]; /* object, material, instance */
+  float x, y, z;
+} vlSampleHit;
+enum { VL_SHARED_HITS = 1 << 17 }; /* most hits that a worker holds at once */
+
 typedef struct vlChannelWorker {
   vlGroundTruthScratch *scratch;
   vlGroundTruthBatch *batch;
@@ -53,6 +62,7 @@ typedef struct vlChannelWorker {
   vlTally *tallies;          /* three for Cryptomatte or one for the choice of a point; null where nothing is counted */
   vlGroundTruthBatch *other; /* hits of the other camera's rays; null without flow */
   uint32_t *lanes;           /* for each lane of `other`: its lane of the batch */
+  vlSampleHit *hits;         /* VL_SHARED_HITS; null where no samples are shared */
   uint32_t x[VL_BATCH], y[VL_BATCH];
   float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* film point of each pixel of the tile */
   float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* film point of each lane */
@@ -86,6 +96,8 @@ typedef struct vlChannelPass {
   uint32_t spp;             /* samples per pixel of the film; 0: they are not needed */
   bool adaptive;            /* the film's blocks have different numbers of samples */
   uint32_t first_sample;    /* index of the first */
+  bool shares;              /* pixels of the image share samples */
+  vlReconstruction reconstruction;
   vlCryptomatte crypto[3];
   vlCamera other[2]; /* forward, backward */
   vlCameraCompiled other_compiled[2];

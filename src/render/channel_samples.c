@@ -2,7 +2,7 @@
  * their first hit. They give Cryptomatte's coverages. If a pixel's values are not those at its centre, the samples
  * also determine the film point of the values.
  *
- * The samples of a pixel are consecutive, in the order of their indices. All sums are sums of integers. */
+ * All sums are sums of integers. */
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -58,42 +58,39 @@ typedef struct Count {
   uint32_t spp;             /* samples per pixel in this tile */
   int64_t total;            /* weight of the pixel's samples */
   float off, x, y, nearest; /* for the choice: squared distance from the centre and film point of the chosen sample;
-                               distance of the nearest surface */
+                               depth of the nearest surface */
 } Count;
 
-static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t i, int64_t weight) {
-  float x = vl_channel_row(w, VL_FILM_X)[i], y = vl_channel_row(w, VL_FILM_Y)[i];
-  float off = (x - 0.5f) * (x - 0.5f) + (y - 0.5f) * (y - 0.5f);
+static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, const vlSampleHit *hit, int64_t weight) {
+  float off = (hit->x - 0.5f) * (hit->x - 0.5f) + (hit->y - 0.5f) * (hit->y - 0.5f);
   if (p->def->mode == VL_CHANNEL_MODE_NEAREST) {
-    float t = vl_channel_row(w, DISTANCE)[i], z = INFINITY;
-    if (t < INFINITY) {
-      const double *m = p->camera.camera_from_world;
-      double q[3];
-      for (uint32_t k = 0; k < 3; k++)
-        q[k] = (double)vl_channel_row(w, VL_FILM_RAY + k)[i] +
-               (double)t * (double)vl_channel_row(w, VL_FILM_RAY + 3 + k)[i];
-      z = (float)(m[8] * q[0] + m[9] * q[1] + m[10] * q[2] + m[11]);
-    }
-    if (!(z < c->nearest) && !(z == c->nearest && off < c->off)) return;
-    c->nearest = z, c->off = off, c->x = x, c->y = y;
+    if (!(hit->z < c->nearest) && !(hit->z == c->nearest && off < c->off)) return;
+    c->nearest = hit->z, c->off = off, c->x = hit->x, c->y = hit->y;
     return;
   }
-  const uint32_t *object = (uint32_t *)(void *)vl_channel_row(w, OBJECT);
-  const uint32_t *instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE);
-  vlTallyEntry *e = tally_find(&w->tallies[0], (uint64_t)instance[i] << 32 | object[i]);
+  vlTallyEntry *e = tally_find(&w->tallies[0], (uint64_t)hit->ids[2] << 32 | hit->ids[0]);
   if (!e) return;
   e->weight += weight;
-  if (off < e->off) e->off = off, e->x = x, e->y = y;
+  if (off < e->off) e->off = off, e->x = hit->x, e->y = hit->y;
 }
 
-static void add_matte(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, int64_t weight) {
-  static const int rows[3] = {OBJECT, MATERIAL, INSTANCE};
+static void add_matte(const vlChannelPass *p, vlChannelWorker *w, const vlSampleHit *hit, int64_t weight) {
   for (uint32_t k = 0; k < 3; k++) {
-    uint32_t id = ((uint32_t *)(void *)vl_channel_row(w, (uint32_t)rows[k]))[i];
-    if (!id || !vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT << k)) continue;
-    vlTallyEntry *e = tally_find(&w->tallies[k], id);
+    if (!hit->ids[k] || !vl_channel_wanted(p, VL_CHANNEL_CRYPTO_OBJECT << k)) continue;
+    vlTallyEntry *e = tally_find(&w->tallies[k], hit->ids[k]);
     if (e) e->weight += weight;
   }
+}
+
+/* Adds a sample to the pixel; its film point is relative to the pixel's corner. Weights are rounded as the film rounds
+ * them. Negative weights of a filter's lobes count for no id. */
+static void add(const vlChannelPass *p, vlChannelWorker *w, Count *c, const vlSampleHit *hit, float filter_weight) {
+  int64_t weight = filter_weight > 0.0f ? (int64_t)((double)filter_weight * 0x1p24 + 0.5) : 0;
+  c->total += weight;
+  if (c->matte)
+    add_matte(p, w, hit, weight);
+  else
+    add_choice(p, w, c, hit, weight);
 }
 
 /* Writes the ranks by decreasing weight: the hash as the bits of a float, and its share of the pixel. */
@@ -132,8 +129,8 @@ static void end_pixel(const vlChannelPass *p, vlChannelWorker *w, const Count *c
   if (e) w->film_x[k] = e->x, w->film_y[k] = e->y;
 }
 
-static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t n) {
-  if (n == 0) return;
+/* Traces the first n of the worker's rows. */
+static void trace(const vlChannelPass *p, vlChannelWorker *w, const Count *c, uint32_t n) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   for (uint32_t i = n; i < VL_PAD(n); i++) r.px[i] = r.px[n - 1], r.py[i] = r.py[n - 1], r.index[i] = r.index[n - 1];
   if (!c->rays->lens)
@@ -155,33 +152,134 @@ static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t
                             .instance = (uint32_t *)(void *)vl_channel_row(w, INSTANCE),
                             .distance = depths ? vl_channel_row(w, DISTANCE) : NULL};
   p->ground_truth_kernels->hits(p->world, &p->ground_truth, w->scratch, &hits);
+  for (uint32_t i = 0; i < n && !depths; i++) vl_channel_row(w, DISTANCE)[i] = INFINITY;
+}
+
+/* The hit of row i. */
+static vlSampleHit hit_of(const vlChannelPass *p, vlChannelWorker *w, uint32_t i) {
+  static const uint32_t rows[3] = {OBJECT, MATERIAL, INSTANCE};
+  vlSampleHit hit = {.x = vl_channel_row(w, VL_FILM_X)[i], .y = vl_channel_row(w, VL_FILM_Y)[i], .z = INFINITY};
+  for (int k = 0; k < 3; k++) hit.ids[k] = ((uint32_t *)(void *)vl_channel_row(w, rows[k]))[i];
+  float t = vl_channel_row(w, DISTANCE)[i];
+  if (!(t < INFINITY)) return hit;
+  const double *m = p->camera.camera_from_world;
+  double q[3];
+  for (uint32_t k = 0; k < 3; k++)
+    q[k] =
+        (double)vl_channel_row(w, VL_FILM_RAY + k)[i] + (double)t * (double)vl_channel_row(w, VL_FILM_RAY + 3 + k)[i];
+  hit.z = (float)(m[8] * q[0] + m[9] * q[1] + m[10] * q[2] + m[11]);
+  return hit;
+}
+
+/* ---- pixels with samples of their own ---------------------------------------------------------------------------- */
+
+static void flush(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t n) {
+  if (n == 0) return;
+  vlFilmRayRows r = vl_film_ray_rows(w->rows);
+  trace(p, w, c, n);
   for (uint32_t i = 0; i < n; i++) {
+    vlSampleHit hit = hit_of(p, w, i);
     if (r.index[i] == p->first_sample) begin_pixel(w, c);
-    /* Weights are rounded as the film rounds them. Negative weights of a filter's lobes count for no id. */
-    int64_t weight = r.weight[i] > 0.0f ? (int64_t)((double)r.weight[i] * 0x1p24 + 0.5) : 0;
-    c->total += weight;
-    if (c->matte)
-      add_matte(p, w, i, weight);
-    else
-      add_choice(p, w, c, i, weight);
+    add(p, w, c, &hit, r.weight[i]);
     if (r.index[i] == p->first_sample + c->spp - 1) end_pixel(p, w, c, (uint32_t)r.px[i], (uint32_t)r.py[i]);
   }
 }
 
-static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, bool matte, uint32_t tile) {
+static void count_own(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t tile) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   uint32_t n = 0, x, y;
-  Count c = {.rays = rays, .matte = matte, .spp = vl_channel_spp(p, tile)};
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
-    for (uint32_t s = 0; s < c.spp; s++) {
+    for (uint32_t s = 0; s < c->spp; s++) {
       rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = p->first_sample + s;
       if (++n < VL_BATCH) continue;
-      flush(p, w, &c, n);
+      flush(p, w, c, n);
       n = 0;
     }
   }
-  flush(p, w, &c, n);
+  flush(p, w, c, n);
+}
+
+/* ---- pixels that share samples (reconstruct.h) ------------------------------------------------------------------- */
+
+/* A square of pixels, from x0, y0 on, and its samples [first, first + count). With its border it has `width` x `height`
+ * pixels. w->hits holds them sample by sample, row by row. */
+typedef struct Square {
+  int32_t x0, y0;
+  uint32_t side, width, height, first, count;
+} Square;
+
+static void trace_square(const vlChannelPass *p, vlChannelWorker *w, const Count *c, const Square *q) {
+  const uint32_t *border = p->reconstruction.border;
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  uint32_t pixels = q->width * q->height, total = pixels * q->count;
+  for (uint32_t done = 0, n; done < total; done += n) {
+    n = total - done < VL_BATCH ? total - done : VL_BATCH;
+    for (uint32_t i = 0; i < n; i++) {
+      uint32_t k = (done + i) % pixels;
+      rows.px[i] = q->x0 - (int32_t)border[0] + (int32_t)(k % q->width);
+      rows.py[i] = q->y0 - (int32_t)border[1] + (int32_t)(k / q->width);
+      rows.index[i] = p->first_sample + q->first + (done + i) / pixels;
+    }
+    trace(p, w, c, n);
+    for (uint32_t i = 0; i < n; i++) w->hits[done + i] = hit_of(p, w, i);
+  }
+}
+
+/* Adds the square's samples that count in its pixel (x, y). */
+static void add_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, const Square *q, uint32_t x, uint32_t y) {
+  int32_t bx = (int32_t)p->reconstruction.border[0], by = (int32_t)p->reconstruction.border[1];
+  const vlSampleHit *hits = w->hits;
+  for (uint32_t s = 0; s < q->count; s++, hits += q->width * q->height)
+    for (int32_t v = -by; v <= by; v++)
+      for (int32_t u = -bx; u <= bx; u++) {
+        vlSampleHit hit = hits[(y + (uint32_t)(v + by)) * q->width + x + (uint32_t)(u + bx)];
+        float weight = vl_shared_weight(&p->reconstruction, hit.x, hit.y, -u, -v);
+        hit.x += (float)u, hit.y += (float)v;
+        if (weight > 0.0f) add(p, w, c, &hit, weight);
+      }
+}
+
+/* Counts the pixels of a square. All samples of its pixels are held at once, except if it is a single pixel. */
+static void count_square(const vlChannelPass *p, vlChannelWorker *w, Count *c, Square *q) {
+  const uint32_t *crop = p->def->crop;
+  uint32_t most = VL_SHARED_HITS / (q->width * q->height);
+  for (q->first = 0; q->first < c->spp; q->first += q->count) {
+    q->count = c->spp - q->first < most ? c->spp - q->first : most;
+    trace_square(p, w, c, q);
+    for (uint32_t k = 0; k < q->side * q->side; k++) {
+      uint32_t x = (uint32_t)q->x0 + k % q->side, y = (uint32_t)q->y0 + k / q->side;
+      if (x < crop[0] || y < crop[1] || x >= crop[2] || y >= crop[3]) continue;
+      if (q->first == 0) begin_pixel(w, c);
+      add_shared(p, w, c, q, k % q->side, k / q->side);
+      if (q->first + q->count == c->spp) end_pixel(p, w, c, x, y);
+    }
+  }
+}
+
+static void count_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t tile) {
+  const uint32_t *border = p->reconstruction.border, *crop = p->def->crop;
+  uint32_t x0 = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t y0 = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  Square q = {.side = VL_CHANNEL_TILE};
+  for (;; q.side /= 2) {
+    q.width = q.side + 2 * border[0], q.height = q.side + 2 * border[1];
+    if (q.side == 1 || (uint64_t)q.width * q.height * c->spp <= VL_SHARED_HITS) break;
+  }
+  for (uint32_t y = y0; y < y0 + VL_CHANNEL_TILE; y += q.side)
+    for (uint32_t x = x0; x < x0 + VL_CHANNEL_TILE; x += q.side) {
+      if (x + q.side <= crop[0] || y + q.side <= crop[1] || x >= crop[2] || y >= crop[3]) continue;
+      q.x0 = (int32_t)x, q.y0 = (int32_t)y;
+      count_square(p, w, c, &q);
+    }
+}
+
+static void count(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, bool matte, uint32_t tile) {
+  Count c = {.rays = rays, .matte = matte, .spp = vl_channel_spp(p, tile)};
+  if (p->shares)
+    count_shared(p, w, &c, tile);
+  else
+    count_own(p, w, &c, tile);
 }
 
 void vl_channel_count(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {

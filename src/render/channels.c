@@ -176,12 +176,16 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
     w->batch = vl_alloc_zero(context, 1, sizeof *w->batch);
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
     if (counts) w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
+    if (p->shares) w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
     if (flow) w->other = vl_alloc_zero(context, 1, sizeof *w->other);
     if (flow) w->lanes = vl_alloc_zero(context, VL_BATCH, sizeof *w->lanes);
-    if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) || (flow && (!w->other || !w->lanes)))
+    if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) || (p->shares && !w->hits) ||
+        (flow && (!w->other || !w->lanes)))
       return vl_fail_memory(error);
   }
-  return p->workers ? VL_OK : vl_fail_memory(error);
+  bool whole = p->workers && (!p->shares || vl_reconstruction_make(context, &vl_film_def(p->def->film)->filter,
+                                                                   &p->reconstruction) == VL_OK);
+  return whole ? VL_OK : vl_fail_memory(error);
 }
 
 static vlResult open_mattes(vlChannelPass *p, vlError *error) {
@@ -208,10 +212,12 @@ static void free_all(vlChannelPass *p) {
     vl_free(context, w->batch);
     vl_free(context, w->rows);
     vl_free(context, w->tallies);
+    vl_free(context, w->hits);
     vl_free(context, w->other);
     vl_free(context, w->lanes);
   }
   vl_free(context, p->workers);
+  vl_reconstruction_free(context, &p->reconstruction);
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
 }
 
@@ -229,6 +235,8 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   vl_film_rays_init(&p->image, camera, vl_film_filter(def->film), &sampler, isa);
   vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
   p->choice.middle = true;
+  p->shares = vl_shares_samples(film, def->render);
+  p->choice.uniform = p->image.uniform = p->shares;
   vl_film_rays_clock(&p->image, p->world);
   vl_film_rays_clock(&p->choice, p->world);
 }

@@ -22,9 +22,11 @@ typedef struct Call {
   vlRenderWorker worker;
   vlFilm *film, *unlimited; /* of one pixel; the second without max_component */
   vlPathRecorder recorder;
-  uint32_t x, y, lanes; /* lanes: number of paths per batch */
+  uint32_t x, y, lanes;       /* lanes: number of paths per batch */
+  uint32_t border[2], pixels; /* the samples are taken in this many pixels, up to a border around (x, y) */
   /* the result so far */
   vlPath *paths;
+  size_t path_count, path_room;
   vlPathVertex *vertices;
   vlPathContribution *contributions;
   size_t vertex_count, vertex_room, contribution_count, contribution_room;
@@ -36,7 +38,7 @@ static size_t round_up(size_t size) {
   return (size + 63) & ~(size_t)63;
 }
 
-static vlResult make_memory(Call *c, uint32_t count, vlError *error) {
+static vlResult make_memory(Call *c, vlError *error) {
   uint32_t depth = c->run.def->max_depth + 1;
   uint32_t skies = (uint32_t)c->run.world->infinite_lights.count;
   c->lanes = 1u << 14;
@@ -49,9 +51,8 @@ static vlResult make_memory(Call *c, uint32_t count, vlError *error) {
   r->contributions = vl_alloc_array(c->context, (size_t)c->lanes * r->most_contributions, sizeof *r->contributions);
   c->worker.scratch = vl_alloc_zero(c->context, 1, round_up(vl_trace_scratch_size()));
   c->worker.rows = vl_alloc_zero(c->context, (size_t)VL_RENDER_ROWS * VL_ROW_SIZE, sizeof(float));
-  c->paths = vl_alloc_zero(c->context, count, sizeof *c->paths);
   c->worker.recorder = r;
-  bool all = r->paths && r->vertices && r->contributions && c->worker.scratch && c->worker.rows && c->paths;
+  bool all = r->paths && r->vertices && r->contributions && c->worker.scratch && c->worker.rows;
   return all ? VL_OK : vl_fail_memory(error);
 }
 
@@ -64,6 +65,7 @@ static void free_memory(Call *c) {
   vl_free(c->context, c->paths);
   vl_free(c->context, c->vertices);
   vl_free(c->context, c->contributions);
+  vl_reconstruction_free(c->context, &c->run.reconstruction);
   vl_film_destroy(c->film);
   vl_film_destroy(c->unlimited);
 }
@@ -84,12 +86,25 @@ static const float *row(const Call *c, int r) {
   return c->worker.rows + (size_t)r * VL_ROW_SIZE;
 }
 
-static void list_samples(const Call *c, uint32_t first, uint32_t n) {
+/* Lists n samples, after `done` others. */
+static void list_samples(const Call *c, uint32_t first, uint32_t done, uint32_t n) {
   vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
+  uint32_t width = 2 * c->border[0] + 1;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    rows.px[i] = (int32_t)c->x, rows.py[i] = (int32_t)c->y;
-    rows.index[i] = first + (i < n ? i : n - 1);
+    uint32_t k = done + (i < n ? i : n - 1), pixel = k % c->pixels, own = c->pixels / 2;
+    pixel = pixel == 0 ? own : pixel <= own ? pixel - 1 : pixel; /* the pixel's own sample comes first */
+    rows.px[i] = (int32_t)(c->x + pixel % width) - (int32_t)c->border[0];
+    rows.py[i] = (int32_t)(c->y + pixel / width) - (int32_t)c->border[1];
+    rows.index[i] = first + k / c->pixels;
   }
+}
+
+/* The weight of sample i of the batch in the pixel. */
+static float weight_of(const Call *c, uint32_t i) {
+  vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
+  if (!c->run.shares) return rows.weight[i];
+  return vl_shared_weight(&c->run.reconstruction, rows.film_x[i], rows.film_y[i], (int32_t)c->x - rows.px[i],
+                          (int32_t)c->y - rows.py[i]);
 }
 
 /* Fills what the recorder does not know: the camera ray, the wavelengths, the sample. */
@@ -98,11 +113,12 @@ static void fill_path(const Call *c, uint32_t i, vlPath *path) {
   vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
   const vlCameraRays *ray = &rows.rays;
   path->sample = rows.index[i];
-  path->film[0] = (float)c->x + rows.film_x[i], path->film[1] = (float)c->y + rows.film_y[i];
+  path->x = rows.px[i], path->y = rows.py[i];
+  path->film[0] = (float)path->x + rows.film_x[i], path->film[1] = (float)path->y + rows.film_y[i];
   path->origin[0] = ray->ox[i], path->origin[1] = ray->oy[i], path->origin[2] = ray->oz[i];
   path->direction[0] = ray->dx[i], path->direction[1] = ray->dy[i], path->direction[2] = ray->dz[i];
   path->time = ray->time[i];
-  path->filter_weight = rows.weight[i];
+  path->filter_weight = weight_of(c, i);
   path->camera_weight = vl_camera_weighted(&r->film_rays.camera) ? ray->weight[i] : 1.0f;
   bool valid = r->film_rays.camera.plain || ray->valid[i] > 0.0f;
   bool removed = r->def->transparent && !(row(c, VL_ROW_RADIANCE + 4)[i] > 0.0f);
@@ -139,11 +155,15 @@ static void expose(const Call *c, const vlPath *path, vlPathContribution *list) 
   }
 }
 
-/* Appends the n recorded paths to the result. Pointers into growing lists are set at the end. */
-static vlResult keep(Call *c, uint32_t done, uint32_t n, vlError *error) {
+/* Appends those of the n recorded paths that count in the pixel. Pointers into growing lists are set at the end. */
+static vlResult keep(Call *c, uint32_t n, vlError *error) {
   vlPathRecorder *r = &c->recorder;
+  vlPath *room = grow(c->context, c->paths, sizeof *room, c->path_count, &c->path_room, n);
+  if (!room) return vl_fail_memory(error);
+  c->paths = room;
   for (uint32_t i = 0; i < n; i++) {
-    vlPath *path = &c->paths[done + i];
+    if (c->run.shares && !(weight_of(c, i) > 0.0f)) continue;
+    vlPath *path = &c->paths[c->path_count];
     vlPathContribution *lights = r->contributions + (size_t)i * r->most_contributions;
     *path = r->paths[i];
     fill_path(c, i, path);
@@ -160,22 +180,24 @@ static vlResult keep(Call *c, uint32_t done, uint32_t n, vlError *error) {
     memcpy(all + c->contribution_count, lights, path->contribution_count * sizeof *all);
     c->vertex_count += path->vertex_count;
     c->contribution_count += path->contribution_count;
+    c->path_count++;
   }
   return VL_OK;
 }
 
 static vlResult trace_all(Call *c, uint32_t first, uint32_t count, vlError *error) {
   vlResult result = VL_OK;
-  for (uint32_t done = 0; done < count && result == VL_OK;) {
-    uint32_t n = count - done < c->lanes ? count - done : c->lanes;
+  uint32_t total = count * c->pixels;
+  for (uint32_t done = 0; done < total && result == VL_OK;) {
+    uint32_t n = total - done < c->lanes ? total - done : c->lanes;
     if (vl_is_cancelled(c->run.def->cancel)) return vl_fail(error, VL_CANCELLED, "stopped");
     memset(c->recorder.paths, 0, c->lanes * sizeof *c->recorder.paths);
-    list_samples(c, first + done, n);
+    list_samples(c, first, done, n);
     unsigned state = vl_accel_enter();
     vl_render_batch(&c->run, &c->worker, n);
     vl_accel_leave(state);
     if (c->recorder.lost) return vl_fail(error, VL_ERROR_ARGUMENT, "paths: a path has more vertices than expected");
-    result = keep(c, done, n, error);
+    result = keep(c, n, error);
     done += n;
   }
   return result;
@@ -211,7 +233,8 @@ typedef struct Block {
   vlPixelPaths head;
 } Block;
 
-static vlResult pack(const Call *c, uint32_t count, vlPixelPaths **result, vlError *error) {
+static vlResult pack(const Call *c, uint32_t samples, vlPixelPaths **result, vlError *error) {
+  uint32_t count = (uint32_t)c->path_count;
   size_t head = round_up(sizeof(Block)), paths = round_up(count * sizeof(vlPath));
   size_t vertices = round_up(c->vertex_count * sizeof(vlPathVertex));
   size_t bytes = head + paths + vertices + c->contribution_count * sizeof(vlPathContribution);
@@ -221,15 +244,16 @@ static vlResult pack(const Call *c, uint32_t count, vlPixelPaths **result, vlErr
   vlPath *p = (vlPath *)(void *)(memory + head);
   vlPathVertex *v = (vlPathVertex *)(void *)(memory + head + paths);
   vlPathContribution *l = (vlPathContribution *)(void *)(memory + head + paths + vertices);
-  memcpy(p, c->paths, count * sizeof *p);
+  if (count) memcpy(p, c->paths, count * sizeof *p);
   if (c->vertex_count) memcpy(v, c->vertices, c->vertex_count * sizeof *v);
   if (c->contribution_count) memcpy(l, c->contributions, c->contribution_count * sizeof *l);
   for (uint32_t i = 0; i < count; i++) {
     p[i].vertices = v, p[i].contributions = l;
     v += p[i].vertex_count, l += p[i].contribution_count;
   }
-  *block = (Block){.context = c->context,
-                   .head = {.x = c->x, .y = c->y, .tracer = c->run.trace.tracer, .count = count, .paths = p}};
+  *block = (Block){
+      .context = c->context,
+      .head = {.x = c->x, .y = c->y, .tracer = c->run.trace.tracer, .samples = samples, .count = count, .paths = p}};
   average(&block->head);
   *result = &block->head;
   return VL_OK;
@@ -288,9 +312,15 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
     c.run.film = c.film;
     c.run.sequence.length = own.sequence ? own.sequence : vl_sampler_sequence(own.sampler, own.spp);
     vl_render_prepare(&c.run, &focused);
-    c.run.shares = c.run.film_rays.uniform = false;
     c.run.workers = &c.worker;
-    result = make_memory(&c, count, error);
+    result = make_memory(&c, error);
+    c.pixels = 1;
+  }
+  if (result == VL_OK && c.run.shares) {
+    if (vl_reconstruction_make(c.context, &film->filter, &c.run.reconstruction) != VL_OK)
+      result = vl_fail_memory(error);
+    memcpy(c.border, c.run.reconstruction.border, sizeof c.border);
+    c.pixels = (2 * c.border[0] + 1) * (2 * c.border[1] + 1);
   }
   if (result == VL_OK) result = trace_all(&c, first, count, error);
   if (result == VL_OK) result = pack(&c, count, paths, error);

@@ -24,12 +24,16 @@ static uint32_t border_of(double radius) {
   return (uint32_t)ceil(radius - 0.5);
 }
 
-bool vl_filter_shares(const vlPixelFilter *f) {
+static bool filter_shares(const vlPixelFilter *f) {
   bool positive = f->kind == VL_PIXEL_FILTER_BOX || f->kind == VL_PIXEL_FILTER_TRIANGLE ||
                   f->kind == VL_PIXEL_FILTER_GAUSSIAN || f->kind == VL_PIXEL_FILTER_BLACKMAN_HARRIS;
   bool wide = f->radius_x > 0.5f || f->radius_y > 0.5f, own = f->radius_x >= 0.5f && f->radius_y >= 0.5f;
   return positive && wide && own && border_of(f->radius_x) <= VL_SHARED_BORDER &&
          border_of(f->radius_y) <= VL_SHARED_BORDER;
+}
+
+bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def) {
+  return def->share_samples && !def->centred && !film->buckets && filter_shares(&film->filter);
 }
 
 vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r) {

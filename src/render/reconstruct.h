@@ -9,6 +9,7 @@
 #define RENDER_RECONSTRUCT_H
 
 #include "film/film.h"
+#include "velo/render.h"
 
 enum { VL_SHARED_SIDE = 64, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };
 /* Most samples of a block with its border, for one sample index. */
@@ -29,8 +30,9 @@ static inline double vl_filter_curve_at(const vlFilterCurve *c, double x) {
   return c->values[k] + (at - k) * (c->values[k + 1] - c->values[k]);
 }
 
-/* Whether pixels share samples: the filter has no negative lobes, reaches beyond its pixel and not too far. */
-bool vl_filter_shares(const vlPixelFilter *filter);
+/* Whether pixels share samples: the render def says so, the film has no spectra, and the filter has no negative lobes,
+ * reaches beyond its pixel and not too far. */
+bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def);
 
 typedef struct vlReconstruction {
   vlFilterCurve curve[2];
@@ -38,6 +40,13 @@ typedef struct vlReconstruction {
 } vlReconstruction;
 vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r);
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
+
+/* The weight of a sample in the pixel that lies (dx, dy) pixels from the sample's own; (x, y): its film point, from its
+ * pixel's corner. */
+static inline float vl_shared_weight(const vlReconstruction *r, float x, float y, int32_t dx, int32_t dy) {
+  return (float)vl_filter_curve_at(&r->curve[0], (double)x - 0.5 - dx) *
+         (float)vl_filter_curve_at(&r->curve[1], (double)y - 0.5 - dy);
+}
 
 /* The samples of one index in a block and its border, row by row. x, y: the filter's values along an axis in the pixels
  * around, from the one that is border[0] (border[1]) pixels before the sample's own. */

@@ -88,7 +88,7 @@ static size_t grids_size(void) {
 
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (def->share_samples ? grids_size() : 0);
+  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (vl_shares_samples(film, def) ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
@@ -153,7 +153,7 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
   r->film_rays.centred = r->def->centred;
-  r->shares = r->def->share_samples && vl_filter_shares(&f->filter) && !r->def->centred && !f->buckets;
+  r->shares = vl_shares_samples(f, r->def);
   r->film_rays.uniform = r->shares;
   r->exposure_time = (float)camera->exposure_time;
   r->trace_kernels = vl_trace_kernels(isa);
@@ -226,6 +226,7 @@ vlRenderDef vl_default_render_def(void) {
                        .merge_radius = VL_UNSET,
                        .light_paths = VL_AS_MANY_AS_PIXELS,
                        .noise_scale = 1.0f,
+                       .share_samples = true,
                        .ao_cosine = true};
 }
 

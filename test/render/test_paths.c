@@ -14,7 +14,8 @@ static vlPixelPaths *trace(const vlWorld *world, const vlCamera *camera, const v
   vlError error = {0};
   if (vl_trace_paths(world, camera, film, def, x, y, 0, count, &paths, &error) != VL_OK)
     fail_msg("paths: %s", error.message);
-  assert_int_equal(paths->count, count);
+  assert_int_equal(paths->samples, count);
+  if (!def->share_samples) assert_int_equal(paths->count, count);
   return paths;
 }
 
@@ -91,8 +92,20 @@ static uint32_t occurring(const vlPath *p) {
   return bits;
 }
 
-static void sums(void **state) {
-  (void)state;
+/* The mean of the paths with sample index `sample`, weighted by the filter. */
+static void mean_of(const vlPixelPaths *paths, uint32_t sample, double rgb[3]) {
+  double weight = 0;
+  rgb[0] = rgb[1] = rgb[2] = 0;
+  for (uint32_t i = 0; i < paths->count; i++) {
+    const vlPath *p = &paths->paths[i];
+    if (p->sample != sample) continue;
+    weight += p->filter_weight;
+    for (int c = 0; c < 3; c++) rgb[c] += (double)p->filter_weight * p->rgb[c];
+  }
+  for (int c = 0; c < 3; c++) rgb[c] /= weight;
+}
+
+static void check_sums(bool shared) {
   static const Case cases[] = {{"features/two_way.pbrt", VL_TRACER_PATH, 5, SURFACE | SAMPLED},
                                {"features/media.pbrt", VL_TRACER_VOLPATH, 20, SURFACE | MEDIUM | SAMPLED | GLOW},
                                {"features/subsurface.pbrt", VL_TRACER_VOLPATH, 8, SURFACE | EXIT | SAMPLED},
@@ -107,24 +120,29 @@ static void sums(void **state) {
     assert_true(load_world(&l, cases[k].scene, SIDE, SIDE));
     vlFilmDef film = vl_default_film_def(SIDE, SIDE);
     vlRenderDef def = vl_default_render_def();
-    def.tracer = cases[k].tracer, def.max_depth = cases[k].depth, def.spp = COUNT;
+    def.tracer = cases[k].tracer, def.max_depth = cases[k].depth, def.spp = COUNT, def.share_samples = shared;
     uint32_t occurs = 0;
     for (uint32_t y = 1; y < SIDE; y += 5)
       for (uint32_t x = 1; x < SIDE; x += 5) {
         vlPixelPaths *paths = trace(l.world, &l.camera, &film, &def, x, y, COUNT);
         float rgb[3];
-        for (uint32_t i = 0; i < COUNT; i++) {
+        uint32_t next = 0;
+        for (uint32_t i = 0; i < paths->count; i++) {
           const vlPath *p = &paths->paths[i];
-          assert_int_equal(p->sample, i);
+          bool own = p->x == (int32_t)x && p->y == (int32_t)y;
+          if (own) assert_int_equal(p->sample, next++);
+          assert_true((own || shared) && p->sample + 1 == next && p->filter_weight > 0);
           check_path(p);
           occurs |= occurring(p);
         }
+        assert_int_equal(next, COUNT);
+        assert_int_equal(paths->count > COUNT, shared);
+        double expected[3];
+        mean_of(paths, 3, expected);
         rendered(l.context, l.world, &l.camera, &film, &def, paths, 3, 4, rgb);
-        for (int c = 0; c < 3; c++) { /* the film holds multiples of 2^-24 of the weight, and 2^-64 of the sample */
-          float expected = paths->paths[3].rgb[c];
-          if (fabs((double)rgb[c] - expected) > 1e-6 * fabs(expected) + 1e-12)
-            fail_msg("%s (%u, %u): %g, rendered %g", cases[k].scene, x, y, (double)expected, (double)rgb[c]);
-        }
+        for (int c = 0; c < 3; c++) /* the film holds multiples of 2^-24 of the weight, and 2^-64 of the sample */
+          if (fabs((double)rgb[c] - expected[c]) > 1e-6 * fabs(expected[c]) + 1e-12)
+            fail_msg("%s (%u, %u): %g, rendered %g", cases[k].scene, x, y, expected[c], (double)rgb[c]);
         rendered(l.context, l.world, &l.camera, &film, &def, paths, 0, COUNT, rgb);
         for (int c = 0; c < 3; c++)
           assert_true(fabs((double)rgb[c] - paths->mean[c]) <= 1e-6 * fabs(paths->mean[c]) + 1e-12);
@@ -133,6 +151,16 @@ static void sums(void **state) {
     if ((occurs & cases[k].occurs) != cases[k].occurs) fail_msg("%s: only %x occurs", cases[k].scene, occurs);
     unload_world(&l);
   }
+}
+
+static void sums_of_own_samples(void **state) {
+  (void)state;
+  check_sums(false);
+}
+
+static void sums_of_shared_samples(void **state) {
+  (void)state;
+  check_sums(true);
 }
 
 /* A floor of reflectance 1/2 seen from straight above in RGB, with a lamp: a sphere of radius 1/4 at height 2. */
@@ -217,6 +245,7 @@ static void densities(void **state) {
     assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, NULL), VL_OK);
     int sampled = 0, hit = 0;
     for (uint32_t x = 0; x < SIDE; x += 6) {
+      s.render.share_samples = false;
       vlPixelPaths *paths = trace(world, &camera, &s.film, &s.render, x, 5, 256);
       for (uint32_t i = 0; i < paths->count; i++) check_floor(&paths->paths[i], point, &sampled, &hit);
       vl_pixel_paths_destroy(paths);
@@ -282,7 +311,8 @@ static void cancelled(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(sums), cmocka_unit_test(densities), cmocka_unit_test(wrong_calls),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(sums_of_own_samples), cmocka_unit_test(sums_of_shared_samples),
+                                     cmocka_unit_test(densities), cmocka_unit_test(wrong_calls),
                                      cmocka_unit_test(cancelled)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -148,14 +148,18 @@ static void print_vertex(const PathsReport *r, const vlPath *p, uint32_t index) 
 
 void paths_print_text(const PathsReport *r) {
   const vlPixelPaths *all = r->traced->paths;
-  printf("%s: pixel %u,%u, %u samples by %s: mean %.6g %.6g %.6g\n", r->file, all->x, all->y, all->count,
-         all->tracer == VL_TRACER_PATH ? "path" : "volpath", all->mean[0], all->mean[1], all->mean[2]);
+  printf("%s: pixel %u,%u, %u samples", r->file, all->x, all->y, all->samples);
+  if (all->count != all->samples) printf(" (%u with those of the pixels around that count)", all->count);
+  printf(" by %s: mean %.6g %.6g %.6g\n", all->tracer == VL_TRACER_PATH ? "path" : "volpath", all->mean[0],
+         all->mean[1], all->mean[2]);
   if (all->dropped) printf("%u samples are not finite\n", all->dropped);
   print_seen(r);
   double sum = all_shares(all);
   for (uint32_t k = 0; k < r->shown; k++) {
     const vlPath *p = &all->paths[r->traced->order[k]];
-    printf("\nsample %u: ", p->sample);
+    printf("\nsample %u", p->sample);
+    if (p->x != (int32_t)all->x || p->y != (int32_t)all->y) printf(" of pixel %d,%d", p->x, p->y);
+    printf(": ");
     print_rgb(p->rgb);
     printf(", %.3g %% of the pixel; film point %.6g,%.6g", sum > 0 ? 100 * fabs(paths_share(p)) / sum : 0.0,
            (double)p->film[0], (double)p->film[1]);
@@ -277,6 +281,10 @@ static void json_vertex(Json *json, const PathsReport *r, const vlPathVertex *v)
 
 static void json_path(Json *json, const PathsReport *r, const vlPath *p, double sum) {
   json_begin(json, NULL, '{');
+  json_begin(json, "pixel", '[');
+  json_integer(json, NULL, p->x);
+  json_integer(json, NULL, p->y);
+  json_end(json, ']');
   json_integer(json, "sample", p->sample);
   json_floats(json, "film", p->film, 2);
   json_floats(json, "origin", p->origin, 3);
@@ -309,7 +317,8 @@ void paths_put_json(Json *json, const PathsReport *r) {
   json_integer(json, NULL, all->y);
   json_end(json, ']');
   json_text(json, "tracer", all->tracer == VL_TRACER_PATH ? "path" : "volpath");
-  json_integer(json, "samples", all->count);
+  json_integer(json, "samples", all->samples);
+  json_integer(json, "counted", all->count);
   json_integer(json, "dropped", all->dropped);
   json_begin(json, "mean", '[');
   for (int i = 0; i < 3; i++) json_number(json, NULL, all->mean[i]);

@@ -222,7 +222,7 @@ vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp) {
   set_int(&header, "velo.maxDepth", render->max_depth);
   set_text(&header, "velo.color", choice_name(color_choices, (int)build->color));
   set_text(&header, "velo.bits", choice_name(bits_choices, (int)build->bits));
-  if (render->share_samples) set_text(&header, "velo.filterSamples", "shared");
+  set_text(&header, "velo.filterSamples", render->share_samples ? "shared" : "own");
   if (build->regularize) set_int(&header, "velo.regularize", 1);
   if (render->merge_radius > 0) set_double(&header, "velo.mergeRadius", render->merge_radius);
   if (render->light_paths != VL_AS_MANY_AS_PIXELS) set_double(&header, "velo.lightPaths", render->light_paths);

@@ -73,11 +73,6 @@ int channels_choose(Channels *c, const Arguments *arguments) {
   if (c->boxes) c->bits |= VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_INSTANCE;
   int status = v[RENDER_CHANNELS].given ? read_list(v[RENDER_CHANNELS].text, &c->bits) : -1;
   if (status >= 0) return status;
-  const uint32_t mattes = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
-  if (c->bits & mattes && v[RENDER_FILTER_SAMPLES].given && v[RENDER_FILTER_SAMPLES].integer == 1)
-    return report_usage(
-        "--filter-samples shared: a Cryptomatte has the pixels' own samples; its coverages would not add "
-        "up to alpha");
   if (c->bits && c->mode != VL_CHANNEL_MODE_CENTRE)
     c->bits |= VL_CHANNEL_FILM; /* adds the film position, without which the point's sample is unknown */
   static const int options[2] = {RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE};

@@ -112,7 +112,7 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   printf("image   %u x %u pixels", c->width, c->height);
   if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
-  printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? " of shared samples" : "", f.color);
+  printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples", f.color);
   printf("sampling  %u spp, sampler %s, seed %u", render->spp, f.sampler, render->seed);
   if (render->time_limit > 0) printf(", at most %g s", render->time_limit);
   printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth, f.light_sampler,

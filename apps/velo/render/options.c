@@ -163,9 +163,8 @@ const Option render_options[] = {
      1, 1 << 24, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter, with pbrt's default size:", 0, 0, filters},
     {RENDER_FILTER_SAMPLES, 0, "filter-samples", OPTION_CHOICE, "NAME",
-     "own: each pixel has samples of its own, drawn from its filter; shared: a pixel counts all samples that its "
-     "filter "
-     "covers, so that it has less noise, in common with its neighbours (docs/filters.md); default own:",
+     "shared: a pixel counts all samples that its filter covers, so that it has less noise, in common with its "
+     "neighbours; own: each pixel has samples of its own, drawn from its filter (docs/filters.md); default shared:",
      0, 0, filter_samples_choices},
     {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
      "method that chooses one light for a shading point:", 0, 0, light_sampler_choices},

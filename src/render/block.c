@@ -189,9 +189,17 @@ static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedB
   }
 }
 
-/* Traces the samples [first, first + count) of a block and its border. */
-static void trace_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first,
-                         uint32_t count) {
+/* Whether to stop. The user's callback runs with its own floating-point state. */
+static bool ask_between(vlRenderRun *r, unsigned *state) {
+  vl_accel_leave(*state);
+  bool stop = vl_stop_check(&r->stop);
+  *state = vl_accel_enter();
+  return stop;
+}
+
+/* Traces the samples [first, first + count) of a block and its border. False: it was stopped. */
+static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first, uint32_t count,
+                         unsigned *state) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   int32_t bx = (int32_t)r->reconstruction.border[0], by = (int32_t)r->reconstruction.border[1];
   uint32_t width = b->width + 2 * (uint32_t)bx, height = b->height + 2 * (uint32_t)by;
@@ -210,7 +218,9 @@ static void trace_shared(const vlRenderRun *r, vlRenderWorker *w, const vlShared
       trace_batch(r, w, n);
       store_batch(r, w, b, first, n);
       done++, n = 0;
+      if (done < batches && ask_between(r, state)) return false;
     }
+  return true;
 }
 
 /* Adds one sample of each pixel of the block's rows [first, last) to the film: the mean over all samples of the grid
@@ -244,16 +254,16 @@ uint32_t vl_render_block_count(const vlRenderRun *r) {
 }
 
 void vl_render_choose_blocks(vlRenderRun *r) {
-  uint32_t threads = vl_context_threads(r->world->context);
+  uint32_t least = (r->shares ? 4 : 2) * vl_context_threads(r->world->context);
   r->span_x = r->pass_samples <= 2 ? 2 : 1;
   r->span_y = r->pass_samples <= 1 ? 2 : 1;
   if (r->shares) /* the larger a block, the fewer samples its border has in comparison; adaptive blocks are 32 x 32 */
     r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
-  while (r->span_y > 1 && vl_render_block_count(r) < 2 * threads) {
+  while (r->span_y > 1 && vl_render_block_count(r) < least) {
     r->span_y /= 2;
-    if (vl_render_block_count(r) < 2 * threads) r->span_x = r->span_x > 1 ? r->span_x / 2 : 1;
+    if (vl_render_block_count(r) < least) r->span_x = r->span_x > 1 ? r->span_x / 2 : 1;
   }
-  if (vl_render_block_count(r) < 2 * threads) r->span_x = 1;
+  if (vl_render_block_count(r) < least) r->span_x = 1;
 }
 
 void vl_render_block(void *user, uint32_t block, uint32_t worker) {
@@ -270,13 +280,11 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
       uint32_t n = list_samples(r, w, block, s, count);
       if (n) vl_render_batch(r, w, n);
     } else if (shared_block(r, block, &b)) {
-      trace_shared(r, w, &b, s, count);
-      for (uint32_t k = 0; k < count; k++) add_shared(r, w, &b, &w->grids[k]);
+      bool whole = trace_shared(r, w, &b, s, count, &state);
+      for (uint32_t k = 0; k < count && whole; k++) add_shared(r, w, &b, &w->grids[k]);
     }
     s += count;
-    vl_accel_leave(state); /* the user's callback runs with its own floating-point state */
-    vl_stop_check(&r->stop);
-    state = vl_accel_enter();
+    ask_between(r, &state);
   }
   vl_accel_leave(state);
   atomic_fetch_add(&r->blocks_done, 1);

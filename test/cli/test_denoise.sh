@@ -25,11 +25,13 @@ same both_ways_the_same clean.exr later.exr
 check header "$VELO" image info clean.exr
 expect_text names_denoiser "velo.denoiser"
 check less_error "$VELO" render room.pbrt --spp 512 -o reference.exr
+check own "$VELO" render room.pbrt --spp 8 --filter-samples own -o own.exr --denoise own_clean.exr
 if python3 - "$VELO" <<'PY'; then pass nearer; else fail nearer; fi
 import json, subprocess, sys
 def error(name):
     return json.loads(subprocess.run([sys.argv[1], "image", "diff", name, "reference.exr", "--json"], capture_output=True).stdout)["relmse"]
-assert error("clean.exr") < error("raw.exr") / 2, (error("clean.exr"), error("raw.exr"))
+clean, raw, own, own_clean = (error(name + ".exr") for name in ("clean", "raw", "own", "own_clean"))
+assert own_clean < own / 2 and clean < own / 2 and clean < raw, (clean, raw, own, own_clean)
 PY
 check crop "$VELO" render room.pbrt --spp 4 --crop 8,4,40,30 -o crop.png --denoise crop_clean.png
 

@@ -7,7 +7,7 @@ cd "$work" || exit 1
 write_scene scene.pbrt
 render="$VELO render --quiet"
 small="--resolution 130x70"
-noise="$small --noise 4%"
+noise="$small --noise 2%"
 
 check whole $render scene.pbrt $noise -o a.exr --film a.film --channels samples,error,Z
 # The noisiest blocks have at least three times the samples of the cleanest, and all counts are of the schedule.
@@ -64,9 +64,9 @@ $render scene.pbrt $noise --spp 20 --film s.film --channels samples,error,Z
 $render --continue s.film --spp 65536 -o b.exr
 same continued a.exr b.exr
 # a lower threshold goes on with the film of a higher one
-$render scene.pbrt $small --noise 3% -o finer.exr
+$render scene.pbrt $small --noise 1.5% -o finer.exr
 $render scene.pbrt $noise --film s.film
-check finer $render --continue s.film --noise 3% --spp 65536 -o b.exr
+check finer $render --continue s.film --noise 1.5% --spp 65536 -o b.exr
 same "a lower threshold" finer.exr b.exr
 # a crop along blocks has the pixels of the whole
 "$VELO" image convert a.exr part.pfm --crop 32,32,96,64

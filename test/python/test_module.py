@@ -253,12 +253,15 @@ def memory_does_not_grow():
 
     for seed in range(20):
         one(seed)
-    held, size, handles = context.memory, resident(), len(os.listdir("/proc/self/fd"))
-    for seed in range(count):
-        one(seed)
-    print("  %d renders: %+d bytes held, %+.1f MB resident" % (count, context.memory - held, resident() - size))
+    held, handles, grown = context.memory, len(os.listdir("/proc/self/fd")), []
+    while len(grown) < 3 and (not grown or grown[-1] >= 6):  # a leak grows each time; malloc's own blocks do not
+        size = resident()
+        for seed in range(count):
+            one(seed)
+        grown.append(resident() - size)
+        print("  %d renders: %+d bytes held, %+.1f MB resident" % (count, context.memory - held, grown[-1]))
     assert context.memory == held
-    assert resident() - size < 6, (size, resident())
+    assert grown[-1] < 6, grown
     assert len(os.listdir("/proc/self/fd")) == handles
 
 

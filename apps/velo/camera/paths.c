@@ -93,8 +93,7 @@ static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL,
 
 static const Option paths_options[] = {
     {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left", 0, 0, NULL},
-    {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N", "number of samples that are traced; default 16", 1, 1 << 20,
-     NULL},
+    {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N", "number of samples per pixel; default 16", 1, 1 << 20, NULL},
     {PATHS_FIRST, 0, "first", OPTION_INTEGER, "I", "index of the first sample; default 0", 0, 1 << 24, NULL},
     {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16", 0, 1 << 20, NULL},
     {PATHS_SORT, 0, "sort", OPTION_CHOICE, "NAME",
@@ -113,6 +112,8 @@ static const Option paths_options[] = {
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers", 0, 4294967295.0, NULL},
     {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1, 1 << 24, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
+    {RENDER_FILTER_SAMPLES, 0, "filter-samples", OPTION_CHOICE, "NAME",
+     "samples that count in a pixel, its own or all that its filter covers:", 0, 0, filter_samples_choices},
     {RENDER_LIGHT_SAMPLER, 0, "light-sampler", OPTION_CHOICE, "NAME",
      "method that chooses one light for a shading point:", 0, 0, light_sampler_choices},
     {RENDER_REGULARIZE, 0, "regularize", OPTION_CHOICE, "NAME", "regularization of the materials:", 0, 0,
@@ -131,8 +132,9 @@ const Command camera_paths_command = {
     .usage = "SCENE --pixel x,y [options]",
     .summary = "print the paths of a pixel, vertex by vertex",
     .text =
-        "Traces the samples of one pixel again, with the random numbers of `velo render`, and prints each path:\n"
-        "what it met, the sampled lobes with their densities, the lights with their weights, and what each\n"
+        "Traces the samples that count in one pixel again (those of the pixels around, too, if pixels share\n"
+        "samples), with the random numbers of `velo render`, and prints each path: what it met, the sampled lobes with "
+        "their densities, the lights with their weights, and what each\n"
         "adds. The path with the largest share of the pixel comes first: so a firefly shows where it is from.\n"
         "The options of the image must be those of the render (docs/tracers.md).",
     .examples =

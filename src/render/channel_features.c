@@ -6,7 +6,7 @@
 #include "render/channel_pass.h"
 #include "world/shape/moving.h"
 
-enum { ALBEDO = 0, NORMAL = 3, DISPARITY = 6, COUNT = 7 };
+enum { ALBEDO = 0, NORMAL = 3, DISPARITY = 6, COUNT = VL_FEATURES };
 
 /* The time of sample s as a fraction of the exposure: 1/2, 1/4, 3/4, 1/8, ... All pixels of the tile share it. */
 static float instant(uint32_t s) {
@@ -15,65 +15,103 @@ static float instant(uint32_t s) {
   return u;
 }
 
-/* Makes the camera rays of sample s of the tile's pixels, in w->rows and in the batch. Returns their number. */
-static uint32_t make_rays(const vlChannelPass *p, vlChannelWorker *w, const vlFilmRays *rays, uint32_t tile,
-                          uint32_t s) {
+/* The tile's pixels inside the crop window, from x0, y0 on, and the border of pixels around them whose samples count,
+ * too (none if pixels have samples of their own). */
+typedef struct Region {
+  uint32_t x0, y0, width, height, border[2];
+  uint32_t stride, count; /* pixels of a row and of all rows, with the border */
+} Region;
+
+static uint32_t least(uint32_t a, uint32_t b) {
+  return a < b ? a : b;
+}
+
+/* False: the tile is empty. */
+static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
+  const uint32_t *crop = p->def->crop;
+  uint32_t x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  *g = (Region){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
+  if (g->x0 >= crop[2] || g->y0 >= crop[3]) return false;
+  g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0, g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
+  for (int k = 0; k < 2 && p->shares; k++) g->border[k] = p->reconstruction.border[k];
+  g->stride = g->width + 2 * g->border[0];
+  g->count = g->stride * (g->height + 2 * g->border[1]);
+  return true;
+}
+
+/* Makes the camera rays of sample s of n pixels of the region, from number `done` on, in w->rows and in the batch. */
+static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *g, uint32_t done, uint32_t n,
+                      uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
-  uint32_t n = 0, x, y;
-  for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
-    if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
-    r.px[n] = (int32_t)x, r.py[n] = (int32_t)y, r.index[n] = s;
-    n++;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    uint32_t k = done + least(i, n - 1);
+    r.px[i] = (int32_t)(g->x0 + k % g->stride) - (int32_t)g->border[0];
+    r.py[i] = (int32_t)(g->y0 + k / g->stride) - (int32_t)g->border[1];
+    r.index[i] = s;
   }
-  if (n == 0) return 0;
-  for (uint32_t i = n; i < VL_PAD(n); i++) r.px[i] = r.px[n - 1], r.py[i] = r.py[n - 1], r.index[i] = s;
   if (!rays->lens)
     for (uint32_t i = 0; i < VL_PAD(n); i++) r.lens_u[i] = r.lens_v[i] = 0.5f;
   vl_film_rays_make(rays, n, &r);
   vlGroundTruthBatch *b = w->batch;
+  b->n = n;
   for (uint32_t i = 0; i < n; i++) {
     b->o[0][i] = r.rays.ox[i], b->o[1][i] = r.rays.oy[i], b->o[2][i] = r.rays.oz[i];
     b->d[0][i] = r.rays.dx[i], b->d[1][i] = r.rays.dy[i], b->d[2][i] = r.rays.dz[i];
   }
   memcpy(b->t_min, r.rays.t_min, n * sizeof(float));
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
-  return b->n = n;
 }
 
-/* Adds the hits of one sample of each pixel, weighted by the pixel filter; negative weights count as 0. total: sum of
- * the weights of each pixel. */
-static void add(const vlChannelPass *p, vlChannelWorker *w, float *total) {
+/* Keeps the hit of row i, and its weights in the pixels around. Negative weights count as 0. */
+static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, vlFeatureHit *to) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;
-  for (uint32_t i = 0; i < b->n; i++) {
-    float weight = r.weight[i] > 0.0f ? r.weight[i] : 0.0f;
-    float *to = vl_channel_floats(p, vl_channel_at(p, (uint32_t)r.px[i], (uint32_t)r.py[i]), VL_INDEX_FEATURES);
-    total[i] += weight;
-    if (b->object[i] == 0) continue;
-    for (int k = 0; k < 3; k++) {
-      to[ALBEDO + k] += weight * b->albedo[k][i];
-      to[NORMAL + k] += weight * b->n_shading[k][i];
-    }
-    if (b->distance[i] > 0) to[DISPARITY] += weight * (float)(1.0 / b->distance[i]);
+  memset(to, 0, sizeof *to);
+  if (p->shares) {
+    vl_shared_row(&p->reconstruction, 0, r.film_x[i], to->x);
+    vl_shared_row(&p->reconstruction, 1, r.film_y[i], to->y);
+  } else {
+    to->x[0] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f, to->y[0] = 1.0f;
   }
+  if (b->object[i] == 0) return;
+  for (int k = 0; k < 3; k++) to->value[ALBEDO + k] = b->albedo[k][i], to->value[NORMAL + k] = b->n_shading[k][i];
+  if (b->distance[i] > 0) to->value[DISPARITY] = (float)(1.0 / b->distance[i]);
+}
+
+/* Adds the hits of one sample of each pixel to the pixel (x, y) of the region. total: the pixel's sum of weights. */
+static void add(const vlChannelPass *p, const vlChannelWorker *w, const Region *g, uint32_t x, uint32_t y,
+                float *total) {
+  uint32_t bx = g->border[0], by = g->border[1];
+  float *to = vl_channel_floats(p, vl_channel_at(p, g->x0 + x, g->y0 + y), VL_INDEX_FEATURES);
+  for (uint32_t v = 0; v <= 2 * by; v++)
+    for (uint32_t u = 0; u <= 2 * bx; u++) {
+      const vlFeatureHit *hit = &w->features[(y + v) * g->stride + x + u];
+      float weight = hit->x[2 * bx - u] * hit->y[2 * by - v];
+      *total += weight;
+      for (int k = 0; k < COUNT; k++) to[k] += weight * hit->value[k];
+    }
 }
 
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
   float total[VL_TILE_PIXELS] = {0};
   vlFilmRays rays = p->image;
-  rays.uniform = false; /* few samples: each is of its own pixel, drawn from the filter */
-  uint32_t spp = vl_channel_spp(p, tile), samples = spp < VL_FEATURE_SAMPLES ? spp : VL_FEATURE_SAMPLES, n = 0;
+  Region g;
+  if (!make_region(p, tile, &g)) return;
+  uint32_t pixels = g.width * g.height, samples = least(vl_channel_spp(p, tile), VL_FEATURE_SAMPLES);
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
-    n = make_rays(p, w, &rays, tile, s);
-    if (n == 0) return;
     w->batch->time = vl_world_time(p->world, p->open + (p->close - p->open) * (double)rays.shared);
-    p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
-    add(p, w, total);
+    for (uint32_t done = 0, n; done < g.count; done += n) {
+      n = least(g.count - done, VL_BATCH);
+      make_rays(w, &rays, &g, done, n, s);
+      p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
+      for (uint32_t i = 0; i < n; i++) keep(p, w, i, &w->features[done + i]);
+    }
+    for (uint32_t k = 0; k < pixels; k++) add(p, w, &g, k % g.width, k / g.width, &total[k]);
   }
-  vlFilmRayRows r = vl_film_ray_rows(w->rows);
-  for (uint32_t i = 0; i < n; i++) {
-    float *to = vl_channel_floats(p, vl_channel_at(p, (uint32_t)r.px[i], (uint32_t)r.py[i]), VL_INDEX_FEATURES);
-    for (int k = 0; k < COUNT && total[i] > 0.0f; k++) to[k] /= total[i];
+  for (uint32_t k = 0; k < pixels; k++) {
+    float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + k % g.width, g.y0 + k / g.width), VL_INDEX_FEATURES);
+    for (int i = 0; i < COUNT && total[k] > 0.0f; i++) to[i] /= total[k];
   }
 }

@@ -169,6 +169,7 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
   vlContext *context = p->world->context;
   uint32_t threads = vl_context_threads(context);
   bool counts = p->spp > 0, flow = vl_channel_wanted(p, VL_CHANNEL_FORWARD | VL_CHANNEL_BACKWARD);
+  bool features = vl_channel_wanted(p, VL_CHANNEL_FEATURES);
   p->workers = vl_alloc_zero(context, threads, sizeof *p->workers);
   for (uint32_t i = 0; p->workers && i < threads; i++) {
     vlChannelWorker *w = &p->workers[i];
@@ -177,10 +178,11 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
     if (counts) w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
     if (p->shares) w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
+    if (features) w->features = vl_alloc_array(context, VL_FEATURE_GRID, sizeof *w->features);
     if (flow) w->other = vl_alloc_zero(context, 1, sizeof *w->other);
     if (flow) w->lanes = vl_alloc_zero(context, VL_BATCH, sizeof *w->lanes);
     if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) || (p->shares && !w->hits) ||
-        (flow && (!w->other || !w->lanes)))
+        (features && !w->features) || (flow && (!w->other || !w->lanes)))
       return vl_fail_memory(error);
   }
   bool whole = p->workers && (!p->shares || vl_reconstruction_make(context, &vl_film_def(p->def->film)->filter,
@@ -213,6 +215,7 @@ static void free_all(vlChannelPass *p) {
     vl_free(context, w->rows);
     vl_free(context, w->tallies);
     vl_free(context, w->hits);
+    vl_free(context, w->features);
     vl_free(context, w->other);
     vl_free(context, w->lanes);
   }

@@ -49,10 +49,11 @@ void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
 
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y) {
   for (int c = 0; c < 4; c++) g->color[c][at] = color[c];
-  for (uint32_t k = 0; k <= 2 * r->border[0]; k++)
-    g->x[k][at] = (float)vl_filter_curve_at(&r->curve[0], (double)x - 0.5 - ((double)k - r->border[0]));
-  for (uint32_t k = 0; k <= 2 * r->border[1]; k++)
-    g->y[k][at] = (float)vl_filter_curve_at(&r->curve[1], (double)y - 0.5 - ((double)k - r->border[1]));
+  float along[2][2 * VL_SHARED_BORDER + 1];
+  vl_shared_row(r, 0, x, along[0]);
+  vl_shared_row(r, 1, y, along[1]);
+  for (uint32_t k = 0; k <= 2 * r->border[0]; k++) g->x[k][at] = along[0][k];
+  for (uint32_t k = 0; k <= 2 * r->border[1]; k++) g->y[k][at] = along[1][k];
 }
 
 /* Adds one neighbour of each pixel of a row. n: pixels; x, y: its filter values there. */

@@ -41,6 +41,12 @@ typedef struct vlReconstruction {
 vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r);
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
 
+/* The filter's values along an axis (0: x) in the pixels around, from the one border[axis] pixels before the sample's
+ * own. at: the film point from its pixel's corner. */
+static inline void vl_shared_row(const vlReconstruction *r, int axis, float at, float row[2 * VL_SHARED_BORDER + 1]) {
+  for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
+    row[k] = (float)vl_filter_curve_at(&r->curve[axis], (double)at - 0.5 - ((double)k - r->border[axis]));
+}
 /* The weight of a sample in the pixel that lies (dx, dy) pixels from the sample's own; (x, y): its film point, from its
  * pixel's corner. */
 static inline float vl_shared_weight(const vlReconstruction *r, float x, float y, int32_t dx, int32_t dy) {

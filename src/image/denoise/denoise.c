@@ -168,14 +168,15 @@ static float mean3(float *const plane[COLOR], ptrdiff_t at) {
   return (plane[0][at] + plane[1][at] + plane[2][at]) * (1.0f / 3.0f);
 }
 
-/* The third largest mean of R, G and B among the 24 neighbours (5 x 5) of a pixel. */
+/* The third largest mean of R, G and B among the 24 pixels of the ring at a distance of 3 around a pixel (7 x 7). Nearer
+ * pixels may have counted the same samples as the pixel itself. */
 static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
-  enum { REACH = 2, RANK = 3 };
+  enum { REACH = 3, RANK = 3 };
   float top[RANK] = {0};
   for (int dy = -REACH; dy <= REACH; dy++)
-    for (int dx = -REACH; dx <= REACH; dx++) {
+    for (int dx = -REACH; dx <= REACH; dx += dy == -REACH || dy == REACH ? 1 : 2 * REACH) {
       ptrdiff_t q = at + dy * p->stride + dx;
-      if (q == at || p->valid[q] == 0.0f) continue;
+      if (p->valid[q] == 0.0f) continue;
       float v = mean3(p->color, q);
       for (int k = 0; k < RANK; k++)
         if (v > top[k]) {

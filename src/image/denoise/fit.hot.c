@@ -16,8 +16,8 @@ enum {
   TERMS = U * (U + 1) / 2
 };
 
-static const float BANDWIDTH2 = 0.25f;  /* square of k in docs/denoising.md */
-static const float PIXEL_SHARE = 0.06f; /* factor on the distance between the two single pixels */
+static const float BANDWIDTH2 = 0.36f;  /* square of k in docs/denoising.md */
+static const float PIXEL_SHARE = 0.02f; /* factor on the distance between the two single pixels */
 static const float RIDGE_FEATURE = 1e-3f,
                    RIDGE_PLACE = 3e-2f; /* ridge terms lambda of features and positions, per unit of weight */
 

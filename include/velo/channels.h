@@ -47,7 +47,7 @@ typedef enum vlChannel {
   VL_CHANNEL_CRYPTO_MATERIAL = 1 << 18, /**< CryptoMaterial00.R ... */
   VL_CHANNEL_CRYPTO_INSTANCE = 1 << 19, /**< CryptoInstance00.R ... */
   /** feature.albedo.R .G .B, feature.N.X .Y .Z, feature.disparity.Y: features for denoisers (vl_denoise). They are
-     means over the first VL_FEATURE_SAMPLES samples of each pixel (and those it shares), through the lens; so they
+     means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES) and those it shares, through the lens; so they
      are blurred as the image is, at edges, by defocus and by motion. The albedo uses fewer wavelengths than the channel
      albedo. The disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as Cryptomatte
      does. */

@@ -204,11 +204,14 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
   int32_t bx = (int32_t)r->reconstruction.border[0], by = (int32_t)r->reconstruction.border[1];
   uint32_t width = b->width + 2 * (uint32_t)bx, height = b->height + 2 * (uint32_t)by;
   uint32_t total = width * height * count, batches = (total + VL_BATCH - 1) / VL_BATCH, done = 0, n = 0, filled = 0;
-  uint32_t side = 1;
-  while (side < width || side < height) side *= 2;
+  uint32_t across = (width + VL_RENDER_TILE - 1) / VL_RENDER_TILE,
+           down = (height + VL_RENDER_TILE - 1) / VL_RENDER_TILE;
+  uint32_t places = across * down * TILE_PIXELS;
   for (uint32_t s = first; s < first + count; s++)
-    for (uint32_t m = 0; m < side * side; m++) { /* Morton order, for coherent packets */
-      uint32_t x = morton_half(m), y = morton_half(m >> 1);
+    for (uint32_t m = 0; m < places; m++) { /* tile by tile; in a tile in Morton order, for coherent packets */
+      uint32_t tile = m / TILE_PIXELS, in = m % TILE_PIXELS;
+      uint32_t x = tile % across * VL_RENDER_TILE + morton_half(in);
+      uint32_t y = tile / across * VL_RENDER_TILE + morton_half(in >> 1);
       if (x >= width || y >= height) continue;
       rows.px[n] = b->x0 - bx + (int32_t)x, rows.py[n] = b->y0 - by + (int32_t)y, rows.index[n] = s;
       n++, filled++;

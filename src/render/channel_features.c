@@ -63,42 +63,63 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
 }
 
-/* Keeps the hit of row i, and its weights in the pixels around. Negative weights count as 0. */
-static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, vlFeatureHit *to) {
+/* Keeps the hit of row i at grid point `at`, with its weights in the pixels around. Negative weights count as 0. */
+static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, uint32_t at) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;
-  memset(to, 0, sizeof *to);
+  vlFeatureGrid *g = w->features;
+  float along[2][2 * VL_SHARED_BORDER + 1] = {{r.weight[i] > 0.0f ? r.weight[i] : 0.0f}, {1.0f}};
   if (p->shares) {
-    vl_shared_row(&p->reconstruction, 0, r.film_x[i], to->x);
-    vl_shared_row(&p->reconstruction, 1, r.film_y[i], to->y);
-  } else {
-    to->x[0] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f, to->y[0] = 1.0f;
+    vl_shared_row(&p->reconstruction, 0, r.film_x[i], along[0]);
+    vl_shared_row(&p->reconstruction, 1, r.film_y[i], along[1]);
   }
-  if (b->object[i] == 0) return;
-  for (int k = 0; k < 3; k++) to->value[ALBEDO + k] = b->albedo[k][i], to->value[NORMAL + k] = b->n_shading[k][i];
-  if (b->distance[i] > 0) to->value[DISPARITY] = (float)(1.0 / b->distance[i]);
+  for (uint32_t k = 0; k < 2 * VL_SHARED_BORDER + 1; k++) g->x[k][at] = along[0][k], g->y[k][at] = along[1][k];
+  bool hit = b->object[i] != 0;
+  for (int k = 0; k < 3; k++) {
+    g->value[ALBEDO + k][at] = hit ? b->albedo[k][i] : 0.0f;
+    g->value[NORMAL + k][at] = hit ? b->n_shading[k][i] : 0.0f;
+  }
+  g->value[DISPARITY][at] = hit && b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
 }
 
-/* Adds the hits of one sample of each pixel to the pixel (x, y) of the region. total: the pixel's sum of weights. */
-static void add(const vlChannelPass *p, const vlChannelWorker *w, const Region *g, uint32_t x, uint32_t y,
-                float *total) {
+/* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the first hit. */
+static void add_hits(const vlFeatureGrid *g, uint32_t n, uint32_t u, uint32_t v, size_t at, float *const sums[COUNT],
+                     float *total) {
+  const float *x = g->x[u] + at, *y = g->y[v] + at;
+  for (int k = 0; k < COUNT; k++) {
+    const float *value = g->value[k] + at;
+    float *sum = sums[k];
+    VL_SIMD for (uint32_t i = 0; i < n; i++) sum[i] += x[i] * y[i] * value[i];
+  }
+  VL_SIMD for (uint32_t i = 0; i < n; i++) total[i] += x[i] * y[i];
+}
+
+/* Adds the hits of one sample of each pixel to the region's pixels. */
+static void add(vlChannelWorker *w, const Region *g, float sums[COUNT + 1][VL_TILE_PIXELS]) {
   uint32_t bx = g->border[0], by = g->border[1];
-  float *to = vl_channel_floats(p, vl_channel_at(p, g->x0 + x, g->y0 + y), VL_INDEX_FEATURES);
-  for (uint32_t v = 0; v <= 2 * by; v++)
-    for (uint32_t u = 0; u <= 2 * bx; u++) {
-      const vlFeatureHit *hit = &w->features[(y + v) * g->stride + x + u];
-      float weight = hit->x[2 * bx - u] * hit->y[2 * by - v];
-      *total += weight;
-      for (int k = 0; k < COUNT; k++) to[k] += weight * hit->value[k];
-    }
+  for (uint32_t y = 0; y < g->height; y++) {
+    float *row[COUNT + 1];
+    for (int k = 0; k <= COUNT; k++) row[k] = sums[k] + (size_t)y * VL_CHANNEL_TILE;
+    for (uint32_t v = 0; v <= 2 * by; v++)
+      for (uint32_t u = 0; u <= 2 * bx; u++)
+        add_hits(w->features, g->width, 2 * bx - u, 2 * by - v, (size_t)(y + v) * g->stride + u, row, row[COUNT]);
+  }
+}
+
+/* Half of the image's samples, since features cost about a half of what the shortest paths cost; but at least FEW, and
+ * at most VL_FEATURE_SAMPLES. */
+static uint32_t samples_of(uint32_t spp) {
+  enum { FEW = 8 };
+  return spp <= FEW ? spp : spp <= 2 * FEW ? FEW : least(spp / 2, VL_FEATURE_SAMPLES);
 }
 
 void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  float total[VL_TILE_PIXELS] = {0};
+  float sums[COUNT + 1][VL_TILE_PIXELS]; /* the last: sums of weights */
   vlFilmRays rays = p->image;
   Region g;
   if (!make_region(p, tile, &g)) return;
-  uint32_t pixels = g.width * g.height, samples = least(vl_channel_spp(p, tile), VL_FEATURE_SAMPLES);
+  memset(sums, 0, sizeof sums);
+  uint32_t samples = samples_of(vl_channel_spp(p, tile));
   for (uint32_t s = 0; s < samples; s++) {
     rays.shared = instant(s);
     w->batch->time = vl_world_time(p->world, p->open + (p->close - p->open) * (double)rays.shared);
@@ -106,12 +127,14 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
       n = least(g.count - done, VL_BATCH);
       make_rays(w, &rays, &g, done, n, s);
       p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
-      for (uint32_t i = 0; i < n; i++) keep(p, w, i, &w->features[done + i]);
+      for (uint32_t i = 0; i < n; i++) keep(p, w, i, done + i);
     }
-    for (uint32_t k = 0; k < pixels; k++) add(p, w, &g, k % g.width, k / g.width, &total[k]);
+    add(w, &g, sums);
   }
-  for (uint32_t k = 0; k < pixels; k++) {
-    float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + k % g.width, g.y0 + k / g.width), VL_INDEX_FEATURES);
-    for (int i = 0; i < COUNT && total[k] > 0.0f; i++) to[i] /= total[k];
-  }
+  for (uint32_t y = 0; y < g.height; y++)
+    for (uint32_t x = 0; x < g.width; x++) {
+      uint32_t k = y * VL_CHANNEL_TILE + x;
+      float *to = vl_channel_floats(p, vl_channel_at(p, g.x0 + x, g.y0 + y), VL_INDEX_FEATURES);
+      for (int i = 0; i < COUNT; i++) to[i] = sums[COUNT][k] > 0.0f ? sums[i][k] / sums[COUNT][k] : 0.0f;
+    }
 }

@@ -55,14 +55,14 @@ typedef struct vlSampleHit {
 } vlSampleHit;
 enum { VL_SHARED_HITS = 1 << 17 }; /* most hits that a worker holds at once */
 
-/* The features of a sample of the image, and its weights along x and y in the pixels around (reconstruct.h). */
+/* The features of one sample of each pixel of a tile and its border, row by row, and the samples' weights along x and y
+ * in the pixels around (reconstruct.h). */
 enum { VL_FEATURES = 7 };
-typedef struct vlFeatureHit {
-  float value[VL_FEATURES];
-  float x[2 * VL_SHARED_BORDER + 1], y[2 * VL_SHARED_BORDER + 1];
-} vlFeatureHit;
-/* Most pixels of a tile with its border. */
 enum { VL_FEATURE_GRID = (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) * (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) };
+typedef struct vlFeatureGrid {
+  float value[VL_FEATURES][VL_FEATURE_GRID];
+  float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID], y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
+} vlFeatureGrid;
 
 typedef struct vlChannelWorker {
   vlGroundTruthScratch *scratch;
@@ -72,7 +72,7 @@ typedef struct vlChannelWorker {
   vlGroundTruthBatch *other; /* hits of the other camera's rays; null without flow */
   uint32_t *lanes;           /* for each lane of `other`: its lane of the batch */
   vlSampleHit *hits;         /* VL_SHARED_HITS; null where no samples are shared */
-  vlFeatureHit *features;    /* VL_FEATURE_GRID; null without features */
+  vlFeatureGrid *features;   /* null without features */
   uint32_t x[VL_BATCH], y[VL_BATCH];
   float film_x[VL_TILE_PIXELS], film_y[VL_TILE_PIXELS]; /* film point of each pixel of the tile */
   float lane_x[VL_BATCH], lane_y[VL_BATCH];             /* film point of each lane */

@@ -178,7 +178,7 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
     w->rows = vl_alloc_zero(context, (size_t)VL_CHANNEL_ROWS * VL_ROW_SIZE, sizeof(float));
     if (counts) w->tallies = vl_alloc_zero(context, 3, sizeof *w->tallies);
     if (p->shares) w->hits = vl_alloc_array(context, VL_SHARED_HITS, sizeof *w->hits);
-    if (features) w->features = vl_alloc_array(context, VL_FEATURE_GRID, sizeof *w->features);
+    if (features) w->features = vl_alloc_array(context, 1, sizeof *w->features);
     if (flow) w->other = vl_alloc_zero(context, 1, sizeof *w->other);
     if (flow) w->lanes = vl_alloc_zero(context, VL_BATCH, sizeof *w->lanes);
     if (!w->scratch || !w->batch || !w->rows || (counts && !w->tallies) || (p->shares && !w->hits) ||

@@ -218,6 +218,7 @@ static void test_features(void **state) {
   (void)state;
   Stage s = stage_open(49, 37);
   fill(&s);
+  s.render.spp = 8; /* features use all of them */
   GroundTruth t = ground_truth_take(&s, VL_CHANNEL_ALL | MATTES | VL_CHANNEL_FEATURES, VL_CHANNEL_MODE_CENTRE);
   uint32_t whole = 0, parts = 0, nothing = 0;
   for (uint32_t y = 0; y < 37; y++)

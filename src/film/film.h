@@ -98,6 +98,8 @@ const vlFilterTable *vl_film_filter(const vlFilm *film);
 typedef struct vlFilterKernels {
   void (*sample)(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy,
                  float *weight);
+  /* out[i] = vl_filter_curve_at(curve, at[i] - shift), for VL_PAD(n) elements. */
+  void (*curve)(const struct vlFilterCurve *curve, uint32_t n, const float *at, float shift, float *out);
 } vlFilterKernels;
 VL_KERNEL_TABLE(vlFilterKernels, vl_filter)
 

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/context.h"
+
 /* ---- elementary functions by their series: + - * / only ---------------------------------------------------------- */
 
 /* 1/k: divisions in the series would be slow */
@@ -278,4 +280,17 @@ bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table) {
     return true;
   }
   return compile_axis(filter, 1, &table->axis[1]);
+}
+
+vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *f, int axis, vlFilterCurve *curve) {
+  double radius = axis ? f->radius_y : f->radius_x, sum = 0;
+  uint32_t steps = (uint32_t)ceil(radius) * VL_FILTER_STEPS;
+  double step = radius / steps;
+  *curve = (vlFilterCurve){.steps = (float)steps, .per_step = (float)(1 / step)};
+  curve->values = vl_alloc_array(context, (size_t)steps + 2, sizeof *curve->values);
+  if (!curve->values) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < steps; i++) sum += vl_filter_value(f, axis, (i + 0.5) * step);
+  for (uint32_t i = 0; i < steps + 2; i++)
+    curve->values[i] = (float)(vl_filter_value(f, axis, fmin(i * step, radius)) / (2 * sum * step));
+  return VL_OK;
 }

@@ -40,4 +40,20 @@ static inline double vl_filter_weight(const vlFilterTable *filter) {
   return weight;
 }
 
+/* The filter along an axis, at equal steps from 0 to its radius, scaled to an integral of 1. */
+enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
+typedef struct vlFilterCurve {
+  float *values;
+  float steps, per_step; /* number of steps, and steps per pixel */
+} vlFilterCurve;
+/* Error: MEMORY. */
+vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
+/* The same bits as vlFilterKernels.curve. */
+static inline float vl_filter_curve_at(const vlFilterCurve *c, float x) {
+  float at = (x < 0.0f ? -x : x) * c->per_step;
+  if (!(at <= c->steps)) return 0.0f;
+  int32_t k = (int32_t)at;
+  return c->values[k] + (at - (float)k) * (c->values[k + 1] - c->values[k]);
+}
+
 #endif

@@ -86,4 +86,19 @@ static void sample(const vlFilterTable *filter, uint32_t n, const float *u, cons
   }
 }
 
-const vlFilterKernels vl_filter_kernel_table = {sample};
+static void curve(const vlFilterCurve *c, uint32_t n, const float *at, float shift, float *out) {
+  const float *values = c->values;
+  float per_step = c->per_step, steps = c->steps;
+  uint32_t count = VL_PAD(n);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    float t = vl_abs(at[i] - shift) * per_step;
+    int in = t <= steps;
+    t = in ? t : 0.0f;
+    int32_t k = (int32_t)t;
+    float v = values[k] + (t - (float)k) * (values[k + 1] - values[k]);
+    out[i] = in ? v : 0.0f;
+  }
+}
+
+const vlFilterKernels vl_filter_kernel_table = {sample, curve};

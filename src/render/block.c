@@ -174,18 +174,19 @@ static bool shared_block(const vlRenderRun *r, uint32_t block, vlSharedBlock *b)
 static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first, uint32_t n) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   uint32_t bx = r->reconstruction.border[0], by = r->reconstruction.border[1], stride = b->width + 2 * bx;
+  vlSharedTaps taps;
   for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = i % VL_SHARED_LANES, left = n - i < VL_SHARED_LANES ? n - i : VL_SHARED_LANES;
+    if (lane == 0)
+      vl_shared_taps(&r->reconstruction, r->film_rays.filter_kernels, left, rows.film_x + i, rows.film_y + i, &taps);
     float color[4] = {row(w, RED)[i], row(w, GREEN)[i], row(w, BLUE)[i], row(w, ALPHA)[i]};
     int32_t x = rows.px[i] - b->x0, y = rows.py[i] - b->y0;
     float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))), sum = color[0] + color[1] + color[2];
     bool good = most < 0x1p39f && sum == sum && color[3] - color[3] == 0.0f;
     bool own = x >= 0 && y >= 0 && (uint32_t)x < b->width && (uint32_t)y < b->height;
     if (!good && own && w->not_finite++ == 0) w->bad_x = rows.px[i], w->bad_y = rows.py[i];
-    for (int c = 0; !good && c < 4; c++) color[c] = 0.0f;
     uint32_t at = (uint32_t)(y + (int32_t)by) * stride + (uint32_t)(x + (int32_t)bx);
-    float far = 1e9f; /* counts in no pixel */
-    vl_shared_store(&r->reconstruction, &w->grids[rows.index[i] - first], at, color, good ? rows.film_x[i] : far,
-                    rows.film_y[i]);
+    vl_shared_store(&r->reconstruction, &w->grids[rows.index[i] - first], at, color, &taps, lane, good);
   }
 }
 

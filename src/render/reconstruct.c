@@ -5,20 +5,6 @@
 #include <string.h>
 
 #include "base/context.h"
-#include "film/filter.h"
-
-vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *f, int axis, vlFilterCurve *curve) {
-  double radius = axis ? f->radius_y : f->radius_x, sum = 0;
-  uint32_t steps = (uint32_t)ceil(radius) * VL_FILTER_STEPS;
-  double step = radius / steps;
-  *curve = (vlFilterCurve){.steps = steps, .per_step = 1 / step};
-  curve->values = vl_alloc_array(context, (size_t)steps + 2, sizeof *curve->values);
-  if (!curve->values) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < steps; i++) sum += vl_filter_value(f, axis, (i + 0.5) * step);
-  for (uint32_t i = 0; i < steps + 2; i++)
-    curve->values[i] = vl_filter_value(f, axis, fmin(i * step, radius)) / (2 * sum * step);
-  return VL_OK;
-}
 
 static uint32_t border_of(double radius) {
   return (uint32_t)ceil(radius - 0.5);
@@ -47,13 +33,18 @@ void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
   *r = (vlReconstruction){.border = {0, 0}};
 }
 
-void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y) {
-  for (int c = 0; c < 4; c++) g->color[c][at] = color[c];
-  float along[2][2 * VL_SHARED_BORDER + 1];
-  vl_shared_row(r, 0, x, along[0]);
-  vl_shared_row(r, 1, y, along[1]);
-  for (uint32_t k = 0; k <= 2 * r->border[0]; k++) g->x[k][at] = along[0][k];
-  for (uint32_t k = 0; k <= 2 * r->border[1]; k++) g->y[k][at] = along[1][k];
+void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, uint32_t n, const float *x,
+                    const float *y, vlSharedTaps *taps) {
+  for (int axis = 0; axis < 2; axis++)
+    for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
+      kernels->curve(&r->curve[axis], n, axis ? y : x, 0.5f + (float)k - (float)r->border[axis], taps->along[axis][k]);
+}
+
+void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],
+                     const vlSharedTaps *taps, uint32_t lane, bool counts) {
+  for (int c = 0; c < 4; c++) g->color[c][at] = counts ? color[c] : 0.0f;
+  for (uint32_t k = 0; k <= 2 * r->border[0]; k++) g->x[k][at] = counts ? taps->along[0][k][lane] : 0.0f;
+  for (uint32_t k = 0; k <= 2 * r->border[1]; k++) g->y[k][at] = taps->along[1][k][lane];
 }
 
 /* Adds one neighbour of each pixel of a row. n: pixels; x, y: its filter values there. */

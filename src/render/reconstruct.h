@@ -8,27 +8,12 @@
 #ifndef RENDER_RECONSTRUCT_H
 #define RENDER_RECONSTRUCT_H
 
-#include "film/film.h"
+#include "film/filter.h"
 #include "velo/render.h"
 
 enum { VL_SHARED_SIDE = 64, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };
 /* Most samples of a block with its border, for one sample index. */
 enum { VL_SHARED_GRID = (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) * (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) };
-
-/* The pixel filter along x and y, at equal steps from 0 to its radius, scaled to an integral of 1. */
-enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
-typedef struct vlFilterCurve {
-  double *values;
-  double steps, per_step; /* number of steps, and steps per pixel */
-} vlFilterCurve;
-/* Error: MEMORY. */
-vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
-static inline double vl_filter_curve_at(const vlFilterCurve *c, double x) {
-  double at = (x < 0 ? -x : x) * c->per_step;
-  if (!(at <= c->steps)) return 0;
-  uint32_t k = (uint32_t)at;
-  return c->values[k] + (at - k) * (c->values[k + 1] - c->values[k]);
-}
 
 /* Whether pixels share samples: the render def says so, the film has no spectra, and the filter has no negative lobes,
  * reaches beyond its pixel and not too far. */
@@ -45,13 +30,13 @@ void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
  * own. at: the film point from its pixel's corner. */
 static inline void vl_shared_row(const vlReconstruction *r, int axis, float at, float row[2 * VL_SHARED_BORDER + 1]) {
   for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
-    row[k] = (float)vl_filter_curve_at(&r->curve[axis], (double)at - 0.5 - ((double)k - r->border[axis]));
+    row[k] = vl_filter_curve_at(&r->curve[axis], at - (0.5f + (float)k - (float)r->border[axis]));
 }
 /* The weight of a sample in the pixel that lies (dx, dy) pixels from the sample's own; (x, y): its film point, from its
  * pixel's corner. */
 static inline float vl_shared_weight(const vlReconstruction *r, float x, float y, int32_t dx, int32_t dy) {
-  return (float)vl_filter_curve_at(&r->curve[0], (double)x - 0.5 - dx) *
-         (float)vl_filter_curve_at(&r->curve[1], (double)y - 0.5 - dy);
+  return vl_filter_curve_at(&r->curve[0], x - (0.5f + (float)dx)) *
+         vl_filter_curve_at(&r->curve[1], y - (0.5f + (float)dy));
 }
 
 /* The samples of one index in a block and its border, row by row. x, y: the filter's values along an axis in the pixels
@@ -67,8 +52,17 @@ typedef struct vlSharedBlock {
   uint32_t width, height;
 } vlSharedBlock;
 
-/* Stores the sample of grid point `at`, whose film point is (x, y) from its pixel's corner. */
-void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4], float x, float y);
+/* vl_shared_row of up to VL_SHARED_LANES samples. */
+enum { VL_SHARED_LANES = 128 };
+typedef struct vlSharedTaps {
+  float along[2][2 * VL_SHARED_BORDER + 1][VL_SHARED_LANES];
+} vlSharedTaps;
+void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, uint32_t n, const float *x,
+                    const float *y, vlSharedTaps *taps);
+/* Stores a sample at grid point `at`; its filter values are those of lane `lane`. A sample that does not count (it is
+ * not finite) has weight 0. */
+void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],
+                     const vlSharedTaps *taps, uint32_t lane, bool counts);
 /* The weighted means of the samples over the pixels of the block's rows [first, last), row by row, and their weights.
  */
 void vl_shared_gather(const vlReconstruction *r, const vlSharedGrid *g, const vlSharedBlock *block, uint32_t first,

@@ -38,10 +38,10 @@ static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
   Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
   double value[2 * VL_FILTER_RADIUS_MAX + 1];
   for (uint32_t i = 0; i < across.count; i++)
-    value[i] = vl_filter_curve_at(&s->curve[0], (double)x - (s->x0 + across.first + i) - 0.5);
+    value[i] = (double)vl_filter_curve_at(&s->curve[0], (float)((double)x - (s->x0 + across.first + i) - 0.5));
   for (uint32_t j = 0; j < down.count; j++) {
     vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
-    double wy = vl_filter_curve_at(&s->curve[1], (double)y - (s->y0 + down.first + j) - 0.5);
+    double wy = (double)vl_filter_curve_at(&s->curve[1], (float)((double)y - (s->y0 + down.first + j) - 0.5));
     for (uint32_t i = 0; i < across.count; i++)
       for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(wy * value[i] * (double)color[c]));
   }

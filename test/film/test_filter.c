@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "base/context.h"
 #include "film/filter.h"
 #include "statistics.h"
 
@@ -130,6 +131,35 @@ static void test_bits(void **state) {
     }
 }
 
+/* The filter along an axis in batches: the bits of vl_filter_curve_at, close to the filter, with an integral of 1. */
+static void test_curve(void **state) {
+  (void)state;
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  for (int kind = 0; kind < KINDS; kind++)
+    for (int axis = 0; axis < 2; axis++) {
+      vlPixelFilter f = variant(kind, 1);
+      vlFilterCurve curve;
+      assert_int_equal(vl_filter_curve_make(context, &f, axis, &curve), VL_OK);
+      double radius = axis ? f.radius_y : f.radius_x, sum = 0, exact = 0;
+      for (int i = 0; i < BATCH; i++) u_[i] = (float)((2.2 * (i + 0.5) / BATCH - 1.1) * radius + 0.75);
+      for (int i = 0; i < BATCH; i++) exact += vl_filter_value(&f, axis, (double)u_[i] - 0.75);
+      for (vlIsa isa = VL_ISA_BASE; isa <= vl_isa_best(); isa++) {
+        vl_filter_kernels(isa)->curve(&curve, BATCH, u_, 0.75f, dx_);
+        for (int i = 0; i < BATCH; i++) v_[i] = vl_filter_curve_at(&curve, u_[i] - 0.75f);
+        assert_memory_equal(v_, dx_, sizeof v_);
+      }
+      for (int i = 0; i < BATCH; i++) {
+        double wanted = vl_filter_value(&f, axis, (double)u_[i] - 0.75) / exact;
+        sum += v_[i] * 2.2 * radius / BATCH;
+        assert_true(fabs(v_[i] * 2.2 * radius / BATCH - wanted) < 2e-3 / BATCH * (1 + fabs(wanted) * BATCH));
+      }
+      assert_true(fabs(sum - 1) < 1e-3);
+      vl_free(context, curve.values);
+    }
+  vl_context_destroy(context);
+}
+
 static void test_refusals(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++)
@@ -156,10 +186,8 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shape),
-      cmocka_unit_test(test_order),
-      cmocka_unit_test(test_bits),
-      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_shape), cmocka_unit_test(test_order),    cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_curve), cmocka_unit_test(test_refusals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

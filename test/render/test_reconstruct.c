@@ -91,7 +91,13 @@ static void sums(void **state) {
     for (uint32_t i = 0; i < count; i++) {
       for (int c = 0; c < 4; c++) values[i][c] = random_number();
       for (int c = 0; c < 2; c++) points[i][c] = random_number();
-      vl_shared_store(&r, &grid_, i, values[i], points[i][0], points[i][1]);
+      vlSharedTaps taps;
+      _Alignas(64) float x[VL_PAD(1)] = {points[i][0]}, y[VL_PAD(1)] = {points[i][1]};
+      vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), 1, x, y, &taps);
+      bool counts = i % 50 != 3;
+      if (!counts) values[i][0] = NAN, points[i][0] = 99; /* no weight in any pixel */
+      vl_shared_store(&r, &grid_, i, values[i], &taps, 0, counts);
+      for (int c = 0; c < 4 && !counts; c++) values[i][c] = 0;
     }
     float color[4][WIDTH * HEIGHT], weight[WIDTH * HEIGHT];
     float *const rows_of[4] = {color[0], color[1], color[2], color[3]};

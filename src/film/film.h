@@ -63,8 +63,10 @@ bool vl_film_is_adaptive(const vlFilm *film);
 
 /* The noise of a block: an upper bound, at 95 % confidence, of the root mean square of the standard errors of its
  * display values (0 black, 1 white; all pixels, three channels). view, exposure: as vl_image_view's; scale: a further
- * factor on the linear values. For films with errors; infinite below 2 samples. */
-double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale);
+ * factor on the linear values; correlation: the sum of the squared correlations of a pixel's error with those of all
+ * pixels, itself included, so 1 where they are independent. For films with errors; infinite below 2 samples. */
+double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
+                           double correlation);
 
 /* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
  * first sample; a film without samples has length 0. */

@@ -4,7 +4,8 @@
  * the linear value. Where the view clips, this is smaller than the derivative of the view would give. The noise of a
  * block is the root of the mean of e^2. That mean is itself estimated from the same samples, and a block that happens
  * to look too clean would stop too early: the upper limit of its one-sided 95 % confidence interval replaces it, from
- * the spread of e^2 over the block's pixels.
+ * the spread of e^2 over the block's pixels. Where pixels share samples their e^2 are correlated, and the mean of
+ * them is less certain.
  *
  * Where light is rare and bright, a few pixels have found it and the others have not. The view is steep in the dark and
  * flat in the bright, so the first look too clean, and the second have no error at all. There the means over 3 x 3
@@ -73,7 +74,7 @@ static void pool(const Block *from, double white, Block *to) {
     }
 }
 
-static double block_noise(const Block *b, const Display *d) {
+static double block_noise(const Block *b, const Display *d, double correlation) {
   const double one_sided_95 = 1.645; /* quantile of the normal distribution */
   double sum = 0, squares = 0, n = (double)(b->width * b->height);
   for (uint32_t y = 0; y < b->height; y++)
@@ -82,10 +83,11 @@ static double block_noise(const Block *b, const Display *d) {
       sum += e, squares += e * e;
     }
   double mean = sum / n, spread = squares / n - mean * mean;
-  return sqrt(mean + one_sided_95 * sqrt((spread > 0 ? spread : 0) / n));
+  return sqrt(mean + one_sided_95 * sqrt(correlation * (spread > 0 ? spread : 0) / n));
 }
 
-double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale) {
+double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
+                           double correlation) {
   const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
   if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
   Display d = {view, (double)scale * vl_exp2_exact((double)exposure)};
@@ -105,6 +107,6 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
     }
   Block pooled;
   pool(&b, 1.0 / d.factor, &pooled);
-  double each = block_noise(&b, &d), together = block_noise(&pooled, &d);
+  double each = block_noise(&b, &d, correlation), together = block_noise(&pooled, &d, correlation);
   return each > together ? each : together;
 }

@@ -30,7 +30,7 @@ static void compare_block(void *user, uint32_t block, uint32_t worker) {
   const Comparison *c = user;
   vlAdaptive *a = c->a;
   if ((c->wanted && !c->wanted[block]) || !is_compared(vl_film_block_spp(a->film, block))) return;
-  a->seen[block] = vl_film_block_noise(a->film, block, a->view, a->exposure, a->scale);
+  a->seen[block] = vl_film_block_noise(a->film, block, a->view, a->exposure, a->scale, a->correlation);
   a->done[block] = a->seen[block] < a->noise;
 }
 
@@ -39,13 +39,15 @@ static void compare_blocks(vlAdaptive *a, const uint8_t *wanted) {
   if (a->noise > 0) vl_parallel_for(a->context, a->blocks, compare_block, &c);
 }
 
-vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def) {
+vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def,
+                            double correlation) {
   *a = (vlAdaptive){.context = context,
                     .film = film,
                     .noise = def->noise,
                     .view = def->noise_view,
                     .exposure = def->noise_exposure,
                     .scale = def->noise_scale,
+                    .correlation = correlation,
                     .blocks = vl_film_block_count(vl_film_def(film)->crop)};
   a->done = vl_alloc_zero(context, a->blocks, sizeof *a->done);
   a->seen = vl_alloc_zero(context, a->blocks, sizeof *a->seen);

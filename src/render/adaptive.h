@@ -19,6 +19,7 @@ typedef struct vlAdaptive {
   double noise; /* threshold; 0: none */
   vlView view;
   float exposure, scale;
+  double correlation; /* as in vl_film_block_noise */
   uint32_t blocks;
   uint8_t *done; /* of each block: below the threshold */
   double *seen;  /* of each block: its noise when it was last compared; 0: not yet */
@@ -27,7 +28,8 @@ typedef struct vlAdaptive {
 } vlAdaptive;
 
 /* Compares the blocks that have a number of samples listed above. Error: MEMORY. */
-vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def);
+vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def,
+                            double correlation);
 void vl_adaptive_destroy(vlAdaptive *a);
 
 /* Chooses the blocks of the next pass: those with *first samples, and at most *count more, so that none gets more than

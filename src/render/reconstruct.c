@@ -28,6 +28,27 @@ vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter,
   return result == VL_OK ? vl_filter_curve_make(context, filter, 1, &r->curve[1]) : result;
 }
 
+/* Along one axis: two pixels d apart have the correlation (f * f)(d) / (f * f)(0), f being the filter. */
+static double correlation_along(const vlFilterCurve *f, uint32_t border) {
+  enum { STEPS = 64 };
+  double all = 0;
+  int32_t reach = 2 * (int32_t)border;
+  for (int32_t d = -reach; d <= reach; d++) {
+    double product = 0, square = 0;
+    for (int32_t i = -(reach + 1) * STEPS; i < (reach + 1) * STEPS; i++) {
+      float x = ((float)i + 0.5f) / STEPS;
+      double at = (double)vl_filter_curve_at(f, x);
+      product += at * (double)vl_filter_curve_at(f, x + (float)d), square += at * at;
+    }
+    all += product / square * (product / square);
+  }
+  return all;
+}
+
+double vl_reconstruction_correlation(const vlReconstruction *r) {
+  return correlation_along(&r->curve[0], r->border[0]) * correlation_along(&r->curve[1], r->border[1]);
+}
+
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
   for (int i = 0; i < 2; i++) vl_free(context, r->curve[i].values);
   *r = (vlReconstruction){.border = {0, 0}};

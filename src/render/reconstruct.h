@@ -24,6 +24,9 @@ typedef struct vlReconstruction {
   uint32_t border[2]; /* pixels of the border along x and y */
 } vlReconstruction;
 vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r);
+/* The sum of the squared correlations of a pixel's error with those of all pixels, itself included, where the samples
+ * are independent and alike. */
+double vl_reconstruction_correlation(const vlReconstruction *r);
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
 
 /* The filter's values along an axis (0: x) in the pixels around, from the one border[axis] pixels before the sample's

@@ -327,7 +327,8 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
     result = vl_fail_memory(error);
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   if (result == VL_OK && pilot && r->two_way) vl_two_way_share(r->two_way, pilot->pass_seed);
-  if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def) != VL_OK)
+  double correlation = r->shares && result == VL_OK ? vl_reconstruction_correlation(&r->reconstruction) : 1;
+  if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
     result = vl_fail_memory(error);
   if (result == VL_OK) result = render_passes(r, error);
   if (stats && r->workers) fill_stats(r, stats);

@@ -76,19 +76,19 @@ static void expected_noise(void **state) {
   const double slope = 1.055 / 2.4 * pow(0.25, 1 / 2.4 - 1);
   vlFilm *film = noisy_film(context, mean, deviation, 1);
   for (uint32_t i = 0; i < 6; i++) { /* those of the lowest row have 6 lines: their bound is wider */
-    double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1), standard;
-    double bright = vl_film_block_noise(film, i, VL_VIEW_RAW, 1, 0.75f);
-    standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1);
+    double raw = vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1), standard;
+    double bright = vl_film_block_noise(film, i, VL_VIEW_RAW, 1, 0.75f, 1);
+    standard = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1, 1);
     if (!(raw > 0.97 * error && raw < 1.06 * error)) fail_msg("block %u: noise %g, error %g", i, raw, error);
     assert_true(fabs(bright / raw - 1.5) < 1e-5);
     assert_true(fabs(standard / (raw * slope) - 1) < 2e-3);
   }
   /* black and white are clipped: half of the interval remains at 0, nothing far above 1 */
   vlFilm *white = noisy_film(context, 3, deviation, 2), *black = noisy_film(context, 0, deviation, 3);
-  assert_true(vl_film_block_noise(white, 4, VL_VIEW_STANDARD, 0, 1) == 0);
-  double half = vl_film_block_noise(black, 4, VL_VIEW_RAW, 0, 1);
+  assert_true(vl_film_block_noise(white, 4, VL_VIEW_STANDARD, 0, 1, 1) == 0);
+  double half = vl_film_block_noise(black, 4, VL_VIEW_RAW, 0, 1, 1);
   assert_true(half > 0.4 * error && half < 0.7 * error);
-  assert_true(vl_film_block_noise(white, 4, VL_VIEW_KHRONOS_NEUTRAL, 0, 1) > 0);
+  assert_true(vl_film_block_noise(white, 4, VL_VIEW_KHRONOS_NEUTRAL, 0, 1, 1) > 0);
   vl_film_destroy(film);
   vl_film_destroy(white);
   vl_film_destroy(black);
@@ -102,7 +102,7 @@ static void bound_holds(void **state) {
   int above = 0;
   for (uint64_t seed = 10; seed < 50; seed++) {
     vlFilm *film = noisy_film(context, 0.5f, 0.05f, seed);
-    for (uint32_t i = 0; i < 6; i++) above += vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1) >= error;
+    for (uint32_t i = 0; i < 6; i++) above += vl_film_block_noise(film, i, VL_VIEW_RAW, 0, 1, 1) >= error;
     vl_film_destroy(film);
   }
   if (above < 219 || above == 240) fail_msg("%d of 240 bounds hold", above);
@@ -125,8 +125,13 @@ static void rare_light_is_not_missed(void **state) {
     probability *= (double)(SPP - k) / (k + 1) * p / (1 - p);
   }
   vlFilm *film = film_of(context, draw_rare, 0, 0, 5);
+  double apart = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, 1),
+         alike[2]; /* the bound's distance from the mean */
+  for (int k = 0; k < 2; k++) alike[k] = vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, k ? 4 : 0);
+  double none = alike[0] * alike[0], one = apart * apart - none, four = alike[1] * alike[1] - none;
+  assert_true(one > 0 && fabs(four / one - 2) < 1e-3);
   for (uint32_t i = 0; i < 6; i++) {
-    double noise = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1) / sqrt(square);
+    double noise = vl_film_block_noise(film, i, VL_VIEW_STANDARD, 0, 1, 1) / sqrt(square);
     if (!(noise > 1 && noise < 1.5)) fail_msg("block %u: %g times the true error, %g", i, noise, sqrt(square));
   }
   vl_film_destroy(film);
@@ -138,7 +143,7 @@ static void without_samples(void **state) {
   vlFilm *film;
   def.errors = true;
   assert_int_equal(vl_film_create(context, &def, &film), VL_OK);
-  assert_true(isinf(vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1)));
+  assert_true(isinf(vl_film_block_noise(film, 0, VL_VIEW_STANDARD, 0, 1, 1)));
   assert_false(vl_film_is_adaptive(film));
   assert_int_equal(vl_film_set_block_spp(film, 3, 5), VL_OK);
   assert_true(vl_film_is_adaptive(film));

@@ -50,10 +50,10 @@ typedef struct vlFilterCurve {
 vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
 /* The same bits as vlFilterKernels.curve. */
 static inline float vl_filter_curve_at(const vlFilterCurve *c, float x) {
-  float at = (x < 0.0f ? -x : x) * c->per_step;
-  if (!(at <= c->steps)) return 0.0f;
+  float at = (x < 0.0f ? -x : x) * c->per_step, inside = at <= c->steps ? 1.0f : 0.0f;
+  at = at < c->steps ? at : c->steps;
   int32_t k = (int32_t)at;
-  return c->values[k] + (at - (float)k) * (c->values[k + 1] - c->values[k]);
+  return inside * (c->values[k] + (at - (float)k) * (c->values[k + 1] - c->values[k]));
 }
 
 #endif

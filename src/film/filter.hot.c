@@ -92,12 +92,10 @@ static void curve(const vlFilterCurve *c, uint32_t n, const float *at, float shi
   uint32_t count = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
-    float t = vl_abs(at[i] - shift) * per_step;
-    int in = t <= steps;
-    t = in ? t : 0.0f;
+    float t = vl_abs(at[i] - shift) * per_step, inside = t <= steps ? 1.0f : 0.0f;
+    t = t < steps ? t : steps;
     int32_t k = (int32_t)t;
-    float v = values[k] + (t - (float)k) * (values[k + 1] - values[k]);
-    out[i] = in ? v : 0.0f;
+    out[i] = inside * (values[k] + (t - (float)k) * (values[k + 1] - values[k]));
   }
 }
 

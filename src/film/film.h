@@ -97,11 +97,12 @@ vlResult vl_film_add_film(vlFilm *film, const vlFilm *other);
  * weight f/pdf: 1 for filters without negative lobes, else plus or minus a constant; its mean is 1. Batch, hot. */
 typedef struct vlFilterTable vlFilterTable; /* compiled from vlPixelFilter; owned by the film */
 const vlFilterTable *vl_film_filter(const vlFilm *film);
+typedef struct vlFilterCurve vlFilterCurve;
 typedef struct vlFilterKernels {
   void (*sample)(const vlFilterTable *filter, uint32_t n, const float *u, const float *v, float *dx, float *dy,
                  float *weight);
   /* out[i] = vl_filter_curve_at(curve, at[i] - shift), for VL_PAD(n) elements. */
-  void (*curve)(const struct vlFilterCurve *curve, uint32_t n, const float *at, float shift, float *out);
+  void (*curve)(const vlFilterCurve *curve, uint32_t n, const float *at, float shift, float *out);
 } vlFilterKernels;
 VL_KERNEL_TABLE(vlFilterKernels, vl_filter)
 

@@ -42,10 +42,10 @@ static inline double vl_filter_weight(const vlFilterTable *filter) {
 
 /* The filter along an axis, at equal steps from 0 to its radius, scaled to an integral of 1. */
 enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
-typedef struct vlFilterCurve {
+struct vlFilterCurve {
   float *values;
   float steps, per_step; /* number of steps, and steps per pixel */
-} vlFilterCurve;
+};
 /* Error: MEMORY. */
 vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
 /* The same bits as vlFilterKernels.curve. */

@@ -32,6 +32,12 @@ static uint32_t morton_half(uint32_t m) {
   return (m | m >> 4) & 0x00ff00ffu;
 }
 
+static void block_corner(const vlRenderRun *r, uint32_t block, uint32_t *x, uint32_t *y) {
+  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x;
+  *x = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
+  *y = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
+}
+
 /* Lists the samples of this batch: the pixels of the block's tiles inside the crop window, times the samples of the
  * batch. Returns the number of lanes. */
 static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t block, uint32_t first, uint32_t count) {
@@ -39,9 +45,8 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
   int32_t *px = rows.px, *py = rows.py;
   uint32_t *index = rows.index, n = 0;
   bool some = r->adaptive.in_pass < r->adaptive.blocks;
-  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x, pixels = r->span_x * r->span_y * TILE_PIXELS;
-  uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
-  uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
+  uint32_t pixels = r->span_x * r->span_y * TILE_PIXELS, x0, y0;
+  block_corner(r, block, &x0, &y0);
   for (uint32_t s = first; s < first + count; s++)
     for (uint32_t m = 0; m < pixels; m++) { /* Morton order: two tiles lie side by side, four in a square */
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
@@ -154,9 +159,8 @@ void vl_render_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
 
 /* The block's pixels inside the crop window; false: there are none in this pass. */
 static bool shared_block(const vlRenderRun *r, uint32_t block, vlSharedBlock *b) {
-  uint32_t blocks_x = (r->tiles_x + r->span_x - 1) / r->span_x;
-  uint32_t x0 = (r->tile_x0 + block % blocks_x * r->span_x) * VL_RENDER_TILE;
-  uint32_t y0 = (r->tile_y0 + block / blocks_x * r->span_y) * VL_RENDER_TILE;
+  uint32_t x0, y0;
+  block_corner(r, block, &x0, &y0);
   uint32_t x1 = x0 + r->span_x * VL_RENDER_TILE, y1 = y0 + r->span_y * VL_RENDER_TILE;
   if (x0 < r->crop[0]) x0 = r->crop[0];
   if (y0 < r->crop[1]) y0 = r->crop[1];
@@ -177,8 +181,9 @@ static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedB
   vlSharedTaps taps;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = i % VL_SHARED_LANES, left = n - i < VL_SHARED_LANES ? n - i : VL_SHARED_LANES;
-    if (lane == 0)
-      vl_shared_taps(&r->reconstruction, r->film_rays.filter_kernels, left, rows.film_x + i, rows.film_y + i, &taps);
+    for (int axis = 0; axis < 2 && lane == 0; axis++)
+      vl_shared_taps(&r->reconstruction, r->film_rays.filter_kernels, axis, left,
+                     (axis ? rows.film_y : rows.film_x) + i, taps.along[axis][0], VL_SHARED_LANES);
     float color[4] = {row(w, RED)[i], row(w, GREEN)[i], row(w, BLUE)[i], row(w, ALPHA)[i]};
     int32_t x = rows.px[i] - b->x0, y = rows.py[i] - b->y0;
     float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))), sum = color[0] + color[1] + color[2];
@@ -276,14 +281,15 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
   if (vl_stop_check(&r->stop)) return;
   unsigned state = vl_accel_enter();
   uint32_t end = r->first_sample + r->pass_samples;
+  vlSharedBlock b;
+  bool some = r->shares && shared_block(r, block, &b);
   for (uint32_t s = r->first_sample; s < end && !atomic_load(&r->stop.stopped);) {
     uint32_t most = r->shares ? VL_SHARED_SAMPLES : VL_BATCH / TILE_PIXELS / (r->span_x * r->span_y);
     uint32_t count = end - s < most ? end - s : most;
-    vlSharedBlock b;
     if (!r->shares) {
       uint32_t n = list_samples(r, w, block, s, count);
       if (n) vl_render_batch(r, w, n);
-    } else if (shared_block(r, block, &b)) {
+    } else if (some) {
       bool whole = trace_shared(r, w, &b, s, count, &state);
       for (uint32_t k = 0; k < count && whole; k++) add_shared(r, w, &b, &w->grids[k]);
     }

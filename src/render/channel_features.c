@@ -29,8 +29,8 @@ static uint32_t least(uint32_t a, uint32_t b) {
 /* False: the tile is empty. */
 static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
   const uint32_t *crop = p->def->crop;
-  uint32_t x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
-  uint32_t y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t x, y;
+  vl_channel_corner(p, tile, &x, &y);
   *g = (Region){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
   if (g->x0 >= crop[2] || g->y0 >= crop[3]) return false;
   g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0, g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
@@ -63,23 +63,25 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
 }
 
-/* Keeps the hit of row i at grid point `at`, with its weights in the pixels around. Negative weights count as 0. */
-static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t i, uint32_t at) {
+/* Keeps the n hits of the batch at the grid points from `at` on, with their weights in the pixels around. Negative
+ * weights count as 0. */
+static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_t at) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
   const vlGroundTruthBatch *b = w->batch;
   vlFeatureGrid *g = w->features;
-  float along[2][2 * VL_SHARED_BORDER + 1] = {{r.weight[i] > 0.0f ? r.weight[i] : 0.0f}, {1.0f}};
   if (p->shares) {
-    vl_shared_row(&p->reconstruction, 0, r.film_x[i], along[0]);
-    vl_shared_row(&p->reconstruction, 1, r.film_y[i], along[1]);
+    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 0, n, r.film_x, g->x[0] + at, VL_FEATURE_GRID);
+    vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 1, n, r.film_y, g->y[0] + at, VL_FEATURE_GRID);
   }
-  for (uint32_t k = 0; k < 2 * VL_SHARED_BORDER + 1; k++) g->x[k][at] = along[0][k], g->y[k][at] = along[1][k];
-  bool hit = b->object[i] != 0;
-  for (int k = 0; k < 3; k++) {
-    g->value[ALBEDO + k][at] = hit ? b->albedo[k][i] : 0.0f;
-    g->value[NORMAL + k][at] = hit ? b->n_shading[k][i] : 0.0f;
+  for (uint32_t i = 0; i < n; i++, at++) {
+    if (!p->shares) g->x[0][at] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f, g->y[0][at] = 1.0f;
+    bool hit = b->object[i] != 0;
+    for (int k = 0; k < 3; k++) {
+      g->value[ALBEDO + k][at] = hit ? b->albedo[k][i] : 0.0f;
+      g->value[NORMAL + k][at] = hit ? b->n_shading[k][i] : 0.0f;
+    }
+    g->value[DISPARITY][at] = hit && b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
   }
-  g->value[DISPARITY][at] = hit && b->distance[i] > 0 ? (float)(1.0 / b->distance[i]) : 0.0f;
 }
 
 /* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the first hit. */
@@ -127,7 +129,7 @@ void vl_channel_features(const vlChannelPass *p, vlChannelWorker *w, uint32_t ti
       n = least(g.count - done, VL_BATCH);
       make_rays(w, &rays, &g, done, n, s);
       p->ground_truth_kernels->trace(p->world, &p->features, w->scratch, w->batch);
-      for (uint32_t i = 0; i < n; i++) keep(p, w, i, done + i);
+      keep(p, w, n, done);
     }
     add(w, &g, sums);
   }

@@ -59,6 +59,7 @@ enum { VL_SHARED_HITS = 1 << 17 }; /* most hits that a worker holds at once */
  * in the pixels around (reconstruct.h). */
 enum { VL_FEATURES = 7 };
 enum { VL_FEATURE_GRID = (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) * (VL_CHANNEL_TILE + 2 * VL_SHARED_BORDER) };
+_Static_assert((int)VL_FEATURE_GRID == (int)VL_PAD(VL_FEATURE_GRID), "rows of weights are padded");
 typedef struct vlFeatureGrid {
   float value[VL_FEATURES][VL_FEATURE_GRID];
   float x[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID], y[2 * VL_SHARED_BORDER + 1][VL_FEATURE_GRID];
@@ -116,10 +117,15 @@ typedef struct vlChannelPass {
 static inline bool vl_channel_wanted(const vlChannelPass *p, uint32_t bits) {
   return (p->def->channels & bits) != 0;
 }
+/* The first pixel of a tile; it may lie before the crop window. */
+static inline void vl_channel_corner(const vlChannelPass *p, uint32_t tile, uint32_t *x, uint32_t *y) {
+  *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
+  *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+}
 /* Coordinates of pixel k of a tile; false: outside the crop window. */
 static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k, uint32_t *x, uint32_t *y) {
-  *x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE + k % VL_CHANNEL_TILE;
-  *y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE + k / VL_CHANNEL_TILE;
+  vl_channel_corner(p, tile, x, y);
+  *x += k % VL_CHANNEL_TILE, *y += k / VL_CHANNEL_TILE;
   const uint32_t *crop = p->def->crop;
   return *x >= crop[0] && *y >= crop[1] && *x < crop[2] && *y < crop[3];
 }

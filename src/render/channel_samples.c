@@ -259,8 +259,8 @@ static void count_square(const vlChannelPass *p, vlChannelWorker *w, Count *c, S
 
 static void count_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint32_t tile) {
   const uint32_t *border = p->reconstruction.border, *crop = p->def->crop;
-  uint32_t x0 = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
-  uint32_t y0 = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t x0, y0;
+  vl_channel_corner(p, tile, &x0, &y0);
   Square q = {.side = VL_CHANNEL_TILE};
   for (;; q.side /= 2) {
     q.width = q.side + 2 * border[0], q.height = q.side + 2 * border[1];

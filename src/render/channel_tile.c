@@ -92,8 +92,8 @@ static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_
 uint32_t vl_channel_spp(const vlChannelPass *p, uint32_t tile) {
   if (!p->adaptive) return p->spp ? p->spp : p->def->samples;
   const uint32_t *crop = vl_film_def(p->def->film)->crop;
-  uint32_t x = (p->tile_x0 + tile % p->tiles_x) * VL_CHANNEL_TILE;
-  uint32_t y = (p->tile_y0 + tile / p->tiles_x) * VL_CHANNEL_TILE;
+  uint32_t x, y;
+  vl_channel_corner(p, tile, &x, &y);
   return vl_film_block_spp(p->def->film, vl_film_block_at(crop, x > crop[0] ? x : crop[0], y > crop[1] ? y : crop[1]));
 }
 

@@ -56,11 +56,14 @@ void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
   k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
-  if (!f->uniform) f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
-  for (uint32_t i = 0; f->uniform && i < VL_PAD(n); i++)
-    r->film_x[i] = r->film_u[i], r->film_y[i] = r->film_v[i], r->weight[i] = 1.0f;
-  for (uint32_t i = 0; !f->uniform && i < VL_PAD(n); i++)
-    r->film_x[i] = r->film_x[i] * f->spread + 0.5f, r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
+  if (f->uniform) {
+    for (uint32_t i = 0; i < VL_PAD(n); i++)
+      r->film_x[i] = r->film_u[i], r->film_y[i] = r->film_v[i], r->weight[i] = 1.0f;
+  } else {
+    f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
+    for (uint32_t i = 0; i < VL_PAD(n); i++)
+      r->film_x[i] = r->film_x[i] * f->spread + 0.5f, r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
+  }
   for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
   if (f->middle || f->centred || f->shared >= 0.0f)
     for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = f->middle || f->centred ? 0.5f : f->shared;

@@ -22,8 +22,8 @@ typedef struct Call {
   vlRenderWorker worker;
   vlFilm *film, *unlimited; /* of one pixel; the second without max_component */
   vlPathRecorder recorder;
-  uint32_t x, y, lanes;       /* lanes: number of paths per batch */
-  uint32_t border[2], pixels; /* the samples are taken in this many pixels, up to a border around (x, y) */
+  uint32_t x, y, lanes; /* lanes: number of paths per batch */
+  uint32_t pixels;      /* the samples are taken in this many pixels: (x, y), and its border if it shares */
   /* the result so far */
   vlPath *paths;
   size_t path_count, path_room;
@@ -89,12 +89,13 @@ static const float *row(const Call *c, int r) {
 /* Lists n samples, after `done` others. */
 static void list_samples(const Call *c, uint32_t first, uint32_t done, uint32_t n) {
   vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
-  uint32_t width = 2 * c->border[0] + 1;
+  const uint32_t *border = c->run.reconstruction.border;
+  uint32_t width = 2 * border[0] + 1;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t k = done + (i < n ? i : n - 1), pixel = k % c->pixels, own = c->pixels / 2;
     pixel = pixel == 0 ? own : pixel <= own ? pixel - 1 : pixel; /* the pixel's own sample comes first */
-    rows.px[i] = (int32_t)(c->x + pixel % width) - (int32_t)c->border[0];
-    rows.py[i] = (int32_t)(c->y + pixel / width) - (int32_t)c->border[1];
+    rows.px[i] = (int32_t)(c->x + pixel % width) - (int32_t)border[0];
+    rows.py[i] = (int32_t)(c->y + pixel / width) - (int32_t)border[1];
     rows.index[i] = first + k / c->pixels;
   }
 }
@@ -319,8 +320,8 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
   if (result == VL_OK && c.run.shares) {
     if (vl_reconstruction_make(c.context, &film->filter, &c.run.reconstruction) != VL_OK)
       result = vl_fail_memory(error);
-    memcpy(c.border, c.run.reconstruction.border, sizeof c.border);
-    c.pixels = (2 * c.border[0] + 1) * (2 * c.border[1] + 1);
+    const uint32_t *border = c.run.reconstruction.border;
+    c.pixels = (2 * border[0] + 1) * (2 * border[1] + 1);
   }
   if (result == VL_OK) result = trace_all(&c, first, count, error);
   if (result == VL_OK) result = pack(&c, count, paths, error);

@@ -54,11 +54,10 @@ void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
   *r = (vlReconstruction){.border = {0, 0}};
 }
 
-void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, uint32_t n, const float *x,
-                    const float *y, vlSharedTaps *taps) {
-  for (int axis = 0; axis < 2; axis++)
-    for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
-      kernels->curve(&r->curve[axis], n, axis ? y : x, 0.5f + (float)k - (float)r->border[axis], taps->along[axis][k]);
+void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, int axis, uint32_t n, const float *at,
+                    float *rows, size_t stride) {
+  for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
+    kernels->curve(&r->curve[axis], n, at, 0.5f + (float)k - (float)r->border[axis], rows + k * stride);
 }
 
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],

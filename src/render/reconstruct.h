@@ -29,12 +29,6 @@ vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter,
 double vl_reconstruction_correlation(const vlReconstruction *r);
 void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
 
-/* The filter's values along an axis (0: x) in the pixels around, from the one border[axis] pixels before the sample's
- * own. at: the film point from its pixel's corner. */
-static inline void vl_shared_row(const vlReconstruction *r, int axis, float at, float row[2 * VL_SHARED_BORDER + 1]) {
-  for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
-    row[k] = vl_filter_curve_at(&r->curve[axis], at - (0.5f + (float)k - (float)r->border[axis]));
-}
 /* The weight of a sample in the pixel that lies (dx, dy) pixels from the sample's own; (x, y): its film point, from its
  * pixel's corner. */
 static inline float vl_shared_weight(const vlReconstruction *r, float x, float y, int32_t dx, int32_t dy) {
@@ -55,13 +49,14 @@ typedef struct vlSharedBlock {
   uint32_t width, height;
 } vlSharedBlock;
 
-/* vl_shared_row of up to VL_SHARED_LANES samples. */
+/* The filter's values along an axis (0: x) in the pixels around n samples, from the pixel border[axis] before the
+ * sample's own: rows of VL_PAD(n) values, `stride` apart. at: the film points from their pixels' corners. */
+void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, int axis, uint32_t n, const float *at,
+                    float *rows, size_t stride);
 enum { VL_SHARED_LANES = 128 };
 typedef struct vlSharedTaps {
   float along[2][2 * VL_SHARED_BORDER + 1][VL_SHARED_LANES];
 } vlSharedTaps;
-void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, uint32_t n, const float *x,
-                    const float *y, vlSharedTaps *taps);
 /* Stores a sample at grid point `at`; its filter values are those of lane `lane`. A sample that does not count (it is
  * not finite) has weight 0. */
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],

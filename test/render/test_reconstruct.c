@@ -97,7 +97,9 @@ static void sums(void **state) {
       for (int c = 0; c < 2; c++) points[i][c] = random_number();
       vlSharedTaps taps;
       _Alignas(64) float x[VL_PAD(1)] = {points[i][0]}, y[VL_PAD(1)] = {points[i][1]};
-      vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), 1, x, y, &taps);
+      for (int axis = 0; axis < 2; axis++)
+        vl_shared_taps(&r, vl_filter_kernels(vl_isa_best()), axis, 1, axis ? y : x, taps.along[axis][0],
+                       VL_SHARED_LANES);
       bool counts = i % 50 != 3;
       if (!counts) values[i][0] = NAN, points[i][0] = 99; /* no weight in any pixel */
       vl_shared_store(&r, &grid_, i, values[i], &taps, 0, counts);

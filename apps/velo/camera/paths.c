@@ -133,8 +133,8 @@ const Command camera_paths_command = {
     .summary = "print the paths of a pixel, vertex by vertex",
     .text =
         "Traces the samples that count in one pixel again (those of the pixels around, too, if pixels share\n"
-        "samples), with the random numbers of `velo render`, and prints each path: what it met, the sampled lobes with "
-        "their densities, the lights with their weights, and what each\n"
+        "samples), with the random numbers of `velo render`, and prints each path: what it met, the sampled\n"
+        "lobes with their densities, the lights with their weights, and what each\n"
         "adds. The path with the largest share of the pixel comes first: so a firefly shows where it is from.\n"
         "The options of the image must be those of the render (docs/tracers.md).",
     .examples =

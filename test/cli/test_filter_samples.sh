@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # --filter-samples shared: the same bytes for any threads, crops, parts and stops; the same mean as own samples, with
-# less noise; what cannot go together is refused.
+# less noise; what the program says of it.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
@@ -50,7 +50,7 @@ for crop in 0,0,1,1 37,11,70,33 129,69,130,70 5,0,130,70; do
   check "crop $crop" python3 crop.py crop.pfm ${crop//,/ }
 done
 
-# Noise and mean, by filter: variance of own over shared samples between the bounds, means within 4 standard errors.
+# Noise and mean, by filter: variance of own over shared samples between the bounds, means within 5 standard errors.
 cat >noise.py <<'END'
 import math, struct, subprocess, sys
 

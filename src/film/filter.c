@@ -263,7 +263,9 @@ static bool in_range(float x, float low, float high) {
   return x > low && x <= high; /* false for NaN */
 }
 
-bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table) {
+/* ---- the whole table --------------------------------------------------------------------------------------------- */
+
+static bool is_valid(const vlPixelFilter *filter) {
 #define COUNT(K, k) +1
   if ((unsigned)filter->kind >= 0 VL_PIXEL_FILTER_KINDS(COUNT)) return false;
 #undef COUNT
@@ -273,16 +275,10 @@ bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table) {
   if (filter->kind == VL_PIXEL_FILTER_LANCZOS && !in_range(filter->tau, 0, 1e6f)) return false;
   if (filter->kind == VL_PIXEL_FILTER_MITCHELL && (!in_range(filter->b, -10, 10) || !in_range(filter->c, -10, 10)))
     return false;
-  table->kind = filter->kind;
-  if (!compile_axis(filter, 0, &table->axis[0])) return false;
-  if (filter->radius_x == filter->radius_y) {
-    table->axis[1] = table->axis[0];
-    return true;
-  }
-  return compile_axis(filter, 1, &table->axis[1]);
+  return true;
 }
 
-vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *f, int axis, vlFilterCurve *curve) {
+static vlResult make_curve(vlContext *context, const vlPixelFilter *f, int axis, vlFilterCurve *curve) {
   double radius = axis ? f->radius_y : f->radius_x, sum = 0;
   uint32_t steps = (uint32_t)ceil(radius) * VL_FILTER_STEPS;
   double step = radius / steps;
@@ -293,4 +289,28 @@ vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *f, int ax
   for (uint32_t i = 0; i < steps + 2; i++)
     curve->values[i] = (float)(vl_filter_value(f, axis, fmin(i * step, radius)) / (2 * sum * step));
   return VL_OK;
+}
+
+vlResult vl_filter_compile(vlContext *context, const vlPixelFilter *filter, vlFilterTable *table) {
+  bool same = filter->radius_x == filter->radius_y;
+  table->kind = filter->kind;
+  table->curve[0].values = table->curve[1].values = NULL;
+  if (!is_valid(filter) || !compile_axis(filter, 0, &table->axis[0])) return VL_ERROR_ARGUMENT;
+  if (same)
+    table->axis[1] = table->axis[0];
+  else if (!compile_axis(filter, 1, &table->axis[1]))
+    return VL_ERROR_ARGUMENT;
+  vlResult result = make_curve(context, filter, 0, &table->curve[0]);
+  if (same)
+    table->curve[1] = table->curve[0];
+  else if (result == VL_OK)
+    result = make_curve(context, filter, 1, &table->curve[1]);
+  if (result != VL_OK) vl_filter_free(context, table);
+  return result;
+}
+
+void vl_filter_free(vlContext *context, vlFilterTable *table) {
+  if (table->curve[1].values != table->curve[0].values) vl_free(context, table->curve[1].values);
+  vl_free(context, table->curve[0].values);
+  table->curve[0].values = table->curve[1].values = NULL;
 }

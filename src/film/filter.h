@@ -21,13 +21,23 @@ typedef struct vlFilterAxis {
   float f[VL_FILTER_EDGES]; /* |f(x)|, not normalised */
 } vlFilterAxis;
 
+/* The filter along an axis, at equal steps from 0 to its radius, scaled to an integral of 1. */
+enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
+struct vlFilterCurve {
+  float *values;
+  float steps, per_step; /* number of steps, and steps per pixel */
+};
+
 struct vlFilterTable {
   vlPixelFilterKind kind;
   vlFilterAxis axis[2];
+  vlFilterCurve curve[2]; /* along x and y; both have the same values if the radii are equal */
 };
 
-/* False if the parameters are not valid: not finite, radius not in (0, 32], no mass. */
-bool vl_filter_compile(const vlPixelFilter *filter, vlFilterTable *table);
+/* Errors: ARGUMENT if the parameters are not valid (not finite, radius not in (0, 32], no mass), MEMORY. */
+vlResult vl_filter_compile(vlContext *context, const vlPixelFilter *filter, vlFilterTable *table);
+/* A table of zeros is allowed. */
+void vl_filter_free(vlContext *context, vlFilterTable *table);
 /* f of one axis, not normalised; 0 outside the radius. */
 double vl_filter_value(const vlPixelFilter *filter, int axis, double x);
 
@@ -40,14 +50,6 @@ static inline double vl_filter_weight(const vlFilterTable *filter) {
   return weight;
 }
 
-/* The filter along an axis, at equal steps from 0 to its radius, scaled to an integral of 1. */
-enum { VL_FILTER_STEPS = 1024 }; /* per pixel: linear interpolation is exact to 1e-6 */
-struct vlFilterCurve {
-  float *values;
-  float steps, per_step; /* number of steps, and steps per pixel */
-};
-/* Error: MEMORY. */
-vlResult vl_filter_curve_make(vlContext *context, const vlPixelFilter *filter, int axis, vlFilterCurve *curve);
 /* The same bits as vlFilterKernels.curve. */
 static inline float vl_filter_curve_at(const vlFilterCurve *c, float x) {
   float at = (x < 0.0f ? -x : x) * c->per_step, inside = at <= c->steps ? 1.0f : 0.0f;

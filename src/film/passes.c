@@ -78,10 +78,11 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
     return result;
   }
   if (made->def.white_balance > 0.0) vl_white_balance(made->def.white_balance, def->space, made->balance);
-  if (!vl_filter_compile(&def->filter, &made->filter)) {
+  result = vl_filter_compile(context, &def->filter, &made->filter);
+  if (result != VL_OK) {
     vl_free(context, made->sensor);
     vl_free(context, made);
-    return VL_ERROR_ARGUMENT;
+    return result;
   }
   *film = made;
   return VL_OK;
@@ -106,6 +107,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
   vl_film_spectrum_free(film);
+  vl_filter_free(context, &film->filter);
   vl_free(context, film);
 }
 

@@ -185,9 +185,8 @@ static vlResult make_workers(vlChannelPass *p, vlError *error) {
         (features && !w->features) || (flow && (!w->other || !w->lanes)))
       return vl_fail_memory(error);
   }
-  bool whole = p->workers && (!p->shares || vl_reconstruction_make(context, &vl_film_def(p->def->film)->filter,
-                                                                   &p->reconstruction) == VL_OK);
-  return whole ? VL_OK : vl_fail_memory(error);
+  if (p->shares) p->reconstruction = vl_reconstruction_of(vl_film_filter(p->def->film));
+  return p->workers ? VL_OK : vl_fail_memory(error);
 }
 
 static vlResult open_mattes(vlChannelPass *p, vlError *error) {
@@ -220,7 +219,6 @@ static void free_all(vlChannelPass *p) {
     vl_free(context, w->lanes);
   }
   vl_free(context, p->workers);
-  vl_reconstruction_free(context, &p->reconstruction);
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);
 }
 

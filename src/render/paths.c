@@ -65,7 +65,6 @@ static void free_memory(Call *c) {
   vl_free(c->context, c->paths);
   vl_free(c->context, c->vertices);
   vl_free(c->context, c->contributions);
-  vl_reconstruction_free(c->context, &c->run.reconstruction);
   vl_film_destroy(c->film);
   vl_film_destroy(c->unlimited);
 }
@@ -318,8 +317,7 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
     c.pixels = 1;
   }
   if (result == VL_OK && c.run.shares) {
-    if (vl_reconstruction_make(c.context, &film->filter, &c.run.reconstruction) != VL_OK)
-      result = vl_fail_memory(error);
+    c.run.reconstruction = vl_reconstruction_of(vl_film_filter(c.film));
     const uint32_t *border = c.run.reconstruction.border;
     c.pixels = (2 * border[0] + 1) * (2 * border[1] + 1);
   }

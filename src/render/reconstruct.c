@@ -22,10 +22,9 @@ bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def) {
   return def->share_samples && !def->centred && !film->buckets && filter_shares(&film->filter);
 }
 
-vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r) {
-  *r = (vlReconstruction){.border = {border_of(filter->radius_x), border_of(filter->radius_y)}};
-  vlResult result = vl_filter_curve_make(context, filter, 0, &r->curve[0]);
-  return result == VL_OK ? vl_filter_curve_make(context, filter, 1, &r->curve[1]) : result;
+vlReconstruction vl_reconstruction_of(const vlFilterTable *filter) {
+  return (vlReconstruction){.curve = {filter->curve[0], filter->curve[1]},
+                            .border = {border_of(filter->axis[0].radius), border_of(filter->axis[1].radius)}};
 }
 
 /* Along one axis: two pixels d apart have the correlation (f * f)(d) / (f * f)(0), f being the filter. */
@@ -47,11 +46,6 @@ static double correlation_along(const vlFilterCurve *f, uint32_t border) {
 
 double vl_reconstruction_correlation(const vlReconstruction *r) {
   return correlation_along(&r->curve[0], r->border[0]) * correlation_along(&r->curve[1], r->border[1]);
-}
-
-void vl_reconstruction_free(vlContext *context, vlReconstruction *r) {
-  for (int i = 0; i < 2; i++) vl_free(context, r->curve[i].values);
-  *r = (vlReconstruction){.border = {0, 0}};
 }
 
 void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, int axis, uint32_t n, const float *at,

@@ -19,15 +19,15 @@ enum { VL_SHARED_GRID = (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) * (VL_SHARED_SID
  * reaches beyond its pixel and not too far. */
 bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def);
 
+/* The filter as pixels that share samples need it; valid as long as the film. */
 typedef struct vlReconstruction {
   vlFilterCurve curve[2];
   uint32_t border[2]; /* pixels of the border along x and y */
 } vlReconstruction;
-vlResult vl_reconstruction_make(vlContext *context, const vlPixelFilter *filter, vlReconstruction *r);
+vlReconstruction vl_reconstruction_of(const vlFilterTable *filter);
 /* The sum of the squared correlations of a pixel's error with those of all pixels, itself included, where the samples
  * are independent and alike. */
 double vl_reconstruction_correlation(const vlReconstruction *r);
-void vl_reconstruction_free(vlContext *context, vlReconstruction *r);
 
 /* The weight of a sample in the pixel that lies (dx, dy) pixels from the sample's own; (x, y): its film point, from its
  * pixel's corner. */

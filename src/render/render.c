@@ -322,12 +322,10 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vl_render_prepare(r, &focused);
   prepare_pilot(r, pilot);
   result = make_workers(r, world->context, error);
-  if (result == VL_OK && r->shares &&
-      vl_reconstruction_make(world->context, &vl_film_def(film)->filter, &r->reconstruction) != VL_OK)
-    result = vl_fail_memory(error);
+  if (r->shares) r->reconstruction = vl_reconstruction_of(vl_film_filter(film));
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
   if (result == VL_OK && pilot && r->two_way) vl_two_way_share(r->two_way, pilot->pass_seed);
-  double correlation = r->shares && result == VL_OK ? vl_reconstruction_correlation(&r->reconstruction) : 1;
+  double correlation = r->shares ? vl_reconstruction_correlation(&r->reconstruction) : 1;
   if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
     result = vl_fail_memory(error);
   if (result == VL_OK) result = render_passes(r, error);
@@ -335,7 +333,6 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (r->workers) end_pilot(r, pilot);
   vl_adaptive_destroy(&r->adaptive);
   vl_two_way_destroy(r->two_way);
-  vl_reconstruction_free(world->context, &r->reconstruction);
   return result;
 }
 

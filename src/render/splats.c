@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "film/filter.h"
 #include "film/sums.h"
 
 static void add(vlSplatSum *sum, float value) {
@@ -22,7 +23,7 @@ typedef struct Taps {
 } Taps;
 
 static Taps find_taps(const vlSplats *s, int axis, float at) {
-  double x = at, radius = axis ? s->filter->radius_y : s->filter->radius_x;
+  double x = at, radius = s->filter->axis[axis].radius;
   int32_t low = (int32_t)(axis ? s->y0 : s->x0), high = low + (int32_t)(axis ? s->height : s->width);
   int32_t first = (int32_t)floor(x - 0.5 - radius) + 1, last = (int32_t)floor(x - 0.5 + radius);
   if (first < low) first = low;
@@ -38,10 +39,10 @@ static bool add_one(vlSplats *s, float x, float y, const float color[3]) {
   Taps across = find_taps(s, 0, x), down = find_taps(s, 1, y);
   double value[2 * VL_FILTER_RADIUS_MAX + 1];
   for (uint32_t i = 0; i < across.count; i++)
-    value[i] = (double)vl_filter_curve_at(&s->curve[0], (float)((double)x - (s->x0 + across.first + i) - 0.5));
+    value[i] = (double)vl_filter_curve_at(&s->filter->curve[0], (float)((double)x - (s->x0 + across.first + i) - 0.5));
   for (uint32_t j = 0; j < down.count; j++) {
     vlSplat *row = s->pixels + (size_t)(down.first + j) * s->width + across.first;
-    double wy = (double)vl_filter_curve_at(&s->curve[1], (float)((double)y - (s->y0 + down.first + j) - 0.5));
+    double wy = (double)vl_filter_curve_at(&s->filter->curve[1], (float)((double)y - (s->y0 + down.first + j) - 0.5));
     for (uint32_t i = 0; i < across.count; i++)
       for (int c = 0; c < 3; c++) add(&row[i].color[c], (float)(wy * value[i] * (double)color[c]));
   }
@@ -89,19 +90,17 @@ void vl_splats_clear(vlSplats *s) {
   memset((void *)s->pixels, 0, (size_t)s->width * s->height * sizeof *s->pixels);
 }
 
-vlResult vl_splats_make(vlContext *context, const vlFilmDef *film, vlSplats *s) {
+vlResult vl_splats_make(vlContext *context, const vlFilm *film, vlSplats *s) {
+  const uint32_t *crop = vl_film_def(film)->crop;
   memset(s, 0, sizeof *s);
-  s->x0 = film->crop[0], s->y0 = film->crop[1];
-  s->width = film->crop[2] - film->crop[0], s->height = film->crop[3] - film->crop[1];
-  s->filter = &film->filter;
-  for (int i = 0; i < 2; i++)
-    if (vl_filter_curve_make(context, s->filter, i, &s->curve[i]) != VL_OK) return VL_ERROR_MEMORY;
+  s->x0 = crop[0], s->y0 = crop[1];
+  s->width = crop[2] - crop[0], s->height = crop[3] - crop[1];
+  s->filter = vl_film_filter(film);
   s->pixels = vl_alloc_zero(context, (size_t)s->width * s->height, sizeof *s->pixels);
   return s->pixels ? VL_OK : VL_ERROR_MEMORY;
 }
 
 void vl_splats_free(vlContext *context, vlSplats *s) {
-  for (int i = 0; i < 2; i++) vl_free(context, s->curve[i].values);
   vl_free(context, s->pixels);
   *s = (vlSplats){0};
 }

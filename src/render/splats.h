@@ -7,7 +7,6 @@
 
 #include "base/context.h"
 #include "film/film.h"
-#include "render/reconstruct.h"
 
 /* A sum of 128 bits in two words. Threads add without a lock: each addition carries into the high word itself. */
 typedef struct vlSplatSum {
@@ -20,12 +19,11 @@ typedef struct vlSplat {
 typedef struct vlSplats {
   vlSplat *pixels; /* by pixel of the crop window */
   uint32_t x0, y0, width, height;
-  const vlPixelFilter *filter;
-  vlFilterCurve curve[2]; /* the filter along x and y */
+  const vlFilterTable *filter;
 } vlSplats;
 
 /* film must outlive the splats. Error: MEMORY. */
-vlResult vl_splats_make(vlContext *context, const vlFilmDef *film, vlSplats *splats);
+vlResult vl_splats_make(vlContext *context, const vlFilm *film, vlSplats *splats);
 void vl_splats_free(vlContext *context, vlSplats *splats);
 /* Adds n colors, times the filter, to all pixels whose filter covers the film points x, y (pixels). Any thread. Returns
  * how many of the colors are not finite; these are left out. */

@@ -393,7 +393,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
-  bool good = run->choice && vl_splats_make(context, f, &run->splats) == VL_OK;
+  bool good = run->choice && vl_splats_make(context, film, &run->splats) == VL_OK;
   way->choice = run->choice;
   vlResult result = good ? make_workers(run, error) : vl_fail_memory(error);
   if (result == VL_OK) result = find_media(run, camera, error);

@@ -55,7 +55,6 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
       px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
       n++;
     }
-  for (uint32_t i = n; n > 0 && i < VL_PAD(n); i++) px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
   return n;
 }
 
@@ -222,8 +221,6 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
       rows.px[n] = b->x0 - bx + (int32_t)x, rows.py[n] = b->y0 - by + (int32_t)y, rows.index[n] = s;
       n++, filled++;
       if (filled < (uint64_t)total * (done + 1) / batches) continue;
-      for (uint32_t i = n; i < VL_PAD(n); i++)
-        rows.px[i] = rows.px[n - 1], rows.py[i] = rows.py[n - 1], rows.index[i] = rows.index[n - 1];
       trace_batch(r, w, n);
       store_batch(r, w, b, first, n);
       done++, n = 0;

@@ -44,14 +44,12 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
 static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *g, uint32_t done, uint32_t n,
                       uint32_t s) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    uint32_t k = done + least(i, n - 1);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t k = done + i;
     r.px[i] = (int32_t)(g->x0 + k % g->stride) - (int32_t)g->border[0];
     r.py[i] = (int32_t)(g->y0 + k / g->stride) - (int32_t)g->border[1];
     r.index[i] = s;
   }
-  if (!rays->lens)
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r.lens_u[i] = r.lens_v[i] = 0.5f;
   vl_film_rays_make(rays, n, &r);
   vlGroundTruthBatch *b = w->batch;
   b->n = n;

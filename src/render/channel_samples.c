@@ -132,9 +132,6 @@ static void end_pixel(const vlChannelPass *p, vlChannelWorker *w, const Count *c
 /* Traces the first n of the worker's rows. */
 static void trace(const vlChannelPass *p, vlChannelWorker *w, const Count *c, uint32_t n) {
   vlFilmRayRows r = vl_film_ray_rows(w->rows);
-  for (uint32_t i = n; i < VL_PAD(n); i++) r.px[i] = r.px[n - 1], r.py[i] = r.py[n - 1], r.index[i] = r.index[n - 1];
-  if (!c->rays->lens)
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r.lens_u[i] = r.lens_v[i] = 0.5f;
   vl_film_rays_make(c->rays, n, &r);
   bool depths = !c->matte && p->def->mode == VL_CHANNEL_MODE_NEAREST;
   vlGroundTruthHits hits = {.n = n,

@@ -55,6 +55,8 @@ void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
 
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
+  for (uint32_t i = n; i < VL_PAD(n); i++)
+    r->px[i] = r->px[n - 1], r->py[i] = r->py[n - 1], r->index[i] = r->index[n - 1];
   k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
   if (f->uniform) {
     for (uint32_t i = 0; i < VL_PAD(n); i++)
@@ -69,8 +71,10 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
     for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
   else
     k->get_1d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_TIME, r->time);
-  if (f->lens) k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
-  for (uint32_t i = 0; f->centred && f->lens && i < VL_PAD(n); i++) r->lens_u[i] = r->lens_v[i] = 0.5f;
+  if (f->lens && !f->centred)
+    k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
+  else
+    for (uint32_t i = 0; i < VL_PAD(n); i++) r->lens_u[i] = r->lens_v[i] = 0.5f;
   vlCameraSamples samples = {r->film_x, r->film_y, r->px, r->py, r->lens_u, r->lens_v, r->time};
   f->camera_kernels->rays(&f->camera, n, &samples, &r->rays);
   for (uint32_t i = 0; f->moves && i < VL_PAD(n);

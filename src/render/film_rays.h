@@ -15,7 +15,7 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens;    /* lens points are sampled */
+  bool lens;    /* lens points are sampled; false: all are the centre of the lens */
   bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
   float shared; /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
   float spread; /* film samples are drawn from this part of the pixel's filter around its centre; 1: from all of it */
@@ -24,8 +24,9 @@ typedef struct vlFilmRays {
   bool moves;   /* true: the world has moving shapes, and ray times are world times, 0 to 1; false: seconds */
 } vlFilmRays;
 
-/* One element per sample, VL_PAD(n) of them. In: the pixel and the sample's index in it; the rest is output. film_x,
- * film_y: pixels from the pixel's top left corner; weight: the sample's weight by the pixel filter. */
+/* One element per sample; memory for VL_PAD(n) of them. In: the pixel and the sample's index in it, n of each; the rest
+ * is output, and the padding repeats the last sample. film_x, film_y: pixels from the pixel's top left corner; weight:
+ * the sample's weight by the pixel filter. */
 typedef struct vlFilmRayRows {
   int32_t *px, *py;
   uint32_t *index;
@@ -55,6 +56,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
                        vlIsa isa);
 /* Makes rays have world times (0 to 1) if the world has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
+/* n: at least 1. */
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 
 #endif

@@ -90,8 +90,8 @@ static void list_samples(const Call *c, uint32_t first, uint32_t done, uint32_t 
   vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
   const uint32_t *border = c->run.reconstruction.border;
   uint32_t width = 2 * border[0] + 1;
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    uint32_t k = done + (i < n ? i : n - 1), pixel = k % c->pixels, own = c->pixels / 2;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t k = done + i, pixel = k % c->pixels, own = c->pixels / 2;
     pixel = pixel == 0 ? own : pixel <= own ? pixel - 1 : pixel; /* the pixel's own sample comes first */
     rows.px[i] = (int32_t)(c->x + pixel % width) - (int32_t)border[0];
     rows.py[i] = (int32_t)(c->y + pixel / width) - (int32_t)border[1];

@@ -80,12 +80,38 @@ check no_paths render named.pbrt --tracer bidirectional --light-paths 0 --spp 4 
 check volpath render named.pbrt --tracer volpath --spp 4 --crop 40,40,56,56 -o volpath.pfm
 same no_light_paths_is_volpath none.pfm volpath.pfm
 
+# Several images have the race of the first one, whatever part of them is rendered. The poses stand beside the lamp, not
+# at the scene's camera.
+cat >poses.json <<'POSES'
+{"w": 128, "h": 96, "fl_x": 80, "frames": [
+  {"file_path": "a", "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 1, 3], [0, 0, 0, 1]]},
+  {"file_path": "b", "transform_matrix": [[1, 0, 0, 0.4], [0, 1, 0, 1.2], [0, 0, 1, 3], [0, 0, 0, 1]]}
+]}
+POSES
+several() { "$VELO" render named.pbrt --tracer auto --trajectory poses.json --crop 60,40,68,48 "$@"; }
+check frames several -o all-%d.exr -o all-%d.pfm
+race=$(grep auto: <<<"$err")
+expect_text frames_have_a_race 'auto: bidirectional'
+check last_frame several --frames 1 -o last-%d.pfm
+expect_text a_part_has_the_same_race "$race"
+same a_part_has_the_tracer_of_all all-1.pfm last-1.pfm
+check again_frame render --again all-1.exr -o again-%d.exr
+case "$err" in *auto:*) fail again_of_a_frame_needs_no_race ;; *) pass again_of_a_frame_needs_no_race ;; esac
+same again_of_a_frame_is_the_same all-1.exr again-1.exr
+for eye in left right; do
+  check "eye_$eye" render named.pbrt --tracer auto --stereo parallel --interocular 0.1 --eye $eye --crop 60,40,68,48 -o $eye-one.pfm
+  races+=("$(grep auto: <<<"$err")")
+done
+check eyes render named.pbrt --tracer auto --stereo parallel --interocular 0.1 --crop 60,40,68,48 -o %v.pfm
+expect_text eyes_have_a_race 'auto: bidirectional'
+races+=("$(grep auto: <<<"$err")")
+if [ "${races[0]}" = "${races[1]}" ] && [ "${races[0]}" = "${races[2]}" ]; then pass eyes_have_one_race; else fail eyes_have_one_race "${races[*]}"; fi
+same an_eye_has_the_tracer_of_both left.pfm left-one.pfm
+
 expect_code 2 continue_auto render --continue a.film --tracer auto
 expect_line continue_auto_says 'own tracer'
 expect_code 2 light_paths_auto render named.pbrt --tracer auto --light-paths 5 -o x.exr
 expect_line light_paths_auto_says 'light-paths'
-expect_code 2 stereo_auto render named.pbrt --tracer auto --stereo parallel -o x.exr
-expect_line stereo_auto_says 'one image'
 expect_code 2 view_auto "$VELO" view named.pbrt --tracer auto
 check small render named.pbrt --tracer auto --spp 1 --resolution 16x16 -o small.exr
 expect_text small_says 'no race'

@@ -98,6 +98,7 @@ static int add_camera(Frames *frames, vlContext *context, const Job *job, const 
                   memcmp(base.world_from_camera, y_up, sizeof y_up) == 0;
     result = vl_camera_move(&base, turned ? y_up : identity, &base, &error);
   }
+  camera->middle = base;
   for (int i = 0; i < frames->views && result == VL_OK; i++)
     result = vl_camera_eye(&base, &camera->job.defs->camera.stereo, frames->eyes[i], &camera->eyes[i], &error);
   if (result == VL_OK) return make_film(frames, context, camera);
@@ -198,14 +199,23 @@ uint32_t frames_count(const Frames *frames) {
   return frames->rig ? poses * frames->camera_count : poses;
 }
 
-Frame frames_at(const Frames *frames, uint32_t index) {
-  uint32_t cameras = frames->rig ? frames->camera_count : 1;
-  Frame frame = {.number = frames->first + index / cameras * frames->step, .camera = &frames->cameras[index % cameras]};
+/* Camera `which` of the rig, or the pose's own camera, at a pose. */
+static Frame make_frame(const Frames *frames, uint32_t number, uint32_t which) {
+  Frame frame = {.number = number, .camera = &frames->cameras[which]};
   frame.pose.time = VL_UNSET;
   if (!frames->trajectory) return frame;
   vl_trajectory_frame(frames->trajectory, frame.number, &frame.pose);
   if (!frames->rig) frame.camera = &frames->cameras[frame.pose.camera == VL_NO_CAMERA ? 0 : frame.pose.camera];
   return frame;
+}
+
+Frame frames_at(const Frames *frames, uint32_t index) {
+  uint32_t cameras = frames->rig ? frames->camera_count : 1;
+  return make_frame(frames, frames->first + index / cameras * frames->step, index % cameras);
+}
+
+Frame frames_first(const Frames *frames) {
+  return make_frame(frames, 0, 0);
 }
 
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size) {
@@ -225,20 +235,29 @@ bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outpu
   return true;
 }
 
-vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error) {
-  const vlCamera *eye = &frame->camera->eyes[view];
+/* Moves a camera whose pose is relative to the frame. */
+static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *from, vlCamera *camera,
+                      vlError *error) {
   double pose[16];
-  *camera = *eye;
+  *camera = *from;
   if (!frames->trajectory) return VL_OK;
   memcpy(pose, frame->pose.world_from_camera, sizeof pose);
   if (frames->rig) multiply(pose, frame->camera->mount, pose);
-  multiply(pose, eye->world_from_camera, pose);
-  vlResult result = vl_camera_move(eye, pose, camera, error);
+  multiply(pose, from->world_from_camera, pose);
+  vlResult result = vl_camera_move(from, pose, camera, error);
   if (result == VL_OK && !isnan(frame->pose.time)) {
     camera->shutter_open += frame->pose.time;
     camera->shutter_close += frame->pose.time;
   }
   return result;
+}
+
+vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error) {
+  return place(frames, frame, &frame->camera->eyes[view], camera, error);
+}
+
+vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera, vlError *error) {
+  return place(frames, frame, &frame->camera->middle, camera, error);
 }
 
 /* ---- names ------------------------------------------------------------------------------------------------------- */

@@ -14,6 +14,7 @@ typedef struct FrameCamera {
   vlSceneDefs defs; /* job.defs points here for cameras other than the scene's */
   Job job;
   vlCamera eyes[2]; /* poses relative to the frame */
+  vlCamera middle;  /* between the eyes; without stereo the camera itself */
   double mount[16]; /* frame_from_camera in a rig */
   vlFilm *film;     /* shared by cameras of the same size and crop; owned by the first of them */
   bool owns_film;
@@ -51,12 +52,16 @@ int frames_check_names(const Frames *frames, const Outputs *outputs);
 /* Return the number of images, and image i. Both eyes count as one image. */
 uint32_t frames_count(const Frames *frames);
 Frame frames_at(const Frames *frames, uint32_t index);
+/* The first image of all poses and cameras, whatever part of them is rendered. */
+Frame frames_first(const Frames *frames);
 /* The path of an image. view: 0 or 1, for %v. False: too long. */
 bool frames_path(const Frames *frames, const Frame *frame, const char *pattern, int view, char *path, size_t size);
 /* Returns whether all image files of the frame exist. Files are written atomically, so their content is not checked. */
 bool frames_exist(const Frames *frames, const Frame *frame, const Outputs *outputs);
 /* The camera of one view in the frame's pose. */
 vlResult frames_camera(const Frames *frames, const Frame *frame, int view, vlCamera *camera, vlError *error);
+/* The camera between the eyes in the frame's pose. */
+vlResult frames_middle(const Frames *frames, const Frame *frame, vlCamera *camera, vlError *error);
 void frames_free(Frames *frames);
 
 /* Renders and writes all frames. Returns the exit code. */

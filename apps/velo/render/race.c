@@ -42,7 +42,7 @@ static uint32_t expected_samples(const vlSceneDefs *defs) {
 static bool is_default(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   const vlSceneDefs *whole = &render->film_plan.whole;
-  if (render->resumed.path || render->again.receipt || render->shared || render->many) return false;
+  if (render->resumed.path || render->again.receipt || render->shared) return false;
   if (v[RENDER_LIGHT_PATHS].given || v[RENDER_MERGE_RADIUS].given || whole->build.imitate_pbrt) return false;
   if (expected_samples(whole) < LEAST_SAMPLES) return false;
   bool free_paths = whole->render.light_paths == VL_AS_MANY_AS_PIXELS;
@@ -53,8 +53,6 @@ static bool is_default(const Render *render, const Arguments *arguments) {
 int race_plan(Render *render, const Arguments *arguments) {
   const vlRenderDef *def = &render->job.defs->render;
   bool asked = is_asked(arguments);
-  if (asked && render->many)
-    return report_usage("--tracer auto goes with one image; give the name of a tracer for several");
   if (asked || is_default(render, arguments))
     render->job.race = def->tracer == VL_TRACER_BIDIRECTIONAL ? RACE_LIGHT_PATHS : RACE_TRACERS;
   return -1;
@@ -114,6 +112,17 @@ static void report(const Job *job, const vlTracerChoice *choice) {
   report_note("%s: %s (error x rays: %s)", who, chosen, text);
 }
 
+/* The camera and the image of the race. Several images have the race of the first one of all, so that a part of them
+ * has the tracer of the whole. */
+static vlResult find_image(const Render *render, vlCamera *camera, const vlFilmDef **film, vlError *error) {
+  *camera = render->job.camera;
+  *film = &render->film_plan.whole.film;
+  if (!render->many) return VL_OK;
+  const Frame first = frames_first(&render->frames);
+  *film = &first.camera->job.defs->film;
+  return frames_middle(&render->frames, &first, camera, error);
+}
+
 static void take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) {
   def->light_paths = choice->light_paths;
   if (kind == RACE_TRACERS)
@@ -122,27 +131,41 @@ static void take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) 
     def->light_paths = 0;
 }
 
+/* The cameras of several images have jobs of their own. */
+static void take_all(Render *render, const vlTracerChoice *choice) {
+  Job *job = &render->job;
+  take(&job->defs->render, job->race, choice);
+  take(&render->film_plan.whole.render, job->race, choice);
+  for (uint32_t i = 0; render->many && i < render->frames.camera_count; i++) {
+    Job *own = &render->frames.cameras[i].job;
+    take(&own->defs->render, job->race, choice);
+    own->race = job->race, own->raced = job->raced;
+  }
+}
+
 int race_run(Render *render, const Arguments *arguments) {
   Job *job = &render->job;
   if (job->race == RACE_NONE || arguments->values[RENDER_DRY_RUN].given) return -1;
   const vlSceneDefs *whole = &render->film_plan.whole;
   vlRenderDef def = whole->render;
   vlTracerChoice choice;
+  vlCamera camera;
+  const vlFilmDef *film;
   vlError error = {0};
   def.spp = expected_samples(whole);
   def.progress = on_progress, def.progress_user = NULL;
   signals_remember();
-  vlResult result =
-      vl_choose_tracer(render->world, &job->camera, &whole->film, &def, job->race == RACE_TRACERS, &choice, &error);
+  vlResult result = find_image(render, &camera, &film, &error);
+  if (result == VL_OK)
+    result = vl_choose_tracer(render->world, &camera, film, &def, job->race == RACE_TRACERS, &choice, &error);
   if (result == VL_CANCELLED)
     return report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
   if (result != VL_OK) return report_error(&error, result, job->path);
   if (choice.count) report(job, &choice);
   if (!choice.count && is_asked(arguments)) report_note("auto: path (no race: docs/tracers.md says when)");
   if (!choice.count && job->race == RACE_LIGHT_PATHS) return -1;
-  take(&job->defs->render, job->race, &choice);
-  take(&render->film_plan.whole.render, job->race, &choice);
   job->raced = choice.count > 0 || is_asked(arguments);
+  take_all(render, &choice);
   shard_warn(arguments, job->defs->render.tracer);
   return -1;
 }

@@ -334,11 +334,11 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
-/* Prepares connections of inner vertices. There are none in worlds with motion, media or attenuation by channel. */
+/* Prepares connections of inner vertices. There are none in worlds with motion or attenuation by channel. */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;
-  if (world->media.count || world->by_channel || world->moves || run->trace.max_depth < 2) return VL_OK;
+  if (world->by_channel || world->moves || run->trace.max_depth < 2) return VL_OK;
   uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER, groups = paths / GROUP_PATHS;
   groups = groups < 1 || world->def.color == VL_COLOR_RGB ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
   inner->groups = groups;

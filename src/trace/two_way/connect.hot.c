@@ -121,8 +121,12 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
     if (take) chosen = at[k], kept = worth[k];
   }
   float paths = (float)(inner->paths / inner->groups), count = (float)(inner->start[group + 1] - inner->start[group]);
-  if (chosen != VL_NONE) *factor = sum / (kept * CANDIDATES) * count / paths;
-  return chosen;
+  if (chosen == VL_NONE) return VL_NONE;
+  *factor = sum / (kept * CANDIDATES) * count / paths;
+  if (!vl_has_media(t)) return chosen;
+  float survive = vl_connection_survival(t, lane, way->connect * sum / CANDIDATES * count / paths);
+  *factor /= survive;
+  return vl_unit_float(vl_hash(seed + 1 + CANDIDATES)) < survive ? chosen : VL_NONE;
 }
 
 /* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache. */

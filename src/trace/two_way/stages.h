@@ -81,11 +81,13 @@ typedef struct vlConnection {
 /* Chooses a vertex for each of n lanes, or VL_NONE. inside: the lanes scatter in media. factor: 1 / (the vertex's
  * probability * light paths). */
 void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen, float *factor);
-/* In worlds with media: what the connections to the candidates would contribute if they were visible, up to a common
- * factor; and the shadow ray `count` of a connection to x. */
-enum { VL_CANDIDATES = 8, VL_CONNECTION_KEY = 1 << 20 };
+enum { VL_CANDIDATES = 8, VL_CONNECTION_KEY = 1 << 20 }; /* the key: its random numbers differ from light samples' */
+/* In worlds with media: what the connections to the candidates would contribute if they were visible. */
 void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES],
                         float worth[VL_CANDIDATES]);
+/* The probability that the path of a lane traces a connection that is expected to contribute this much. */
+float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
+/* Adds the connection to x as shadow ray `count`. */
 void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
                         const vlLightVertex *x, uint32_t count);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);

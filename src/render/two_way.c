@@ -18,7 +18,7 @@ enum {
   FIRST_PHOTONS = 1 << 16,
   MOST_INNER = 1 << 18,    /* light paths in a pass whose vertices camera paths connect to */
   MOST_VERTICES = 1 << 23, /* of them in worlds with media, as MOST_PHOTONS */
-  GROUP_PATHS = 8       /* least number of light paths of a group with the same wavelengths */
+  GROUP_PATHS = 8          /* least number of light paths of a group with the same wavelengths */
 };
 /* vlTwoWay.connect. One connection of a few candidates finds more than one light path would; measured on rooms lit by
  * lamps in shades and on the Cornell box, 3 to 10 have the same error, and 1 has a quarter more. */

@@ -1,5 +1,6 @@
 /* Connections of inner vertices in media (bidirectional): the mean of volpath in rooms full of fog whose lamps stand in
- * shades; less noise than volpath there; exact radiance in a white furnace full of fog; the same bits for any threads. */
+ * shades; less noise than volpath there; exact radiance in a white furnace full of fog; the same bits for any threads.
+ */
 #include "render/agreement.h"
 #include "render/fog.h"
 #include "render/lamp_room.h"

@@ -26,12 +26,12 @@ static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
   const vlTwoWayRows *r = t->batch->two_way;
   float z = s->shade.wo[2][i];
   vlEnd e = {.p = vl_lane3(f->px, f->py, f->pz, i),
-           .g = vl_lane3(f->gx, f->gy, f->gz, i),
-           .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
-           .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
-           .diffuse = vl_is_inner_end(t, i),
-           .room = t->def->max_depth - depth - 1,
-           .air = vl_has_media(t) ? vl_air(t->world, s->volume.b.medium[i]) : 0};
+             .g = vl_lane3(f->gx, f->gy, f->gz, i),
+             .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
+             .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
+             .diffuse = vl_is_inner_end(t, i),
+             .room = t->def->max_depth - depth - 1,
+             .air = vl_has_media(t) ? vl_air(t->world, s->volume.b.medium[i]) : 0};
   for (int c = 0; c < 4; c++) e.tint[c] = s->b.beta[c][i] * (e.diffuse ? s->shade.reflectance[c][i] : 1.0f);
   return e;
 }
@@ -176,8 +176,7 @@ static void push(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor,
 }
 
 /* The same in worlds with media. */
-static void push_in_media(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth,
-                          uint32_t count) {
+static void push_in_media(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;

@@ -1,12 +1,12 @@
-/* trace/two_way/connect_media.hot.c: connections of inner vertices in worlds with media (connect.hot.c). Each end may be
- * on a surface or in a medium. In a medium the phase function's value is its density in both directions, and the
+/* trace/two_way/connect_media.hot.c: connections of inner vertices in worlds with media (connect.hot.c). Each end may
+ * be on a surface or in a medium. In a medium the phase function's value is its density in both directions, and the
  * extinction replaces the cosine in the weights (two_way.h). The shadow ray estimates the transmittance as that of a
  * light sample does. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
-/* A connection that promises less than LITTLE times the radiance that its path has found already plays Russian roulette.
- * Of the values tried, this one has nearly no more noise. */
+/* A connection that promises less than LITTLE times the radiance that its path has found already plays Russian
+ * roulette. Of the values tried, this one has nearly no more noise. */
 static const float LITTLE = 0.1f, LEAST_SURVIVAL = 0.1f;
 
 /* What worths need of the candidates. */

@@ -57,11 +57,11 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth);
 typedef struct vlEnd {
   vlVec3 p, g, n; /* n: shading normal on the side of wo; in media, the direction of flight */
   float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
-  float ways;     /* the strategies on the camera's side, with merging; an estimate for surfaces that are not diffuse; in
-                     media without a times the phase function */
+  float ways; /* the strategies on the camera's side, with merging; an estimate for surfaces that are not diffuse; in
+                 media without a times the phase function */
   bool diffuse;
-  uint32_t room; /* largest number of bounces that a light path may have */
-  bool inside;   /* in a medium; then: */
+  uint32_t room;             /* largest number of bounces that a light path may have */
+  bool inside;               /* in a medium; then: */
   float a, dense, asymmetry; /* vlTwoWayRows; vl_medium_extinction; g of the phase function */
   uint32_t air;              /* with media: vl_air of the medium before the vertex */
 } vlEnd;

@@ -23,8 +23,8 @@
  * In media, H = N 4/3 pi radius^3, and the medium's density at the vertex (vl_medium_extinction) replaces cos. It does
  * not depend on the wavelength, so both kinds of paths compute the same weights. The probabilities of flights are the
  * same in both directions and cancel, too. Light samples and connections make their segments without a flight; there,
- * the odds of the flight (vlFlight.odds) are a factor of all others. Within each strategy, a second balance heuristic weights
- * the four wavelengths by their densities (trace/medium/volume.h). */
+ * the odds of the flight (vlFlight.odds) are a factor of the other strategies. Within each strategy, a second balance
+ * heuristic weights the four wavelengths by their densities (trace/medium/volume.h). */
 #ifndef TRACE_TWO_WAY_TWO_WAY_H
 #define TRACE_TWO_WAY_TWO_WAY_H
 
@@ -62,7 +62,7 @@ typedef struct vlLightVertex {
   float p[3];
   union {
     float g[3];
-    struct { /* in media */
+    struct {                     /* in media */
       float a, dense, asymmetry; /* a: vlPhoton; vl_medium_extinction; g of the phase function */
     };
   };
@@ -70,7 +70,7 @@ typedef struct vlLightVertex {
   float power[4];
   float back; /* the strategies on the light's side, with merging here, divided by P L at this vertex; in media without
                  a times the phase function */
-  float offset;                  /* as vlSurface.offset */
+  float offset;                   /* as vlSurface.offset */
   uint32_t path : 18, bounce : 8; /* number of the path in the pass; as vlPhoton */
   uint32_t alone : 1, inside : 1; /* as vlPhoton; the vertex is in a medium */
   uint32_t air : 4;               /* vl_air of the medium before the vertex */

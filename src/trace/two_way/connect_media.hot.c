@@ -9,59 +9,50 @@
  * roulette. Of the values tried, this one has nearly no more noise. */
 static const float LITTLE = 0.1f, LEAST_SURVIVAL = 0.1f;
 
-/* What worths need of the candidates. */
-typedef struct Candidates {
-  _Alignas(64) float p[3][VL_CANDIDATES], g[3][VL_CANDIDATES], n[3][VL_CANDIDATES], power[4][VL_CANDIDATES];
-  _Alignas(64) float a[VL_CANDIDATES], dense[VL_CANDIDATES], asymmetry[VL_CANDIDATES], back[VL_CANDIDATES];
-  _Alignas(64) float near[VL_CANDIDATES], sigma[VL_CANDIDATES], inside[VL_CANDIDATES];
-} Candidates;
-
 /* The transmittance between ends in the same uniform medium is known, up to what is in between. Elsewhere 1 stands for
  * it: where the worth is too small, the few connections that are made would count too much. */
-static void read_candidates(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES], Candidates *r) {
-  const vlLightVertex *vertices = t->def->two_way->inner.vertices;
-  float sigma = e->air ? t->world->media.items[e->air - 1].extinction : 0.0f;
-  for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
-    const vlLightVertex *x = &vertices[at[k]];
-    bool inside = x->inside;
-    for (int j = 0; j < 3; j++) r->p[j][k] = x->p[j], r->n[j][k] = x->n[j], r->g[j][k] = inside ? 0.0f : x->g[j];
-    for (int c = 0; c < 4; c++) r->power[c][k] = x->power[c];
-    r->a[k] = inside ? x->a : 0.0f, r->dense[k] = inside ? x->dense : 0.0f;
-    r->asymmetry[k] = inside ? x->asymmetry : 0.0f;
-    r->back[k] = x->back, r->near[k] = x->bounce > e->room ? 0.0f : 1.0f;
-    r->sigma[k] = x->air == e->air ? sigma : 0.0f;
-    r->inside[k] = inside ? 1.0f : 0.0f;
-  }
-}
-
 void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES],
                         float worth[VL_CANDIDATES]) {
   const vlTwoWay *way = t->def->two_way;
-  Candidates r;
-  read_candidates(t, e, at, &r);
-  int diffuse = e->diffuse, within = e->inside;
+  _Alignas(64) float p[3][VL_CANDIDATES], g[3][VL_CANDIDATES], n[3][VL_CANDIDATES], power[4][VL_CANDIDATES];
+  _Alignas(64) float a[VL_CANDIDATES], dense[VL_CANDIDATES], asymmetry[VL_CANDIDATES], b[VL_CANDIDATES];
+  _Alignas(64) float near[VL_CANDIDATES], sigma[VL_CANDIDATES], in[VL_CANDIDATES];
+  float extinction = e->air ? t->world->media.items[e->air - 1].extinction : 0.0f;
+  for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
+    const vlLightVertex *x = &way->inner.vertices[at[k]];
+    for (int j = 0; j < 3; j++) p[j][k] = x->p[j], g[j][k] = x->g[j], n[j][k] = x->n[j];
+    for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
+    in[k] = x->inside ? 1.0f : 0.0f;
+    a[k] = in[k] * x->a, dense[k] = x->dense, asymmetry[k] = in[k] * x->asymmetry, b[k] = x->back;
+    near[k] = x->bounce > e->room ? 0.0f : 1.0f;
+    sigma[k] = x->air == e->air ? extinction : 0.0f;
+  }
+  vlEnd end = *e;
+  float connect = way->connect, phases = end.inside ? 1.0f : 0.0f; /* one of three is not 0 */
+  float cosines = end.diffuse ? VL_INV_PI : 0.0f, bents = end.inside || end.diffuse ? 0.0f : VL_INV_PI;
   /* one vector of 8 */
   VL_SIMD
   for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
-    vlVec3 to = vl_vec3(r.p[0][k] - e->p.x, r.p[1][k] - e->p.y, r.p[2][k] - e->p.z);
+    vlVec3 to = vl_vec3(p[0][k] - end.p.x, p[1][k] - end.p.y, p[2][k] - end.p.z);
     float d2 = vl_length2(to), inv2 = 1.0f / d2, inv = __builtin_sqrtf(inv2);
-    float here = vl_dot(e->n, to) * inv, there = -vl_dot(vl_vec3(r.n[0][k], r.n[1][k], r.n[2][k]), to) * inv;
-    float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
-    float flat_there = vl_abs(vl_dot(vl_vec3(r.g[0][k], r.g[1][k], r.g[2][k]), to)) * inv;
-    float phase_here = vl_phase(e->asymmetry, here), phase_there = vl_phase(r.asymmetry[k], there);
+    float here = vl_dot(end.n, to) * inv, there = -vl_dot(vl_vec3(n[0][k], n[1][k], n[2][k]), to) * inv;
+    float flat_here = vl_abs(vl_dot(end.g, to)) * inv;
+    float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
+    float phase_here = vl_phase(end.asymmetry, here), phase_there = vl_phase(asymmetry[k], there);
     float bent = vl_max(vl_abs(here), 0.01f);
-    int inside = r.inside[k] > 0.0f;
-    float forth = within ? phase_here : (diffuse ? here : bent) * VL_INV_PI; /* value and density */
-    float back = inside ? phase_there : there * VL_INV_PI;
+    int inside = in[k] > 0.0f;
+    float forth = phases * phase_here + cosines * here + bents * bent; /* value and density */
+    float lambert = there * VL_INV_PI;
+    float back = inside ? phase_there : lambert;
     float gives = inside ? phase_there : flat_there;
-    float ways = e->a * phase_here + e->ways, light_ways = r.a[k] * phase_there + r.back[k];
-    float sum = e->tint[0] * r.power[0][k] + e->tint[1] * r.power[1][k] + e->tint[2] * r.power[2][k];
-    sum += e->tint[3] * r.power[3][k];
-    float passes = vl_exp(-r.sigma[k] * d2 * inv);
-    float others = ways * back * (within ? e->dense : flat_here);
-    others += light_ways * forth * (inside ? r.dense[k] : flat_there);
-    float w = passes * sum * forth * gives / (way->connect * d2 + passes * others);
-    int good = (r.near[k] > 0.0f) & (d2 > 0.0f) & (forth > 0.0f) & (back > 0.0f) & (w > 0.0f) & (w < VL_INFINITY);
+    float cosine_here = end.dense + flat_here, cosine_there = inside ? dense[k] : flat_there; /* one of two is 0 here */
+    float ways = end.a * phase_here + end.ways, light_ways = a[k] * phase_there + b[k];
+    float sum = end.tint[0] * power[0][k] + end.tint[1] * power[1][k] + end.tint[2] * power[2][k];
+    sum += end.tint[3] * power[3][k];
+    float passes = vl_exp(-sigma[k] * d2 * inv);
+    float others = ways * back * cosine_here + light_ways * forth * cosine_there;
+    float w = passes * sum * forth * gives / (connect * d2 + passes * others);
+    int good = (near[k] > 0.0f) & (d2 > 0.0f) & (forth > 0.0f) & (back > 0.0f) & (w > 0.0f) & (w < VL_INFINITY);
     worth[k] = good ? w : 0.0f;
   }
 }

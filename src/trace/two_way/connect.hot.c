@@ -80,7 +80,8 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
     for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
     back[k] = x->back, near[k] = x->bounce > e->room ? 0.0f : 1.0f;
   }
-  int diffuse = e->diffuse;
+  float cosines = e->diffuse ? 1.0f : 0.0f,
+        bents = 1.0f - cosines; /* a select would keep the loop from being a vector */
   /* one vector of 8 */
   VL_SIMD
   for (uint32_t k = 0; k < CANDIDATES; k++) {
@@ -90,7 +91,7 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
     float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
     float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
     float bent = vl_max(vl_abs(here), 0.01f);
-    here = diffuse ? here : bent;
+    here = cosines * here + bents * bent;
     float sum = e->tint[0] * power[0][k] + e->tint[1] * power[1][k] + e->tint[2] * power[2][k];
     sum += e->tint[3] * power[3][k];
     float others = (e->ways * there * flat_here + back[k] * here * flat_there) * VL_INV_PI;

@@ -16,8 +16,9 @@ enum {
   MOST_PATHS = 1 << 20,   /* light paths in a pass, where the scene gives no number */
   MOST_PHOTONS = 1 << 23, /* 512 MB, and the same again sorted; a pass that would store more gets fewer paths */
   FIRST_PHOTONS = 1 << 16,
-  MOST_INNER = 1 << 18, /* light paths in a pass whose vertices camera paths connect to */
-  GROUP_PATHS = 8       /* least number of light paths of a group with the same wavelengths */
+  MOST_INNER = 1 << 18,    /* light paths in a pass whose vertices camera paths connect to */
+  MOST_VERTICES = 1 << 23, /* of them in worlds with media, as MOST_PHOTONS */
+  GROUP_PATHS = 8          /* least number of light paths of a group with the same wavelengths */
 };
 /* vlTwoWay.connect. One connection of a few candidates finds more than one light path would; measured on rooms lit by
  * lamps in shades and on the Cornell box, 3 to 10 have the same error, and 1 has a quarter more. */
@@ -58,7 +59,7 @@ struct vlTwoWayRun {
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   vlLightVertex *vertices, *sorted_vertices; /* the pass's vertices, in any order and sorted */
-  uint32_t *counts, vertex_capacity;
+  uint32_t *counts, vertex_capacity, inner_paths;
   atomic_uint_least64_t left;
   atomic_uint_least64_t stored;
   vlStop *stop;
@@ -152,6 +153,15 @@ static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
     if (at != k) sorted[at] = moving;
   }
   inner->vertices = sorted;
+}
+
+/* Keeps fewer paths' vertices in this pass. Returns false if that is not possible. */
+static bool fewer_inner(vlLightVertices *inner, uint64_t left) {
+  uint32_t paths = (uint32_t)(inner->paths * (uint64_t)(MOST_VERTICES / 8 * 7) / left) / inner->groups * inner->groups;
+  if (paths == 0) paths = inner->groups;
+  bool fewer = paths < inner->paths;
+  inner->paths = paths;
+  return fewer;
 }
 
 static vlResult grow_vertices(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
@@ -281,6 +291,7 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
   run->paths = run->most_paths;
   if (way->merge) way->shared = shared_number(run->pass_seed, index);
   if (way->connect > 0.0f) way->turn = shared_number(run->pass_seed, index);
+  way->inner.paths = run->inner_paths;
   for (;;) {
     set_radius(run, index);
     atomic_store(&run->stored, 0);
@@ -289,6 +300,10 @@ vlResult vl_two_way_light(vlTwoWayRun *run, uint32_t index, vlStop *stop, vlErro
     if (vl_stop_check(stop)) return vl_fail(error, VL_CANCELLED, "stopped");
     uint64_t stored = atomic_load(&run->stored);
     uint64_t left = atomic_load(&run->left);
+    if (run->world->media.count && left > MOST_VERTICES && fewer_inner(&way->inner, left)) {
+      vl_splats_clear(&run->splats);
+      continue;
+    }
     if (left > run->vertex_capacity) {
       vl_splats_clear(&run->splats); /* the pass is repeated with more memory */
       vlResult result = grow_vertices(run, left, error);
@@ -334,15 +349,15 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
-/* Prepares connections of inner vertices. There are none in worlds with motion, media or attenuation by channel. */
+/* Prepares connections of inner vertices. There are none in worlds with motion or attenuation by channel. */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;
-  if (world->media.count || world->by_channel || world->moves || run->trace.max_depth < 2) return VL_OK;
+  if (world->by_channel || world->moves || run->trace.max_depth < 2) return VL_OK;
   uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER, groups = paths / GROUP_PATHS;
   groups = groups < 1 || world->def.color == VL_COLOR_RGB ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
   inner->groups = groups;
-  inner->paths = paths / groups * groups;
+  inner->paths = run->inner_paths = paths / groups * groups;
   run->way.connect = CONNECTIONS;
   run->counts = vl_alloc_array(run->context, (size_t)inner->paths + 1, sizeof *run->counts);
   if (!run->counts) return vl_fail_memory(error);

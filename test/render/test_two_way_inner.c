@@ -1,26 +1,9 @@
 /* Connections of inner vertices (bidirectional): exact radiance in a white furnace; the mean of the path tracer in
  * rooms whose lamps stand in shades, for each greatest number of bounces; less noise than the path tracer there. */
 #include "render/agreement.h"
+#include "render/lamp_room.h"
 
 enum { SIZE = 24, FURNACE = 32 };
-
-static void add_tube(Stage *s, float y, float height, float radius, vlMaterialId material) {
-  for (int k = 0; k < 2; k++) { /* the tube and its bottom */
-    vlShapeDef def = vl_default_shape_def(k ? VL_SHAPE_DISK : VL_SHAPE_CYLINDER);
-    def.radius = radius, def.z_min = 0, def.z_max = height, def.height = 0;
-    set_matrix(def.group_from_shape, 1, 0, 0, 0.4, 0, 0, 1, y, 0, -1, 0, -3); /* z up */
-    def.material = material;
-    assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
-  }
-}
-
-static void add_ball(Stage *s, float x, float y, float radius, vlMaterialId material, vlEmissionId emission) {
-  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  set_matrix(def.group_from_shape, 1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, -3);
-  def.radius = radius, def.z_min = -radius, def.z_max = radius;
-  def.material = material, def.emission = emission;
-  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
-}
 
 /* A ball whose vertex normals differ from its geometric normals. */
 static void add_faceted(Stage *s, float x, float y, float radius, vlMaterialId material) {
@@ -52,20 +35,14 @@ static Stage room(const void *user, vlTracer tracer) {
   vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
   def.u_roughness = def.v_roughness = vl_float_input(0.3f);
   vlMaterialId plastic = vl_scene_add_material(s.scene, &def);
-  for (int axis = 0; axis < 3; axis++)
-    for (int side = -1; side <= 1; side += 2) {
-      float at[3] = {0, 0, -2}, u[3] = {0}, v[3] = {0};
-      at[axis] += 2.5f * (float)side, u[(axis + 1) % 3] = 2.5f, v[(axis + 2) % 3] = 2.5f;
-      Quad q = quad_at(at[0], at[1], at[2], u[0], u[1], u[2], v[0], v[1], v[2]);
-      q.material = axis == 0 ? (side < 0 ? red : blue) : what->plastic && axis == 1 && side > 0 ? plastic : white;
-      add_quad(&s, &q);
-    }
+  const vlMaterialId walls[3] = {red, blue, white};
+  add_walls(&s, walls, what->plastic ? plastic : white);
   add_tube(&s, 0.2f, 0.5f, 0.35f, dark);
-  add_ball(&s, 0.4f, 0.5f, 0.15f, dark, add_emission(&s, 40, false));
-  add_ball(&s, -1, -1, 0.6f, plastic, (vlEmissionId){0});
+  add_ball_of(&s, 0.4f, 0.5f, 0.15f, dark, add_emission(&s, 40, false));
+  add_ball_of(&s, -1, -1, 0.6f, plastic, (vlEmissionId){0});
   def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
   def.u_roughness = def.v_roughness = vl_float_input(0.4f);
-  add_ball(&s, 0.8f, -0.9f, 0.5f, vl_scene_add_material(s.scene, &def), (vlEmissionId){0});
+  add_ball_of(&s, 0.8f, -0.9f, 0.5f, vl_scene_add_material(s.scene, &def), (vlEmissionId){0});
   add_faceted(&s, -0.9f, 0.6f, 0.5f, white);
   return s;
 }

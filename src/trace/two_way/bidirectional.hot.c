@@ -82,7 +82,7 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
     float cosine = vl_abs(vl_dot(d, vl_lane3(f->gx, f->gy, f->gz, i))), inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
     r->cosine[i] = cosine;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] * inv;
-    r->b[i] = depth > 0 && vl_is_inner_end(t, i) ? r->link[lane] * f->t[i] * f->t[i] * inv : 0.0f;
+    r->b[i] = depth > 0 && vl_is_inner_end(t, i) ? vl_linked(t, r, lane, f->t[i], inv) : 0.0f;
     const vlCameraView *eye = vl_eye_of(t, lane);
     if (depth > 0 || !eye->sees) continue;
     float pixel = vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));

@@ -1,5 +1,6 @@
-/* trace/two_way/connect.hot.c: connections of inner vertices: a vertex of the camera path to one of a light path on a
- * diffuse surface (Veach 1997, chapter 10; two_way.h has the weights).
+/* trace/two_way/connect.hot.c: connections of inner vertices: a vertex of the camera path to one of a light path in a
+ * medium or on a diffuse surface (Veach 1997, chapter 10; two_way.h has the weights; connect_media.hot.c has what only
+ * worlds with media need).
  *
  * Each vertex of a camera path looks at a few vertices of the pass's light paths, evenly distributed over them, and
  * keeps one with a probability in proportion to what it would contribute if it were visible (resampled importance
@@ -8,7 +9,7 @@
 #include "math/hash.h"
 #include "trace/two_way/stages.h"
 
-enum { CANDIDATES = 8 }; /* of each connection */
+enum { CANDIDATES = VL_CANDIDATES };
 
 void vl_stage_groups(vlTracing *t, uint32_t n, float *u) {
   const vlTwoWay *way = t->def->two_way;
@@ -19,37 +20,47 @@ void vl_stage_groups(vlTracing *t, uint32_t n, float *u) {
   }
 }
 
-/* The camera path's vertex on lane i. */
-typedef struct End {
-  vlVec3 p, g, n; /* n: shading normal on the side of wo */
-  float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
-  float ways;     /* the strategies on the camera's side, with merging; an estimate for other surfaces */
-  bool diffuse;
-  uint32_t room; /* largest number of bounces that a light path may have */
-} End;
-
-static End end_of(const vlTracing *t, uint32_t i, uint32_t depth) {
+static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
   const vlTraceScratch *s = t->s;
   const vlSurface *f = &s->surface;
   const vlTwoWayRows *r = t->batch->two_way;
   float z = s->shade.wo[2][i];
-  End e = {.p = vl_lane3(f->px, f->py, f->pz, i),
-           .g = vl_lane3(f->gx, f->gy, f->gz, i),
-           .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
-           .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
-           .diffuse = vl_is_inner_end(t, i),
-           .room = t->def->max_depth - depth - 1};
+  vlEnd e = {.p = vl_lane3(f->px, f->py, f->pz, i),
+             .g = vl_lane3(f->gx, f->gy, f->gz, i),
+             .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
+             .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
+             .diffuse = vl_is_inner_end(t, i),
+             .room = t->def->max_depth - depth - 1,
+             .air = vl_has_media(t) ? vl_air(t->world, s->volume.b.medium[i]) : 0};
   for (int c = 0; c < 4; c++) e.tint[c] = s->b.beta[c][i] * (e.diffuse ? s->shade.reflectance[c][i] : 1.0f);
   return e;
 }
 
-/* Draws lane i's candidates, one from each of CANDIDATES equal parts of its group's vertices, and prefetches them.
- * False: the lane does not connect. */
-static bool draw(const vlTracing *t, uint32_t i, uint32_t seed, uint32_t at[CANDIDATES]) {
+static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth) {
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  const vlTwoWayRows *r = t->batch->two_way;
+  uint32_t medium = v->c.medium[i];
+  vlEnd e = {.p = vl_lane3(p->ox, p->oy, p->oz, i),
+             .n = vl_lane3(p->dx, p->dy, p->dz, i),
+             .tint = {p->beta[0][i], p->beta[1][i], p->beta[2][i], p->beta[3][i]},
+             .ways = r->b[i] + t->def->two_way->merged_volume,
+             .room = t->def->max_depth - depth - 1,
+             .inside = true,
+             .a = r->a[i],
+             .dense = r->cosine[i],
+             .asymmetry = t->world->media.items[medium].g,
+             .air = vl_air(t->world, medium)};
+  return e;
+}
+
+/* Draws candidates for a lane, one from each of CANDIDATES equal parts of its group's vertices, and prefetches them.
+ * False: there are none. */
+static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[CANDIDATES]) {
   const vlLightVertices *inner = &t->def->two_way->inner;
-  uint32_t group = t->batch->two_way->group[t->s->b.lane[i]], first = inner->start[group];
+  uint32_t group = t->batch->two_way->group[lane], first = inner->start[group];
   uint32_t count = inner->start[group + 1] - first;
-  if (count == 0 || vl_all_specular(t->world, t->s, i)) return false;
+  if (count == 0) return false;
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     float u = ((float)k + vl_unit_float(vl_hash(seed + 1 + k))) * (1.0f / CANDIDATES);
     uint32_t place = (uint32_t)(u * (float)count);
@@ -60,7 +71,7 @@ static bool draw(const vlTracing *t, uint32_t i, uint32_t seed, uint32_t at[CAND
 }
 
 /* What the connections to the candidates would contribute if they were visible, up to a common factor. */
-static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDIDATES], float worth[CANDIDATES]) {
+static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CANDIDATES], float worth[CANDIDATES]) {
   _Alignas(64) float p[3][CANDIDATES], g[3][CANDIDATES], n[3][CANDIDATES], power[4][CANDIDATES];
   _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
   for (uint32_t k = 0; k < CANDIDATES; k++) {
@@ -69,7 +80,8 @@ static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDI
     for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
     back[k] = x->back, near[k] = x->bounce > e->room ? 0.0f : 1.0f;
   }
-  int diffuse = e->diffuse;
+  float cosines = e->diffuse ? 1.0f : 0.0f,
+        bents = 1.0f - cosines; /* a select would keep the loop from being a vector */
   /* one vector of 8 */
   VL_SIMD
   for (uint32_t k = 0; k < CANDIDATES; k++) {
@@ -79,7 +91,7 @@ static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDI
     float flat_here = vl_abs(vl_dot(e->g, to)) * inv;
     float flat_there = vl_abs(vl_dot(vl_vec3(g[0][k], g[1][k], g[2][k]), to)) * inv;
     float bent = vl_max(vl_abs(here), 0.01f);
-    here = diffuse ? here : bent;
+    here = cosines * here + bents * bent;
     float sum = e->tint[0] * power[0][k] + e->tint[1] * power[1][k] + e->tint[2] * power[2][k];
     sum += e->tint[3] * power[3][k];
     float others = (e->ways * there * flat_here + back[k] * here * flat_there) * VL_INV_PI;
@@ -89,15 +101,18 @@ static void worths_of(const vlTwoWay *way, const End *e, const uint32_t at[CANDI
   }
 }
 
-/* Chooses one of lane i's candidates. Returns its index, or VL_NONE. *factor: 1 / (its probability * light paths). */
-static uint32_t choose(const vlTracing *t, uint32_t i, uint32_t depth, uint32_t seed, const uint32_t at[CANDIDATES],
+/* Chooses one of the candidates for an end. Returns its index, or VL_NONE. *factor: 1 / (its probability * light
+ * paths). */
+static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32_t seed, const uint32_t at[CANDIDATES],
                        float *factor) {
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertices *inner = &way->inner;
-  End e = end_of(t, i, depth);
   float worth[CANDIDATES], u = vl_unit_float(vl_hash(seed)), sum = 0.0f, kept = 0.0f;
-  uint32_t chosen = VL_NONE, group = t->batch->two_way->group[t->s->b.lane[i]];
-  worths_of(way, &e, at, worth);
+  uint32_t chosen = VL_NONE, group = t->batch->two_way->group[lane];
+  if (vl_has_media(t))
+    vl_worths_in_media(t, e, at, worth);
+  else
+    worths_of(way, e, at, worth);
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     if (!(worth[k] > 0.0f)) continue;
     sum += worth[k];
@@ -107,24 +122,32 @@ static uint32_t choose(const vlTracing *t, uint32_t i, uint32_t depth, uint32_t 
     if (take) chosen = at[k], kept = worth[k];
   }
   float paths = (float)(inner->paths / inner->groups), count = (float)(inner->start[group + 1] - inner->start[group]);
-  if (chosen != VL_NONE) *factor = sum / (kept * CANDIDATES) * count / paths;
-  return chosen;
+  if (chosen == VL_NONE) return VL_NONE;
+  *factor = sum / (kept * CANDIDATES) * count / paths;
+  if (!vl_has_media(t)) return chosen;
+  float survive = vl_connection_survival(t, lane, way->connect * sum / CANDIDATES * count / paths);
+  *factor /= survive;
+  return vl_unit_float(vl_hash(seed + 1 + CANDIDATES)) < survive ? chosen : VL_NONE;
 }
 
-/* Chooses a vertex for each of n lanes, or VL_NONE. Candidates are drawn some lanes ahead of their use, since most of
- * them are not in the cache. */
-static void choose_all(vlTracing *t, uint32_t n, uint32_t depth, uint32_t *chosen, float *factor) {
+/* Candidates are drawn some lanes ahead of their use, since most of them are not in the cache. */
+void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen, float *factor) {
   enum { AHEAD = 8 };
   uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
   bool drawn[AHEAD];
-  const vlPaths *p = &t->s->b;
+  const vlPaths *p = inside ? &t->s->volume.scattered : &t->s->b;
   for (uint32_t k = 0; k < n + AHEAD; k++) {
     uint32_t slot = k % AHEAD, i = k - AHEAD;
-    if (k >= AHEAD) chosen[i] = drawn[slot] ? choose(t, i, depth, seed[slot], at[slot], &factor[i]) : VL_NONE;
+    if (k >= AHEAD && drawn[slot]) {
+      vlEnd e = inside ? end_in_medium(t, i, depth) : end_on_surface(t, i, depth);
+      chosen[i] = choose(t, &e, p->lane[i], seed[slot], at[slot], &factor[i]);
+    } else if (k >= AHEAD) {
+      chosen[i] = VL_NONE;
+    }
     if (k >= n) continue;
     seed[slot] = vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
     seed[slot] = vl_hash2(seed[slot], depth);
-    drawn[slot] = draw(t, k, seed[slot], at[slot]);
+    drawn[slot] = (inside || !vl_all_specular(t->world, t->s, k)) && draw(t, p->lane[k], seed[slot], at[slot]);
   }
 }
 
@@ -153,6 +176,27 @@ static void push(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor,
   q->lane[count] = s->b.lane[i];
 }
 
+/* The same in worlds with media. */
+static void push_in_media(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth, uint32_t count) {
+  vlTraceScratch *s = t->s;
+  const vlTwoWayRows *r = t->batch->two_way;
+  const vlSurface *f = &s->surface;
+  vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
+  vlVec3 w = vl_lane3(s->rows[9], s->rows[10], s->rows[11], i);
+  const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+  vlConnection c = {.i = i,
+                    .at = at,
+                    .o = vl_offset_origin(at, g, f->offset[i], w),
+                    .w = w,
+                    .value = {s->rows[3][i], s->rows[4][i], s->rows[5][i], s->rows[6][i]},
+                    .forth = forth,
+                    .ways = r->a[i] * r->rev[i] + r->b[i] + t->def->two_way->merged,
+                    .cosine = vl_abs(vl_dot(g, w)),
+                    .factor = factor,
+                    .medium = vl_medium_beyond(shape, g, w, s->volume.b.medium[i])};
+  vl_push_connection(t, &s->b, &s->volume.b, &c, x, count);
+}
+
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
@@ -162,7 +206,7 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7], *factor = s->rows[8];
   if (depth + 2 > t->def->max_depth) return;
   uint32_t found = 0;
-  choose_all(t, n, depth, r->first, factor);
+  vl_choose_vertices(t, n, depth, false, r->first, factor);
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
     if (r->first[i] != VL_NONE) {
@@ -187,7 +231,10 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(sum > 0.0f) && sum == sum) continue;
     const vlLightVertex *x = &inner->vertices[r->first[i]];
-    push(t, i, x, factor[i], forth[i], count++);
+    if (vl_has_media(t))
+      push_in_media(t, i, x, factor[i], forth[i], count++);
+    else
+      push(t, i, x, factor[i], forth[i], count++);
   }
-  vl_two_way_shadows(t, &s->b, &s->volume.b, count, depth);
+  vl_two_way_shadows(t, &s->b, &s->volume.b, count, depth + VL_CONNECTION_KEY);
 }

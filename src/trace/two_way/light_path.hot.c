@@ -116,7 +116,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
     float inv = cosine > 0.0f ? 1.0f / cosine : 0.0f;
     r->cosine[i] = cosine;
-    r->b[i] = depth > 0 ? r->link[lane] * f->t[i] * f->t[i] * inv : 0.0f;
+    r->b[i] = depth > 0 ? vl_linked(t, r, lane, f->t[i], inv) : 0.0f;
     if (depth == 0) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
@@ -173,8 +173,9 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
       sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * sh->reflectance[c][i] * rev / r->cosine[i];
     x->back = r->a[i] * rev + r->b[i] + way->merged;
     x->offset = f->offset[i];
-    x->path = path & 0x7fffffu, x->bounce = (depth + 1) & 255u;
-    x->alone = vl_hero_only(p, i);
+    x->path = path & 0x3ffffu, x->bounce = (depth + 1) & 255u;
+    x->alone = vl_hero_only(p, i), x->inside = 0;
+    x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume.b.medium[i]) & 15u : 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
   if (count) b->leave(b->user, count, r->vertices);

@@ -50,6 +50,46 @@ void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_stage_groups(vlTracing *t, uint32_t n, float *u);
 /* Connects each of the n shaded lanes to a vertex of a light path. */
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth);
+/* The same for n camera paths that scatter in media. */
+void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth);
+
+/* The end of a connection on the camera path: lane i of the shaded surfaces, or of the paths that scatter in media. */
+typedef struct vlEnd {
+  vlVec3 p, g, n; /* n: shading normal on the side of wo; in media, the direction of flight */
+  float tint[4];  /* throughput; on diffuse surfaces times the reflectance */
+  float ways; /* the strategies on the camera's side, with merging; an estimate for surfaces that are not diffuse; in
+                 media without a times the phase function */
+  bool diffuse;
+  uint32_t room;             /* largest number of bounces that a light path may have */
+  bool inside;               /* in a medium; then: */
+  float a, dense, asymmetry; /* vlTwoWayRows; vl_medium_extinction; g of the phase function */
+  uint32_t air;              /* with media: vl_air of the medium before the vertex */
+} vlEnd;
+
+/* What the shadow ray of a connection needs to know of lane i of the camera paths p. */
+typedef struct vlConnection {
+  uint32_t i;
+  vlVec3 at, o, w; /* the vertex, the ray's origin, the direction (unit) */
+  float value[4];  /* of the BSDF with its cosine, or of the phase function */
+  float forth;     /* density of sampling w */
+  float ways;      /* the strategies on the camera's side, with merging */
+  float cosine;    /* of w to the geometric normal; in media: the extinction */
+  float factor;
+  uint32_t medium; /* the medium in which the ray starts */
+} vlConnection;
+
+/* Chooses a vertex for each of n lanes, or VL_NONE. inside: the lanes scatter in media. factor: 1 / (the vertex's
+ * probability * light paths). */
+void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, uint32_t *chosen, float *factor);
+enum { VL_CANDIDATES = 8, VL_CONNECTION_KEY = 1 << 20 }; /* the key: its random numbers differ from light samples' */
+/* In worlds with media: what the connections to the candidates would contribute if they were visible. */
+void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL_CANDIDATES],
+                        float worth[VL_CANDIDATES]);
+/* The probability that the path of a lane traces a connection that is expected to contribute this much. */
+float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
+/* Adds the connection to x as shadow ray `count`. */
+void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
+                        const vlLightVertex *x, uint32_t count);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
@@ -130,6 +170,16 @@ static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
 }
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
+}
+/* What connections over the path's last flight add to S (two_way.h). inv: 1 / cosine, or 1 / extinction. Bounded, so
+ * that products with it are finite. */
+static inline float vl_linked(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance, float inv) {
+  float linked = r->link[lane] * distance * distance * inv;
+  return vl_has_media(t) ? vl_min(linked / t->s->volume.odds[lane], 1e25f) : linked;
+}
+/* 1 + a uniform medium, if this is below 16; else 0. It tells whether the ends of a connection are in the same air. */
+static inline uint32_t vl_air(const vlWorld *world, uint32_t medium) {
+  return medium < 15 && world->media.items[medium].uniform ? medium + 1 : 0;
 }
 /* vl_emission_density of a light path's first ray, after `distance`. */
 static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance) {

@@ -15,17 +15,16 @@
  * light's side is the same, counted from the light. At deltas, fwd = rev and H = 0.
  *
  * Connecting vertex t of the camera path to vertex t + 1 of the light path has density C P_t L_(t+1). It adds
- * C distance^2 / (fwd_t cos_(t+1)) to S_(t+1), if the path does not scatter specularly at either end, and if the
- * surface at t + 1, the light path's end, is diffuse: only there the BSDF is kept with the vertex (vlLightVertex). For
- * the sum on the light's side, the surface at the vertex before must be diffuse. C is a constant; the weights sum to
- * one for any. A connection itself competes with (S_t + H) fwd'_(t+1) cos_t / distance^2 and the same of the other
- * side.
+ * C distance^2 / (fwd_t cos_(t+1)) to S_(t+1), if the path does not scatter specularly at either end, and if t + 1, the
+ * light path's end, is in a medium or on a diffuse surface: only there the vertex is kept (vlLightVertex). For the sum
+ * on the light's side, this must hold for the vertex before. C is a constant; the weights sum to one for any. A
+ * connection itself competes with (S_t + H) fwd'_(t+1) cos_t / distance^2 and the same of the other side.
  *
  * In media, H = N 4/3 pi radius^3, and the medium's density at the vertex (vl_medium_extinction) replaces cos. It does
  * not depend on the wavelength, so both kinds of paths compute the same weights. The probabilities of flights are the
- * same in both directions and cancel, too. Light samples and camera connections make their segments without a flight;
- * there, the odds of the flight (vlFlight.odds) are a factor. Within each strategy, a second balance heuristic weights
- * the four wavelengths by their densities (trace/medium/volume.h). */
+ * same in both directions and cancel, too. Light samples and connections make their segments without a flight; there,
+ * the odds of the flight (vlFlight.odds) are a factor of the other strategies. Within each strategy, a second balance
+ * heuristic weights the four wavelengths by their densities (trace/medium/volume.h). */
 #ifndef TRACE_TWO_WAY_TWO_WAY_H
 #define TRACE_TWO_WAY_TWO_WAY_H
 
@@ -56,14 +55,25 @@ typedef struct vlPhoton {
 } vlPhoton;
 _Static_assert(sizeof(vlPhoton) == 64, "a photon is one cache line");
 
-/* A vertex of a light path on a diffuse surface, which camera paths connect to. power is the flux times the BSDF's
- * value and |w . shading normal| / |w . geometric normal|, where w points to the previous vertex. */
+/* A vertex of a light path which camera paths connect to, on a diffuse surface or in a medium. power is the flux; on
+ * surfaces times the BSDF's value and |w . shading normal| / |w . geometric normal|, where w points to the previous
+ * vertex. */
 typedef struct vlLightVertex {
-  float p[3], g[3], n[3]; /* n: the shading normal on the side of w */
+  float p[3];
+  union {
+    float g[3];
+    struct {                     /* in media */
+      float a, dense, asymmetry; /* a: vlPhoton; vl_medium_extinction; g of the phase function */
+    };
+  };
+  float n[3]; /* the shading normal on the side of w; in media, -w */
   float power[4];
-  float back;   /* the strategies on the light's side, with merging here, divided by P L at this vertex */
-  float offset; /* as vlSurface.offset */
-  uint32_t path : 23, bounce : 8, alone : 1; /* number of the path in the pass; as vlPhoton */
+  float back; /* the strategies on the light's side, with merging here, divided by P L at this vertex; in media without
+                 a times the phase function */
+  float offset;                   /* as vlSurface.offset */
+  uint32_t path : 18, bounce : 8; /* number of the path in the pass; as vlPhoton */
+  uint32_t alone : 1, inside : 1; /* as vlPhoton; the vertex is in a medium */
+  uint32_t air : 4;               /* vl_air of the medium before the vertex */
 } vlLightVertex;
 _Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
 

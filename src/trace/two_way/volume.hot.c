@@ -39,7 +39,7 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
     float dense = extinction(t, i), distance = v->t[t->s->order[i]];
     r->cosine[i] = dense;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] / dense;
-    r->b[i] = 0.0f;
+    r->b[i] = depth == 0 ? 0.0f : vl_linked(t, r, lane, distance, 1.0f / dense);
     if (depth > 0 || !eye->sees) continue;
     float c = vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), eye->ahead);
     r->b[i] =
@@ -82,6 +82,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
     uint32_t i = t->s->order[k];
     float pdf = p->pdf[i];
     r->carry[p->lane[i]] = (r->a[i] * pdf + r->b[i] + t->def->two_way->merged_volume) * r->cosine[i] / pdf;
+    r->link[p->lane[i]] = t->def->two_way->connect / pdf;
   }
   return count;
 }
@@ -91,6 +92,7 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   if (n == 0) return 0;
   arrive(t, n, depth);
   light_samples(t, n, depth, dimension);
+  if (t->def->two_way->inner.paths) vl_connect_from_media(t, n, depth);
   if (t->def->two_way->merge) vl_stage_merge_media(t, n, depth);
   return scatter(t, t->batch->two_way, n, depth, dimension);
 }
@@ -102,11 +104,11 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
   const vlPaths *p = &v->scattered;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
-    float dense = extinction(t, i), inv = 1.0f / dense;
+    float dense = extinction(t, i), inv = 1.0f / dense, distance = v->t[t->s->order[i]];
     r->cosine[i] = dense;
-    r->b[i] = 0.0f;
+    r->b[i] = depth > 0 ? vl_linked(t, r, lane, distance, inv) : 0.0f;
     if (depth == 0) {
-      float density = vl_light_density(t, r, lane, v->t[t->s->order[i]]);
+      float density = vl_light_density(t, r, lane, distance);
       vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / v->odds[lane] *
@@ -142,6 +144,31 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     count += sum > 0.0f && sum < VL_INFINITY;
   }
   if (count) b->store(b->user, count, r->photons);
+}
+
+/* Stores vertices that camera paths connect to. */
+static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
+  const vlTwoWay *way = t->def->two_way;
+  const vlVolumeScratch *v = &t->s->volume;
+  const vlPaths *p = &v->scattered;
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i], path = b->first + lane, medium = v->c.medium[i];
+    if (path >= way->inner.paths) continue;
+    vlLightVertex *x = &r->vertices[count];
+    float sum = 0.0f;
+    x->p[0] = p->ox[i], x->p[1] = p->oy[i], x->p[2] = p->oz[i];
+    x->a = r->a[i], x->dense = r->cosine[i], x->asymmetry = t->world->media.items[medium].g;
+    x->n[0] = p->dx[i], x->n[1] = p->dy[i], x->n[2] = p->dz[i];
+    for (int c = 0; c < 4; c++) sum += x->power[c] = p->beta[c][i] * r->flux[c][lane];
+    x->back = r->b[i] + way->merged_volume;
+    x->offset = 0.0f;
+    x->path = path & 0x3ffffu, x->bounce = (depth + 1) & 255u;
+    x->alone = vl_hero_only(p, i), x->inside = 1;
+    x->air = vl_air(t->world, medium) & 15u;
+    count += sum > 0.0f && sum < VL_INFINITY;
+  }
+  if (count) b->leave(b->user, count, r->vertices);
 }
 
 static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
@@ -186,6 +213,7 @@ uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
   if (n == 0) return 0;
   arrive_from_light(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
+  if (t->def->two_way->inner.paths && !last) leave_vertices(t, r, b, n, depth);
   show(t, r, b, n, depth, dimension);
   return last ? 0 : scatter(t, r, n, depth, dimension);
 }

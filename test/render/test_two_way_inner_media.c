@@ -1,0 +1,168 @@
+/* Connections of inner vertices in media (bidirectional): the mean of volpath in rooms full of fog whose lamps stand in
+ * shades; less noise than volpath there; exact radiance in a white furnace full of fog; the same bits for any threads.
+ */
+#include "render/agreement.h"
+#include "render/fog.h"
+#include "render/lamp_room.h"
+
+enum { SIZE = 20, FURNACE = 24 };
+
+typedef enum Air { FOG, GRID, RGB_GRID, IN_GLASS, IN_ROUGH_GLASS, AIRS } Air;
+static const char *const air_name[AIRS] = {"fog", "grid", "rgb grid", "fog in glass", "fog in rough glass"};
+
+typedef struct Case {
+  Air air;
+  uint32_t depth;
+  bool spectral;
+  vlContext *context; /* null: an own one */
+} Case;
+
+/* Fog of other colours in each channel. The grids fill the room. */
+static vlMediumId air_of(Stage *s, Air air) {
+  static const float densities[8] = {0.5f, 2, 0, 1, 3, 1, 0.2f, 2};
+  static const float colors[24] = {1, 2, 3, .5f, 1, 0, 0, 0, 2, 1, 1, 1, 3, 2, 1, 0, 1, 2, 1, 2, 1, .3f, .2f, .1f};
+  static const vlMediumKind kinds[AIRS] = {[GRID] = VL_MEDIUM_GRID, [RGB_GRID] = VL_MEDIUM_RGB_GRID};
+  vlMediumDef def = vl_default_medium_def(kinds[air]);
+  float thick = air >= IN_GLASS ? 2.0f : 0.3f;
+  def.sigma_a = vl_spectrum_rgb(0.05f * thick, 0.1f * thick, 0.3f * thick);
+  def.sigma_s = vl_spectrum_rgb(1.5f * thick, 1.0f * thick, 0.6f * thick);
+  def.g = 0.4f, def.scale = air == RGB_GRID ? 0.2f : 1;
+  for (int i = 0; i < 3; i++) def.low[i] = -2.6f, def.high[i] = 2.6f;
+  set_matrix(def.world_from_medium, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -2);
+  def.nx = def.ny = def.nz = 2, def.density = densities, def.rgb_s = colors, def.rgb_a = colors;
+  return vl_scene_add_medium(s->scene, &def);
+}
+
+static void add_filled_ball(Stage *s, vlMaterialId skin, vlMediumId inside) {
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  set_matrix(def.group_from_shape, 1, 0, 0, -0.6, 0, 1, 0, -0.4, 0, 0, 1, -2.6);
+  def.radius = 0.7f, def.z_min = -0.7f, def.z_max = 0.7f;
+  def.material = skin, def.inside = inside;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &def).index, 0);
+}
+
+/* A closed room with a bulb in a tube that is open above. */
+static Stage room(const void *user, vlTracer tracer) {
+  const Case *what = user;
+  Stage s = stage_open_in(what->context, SIZE, SIZE);
+  s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
+  s.camera.fov = 1.2;
+  s.render.max_depth = what->depth;
+  s.render.spp = tracer == VL_TRACER_VOLPATH ? 256 : 24;
+  s.render.light_paths = 2048; /* several groups of wavelengths */
+  vlMaterialId dark = add_diffuse(&s, 0.3f, 0.2f, 0.1f), white = add_diffuse(&s, 0.7f, 0.7f, 0.7f);
+  const vlMaterialId walls[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f), add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
+  vlMaterialDef def = vl_default_material_def(VL_MATERIAL_COATED_DIFFUSE);
+  def.u_roughness = def.v_roughness = vl_float_input(0.3f);
+  add_walls(&s, walls, vl_scene_add_material(s.scene, &def));
+  add_tube(&s, 0.2f, 0.5f, 0.35f, dark);
+  add_ball_of(&s, 0.4f, 0.5f, 0.15f, dark, add_emission(&s, 40, false));
+  add_ball_of(&s, 0.9f, -1, 0.5f, white, (vlEmissionId){0});
+  vlMediumId air = air_of(&s, what->air);
+  if (what->air < IN_GLASS) {
+    vl_scene_defs(s.scene)->camera_medium = air;
+  } else {
+    def = vl_default_material_def(VL_MATERIAL_DIELECTRIC);
+    def.u_roughness = def.v_roughness = vl_float_input(what->air == IN_GLASS ? 0.0f : 0.4f);
+    add_filled_ball(&s, vl_scene_add_material(s.scene, &def), air);
+  }
+  return s;
+}
+
+static void rooms(void **state) {
+  (void)state;
+  for (int k = 0; k < AIRS; k++) {
+    Case what = {(Air)k, k == FOG ? 6 : 3, k % 2 == 0, NULL}; /* volpath misses rare light in glass */
+    Measure path = measure(room, &what, VL_TRACER_VOLPATH), both = measure(room, &what, VL_TRACER_BIDIRECTIONAL);
+    assert_agree(air_name[k], "bidirectional", &both, &path, k < IN_GLASS ? 0.002 : 0.015);
+  }
+}
+
+/* The mean of (a - b)^2 / (a + b)^2 of two seeds. */
+static double noise(Air air, vlTracer tracer) {
+  const Case what = {air, 6, false, NULL};
+  Image p[2];
+  for (uint32_t k = 0; k < 2; k++) {
+    Stage s = room(&what, tracer);
+    s.render.tracer = tracer, s.render.spp = 8, s.render.seed = k;
+    p[k] = stage_finish(&s);
+  }
+  double sum = 0;
+  for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+    double a = p[0].rgba[4 * i + 1], b = p[1].rgba[4 * i + 1];
+    sum += a + b > 0 ? (a - b) * (a - b) / ((a + b) * (a + b)) : 1;
+  }
+  image_free(&p[0]);
+  image_free(&p[1]);
+  return sum / (SIZE * SIZE);
+}
+
+static void less_noise(void **state) {
+  (void)state;
+  for (int air = FOG; air <= GRID; air++) {
+    double path = noise((Air)air, VL_TRACER_VOLPATH), both = noise((Air)air, VL_TRACER_BIDIRECTIONAL);
+    if (!(both < path / 3)) fail_msg("%s: noise of volpath %g, bidirectional %g", air_name[air], path, both);
+  }
+}
+
+/* The inside of a ball that emits 1 and reflects a half of the light: 1 + 1/2 + 1/4 + ... = 2 everywhere. A medium that
+ * absorbs nothing changes nothing, if the weights of all strategies sum to one. */
+static Stage furnace(const void *user, vlTracer tracer) {
+  (void)tracer;
+  static const float densities[8] = {1, 2, 0.2f, 1, 3, 1, 0, 2};
+  const Case *what = user;
+  Stage s = stage_open_in(NULL, FURNACE, FURNACE);
+  s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
+  s.render.max_depth = what->depth, s.render.spp = 24;
+  vlMediumDef medium = vl_default_medium_def(what->air == GRID ? VL_MEDIUM_GRID : VL_MEDIUM_HOMOGENEOUS);
+  medium.sigma_a = vl_spectrum_constant(0), medium.g = 0.3f;
+  medium.sigma_s = vl_spectrum_rgb(0.3f, 0.4f, 0.6f);
+  for (int i = 0; i < 3; i++) medium.low[i] = -2, medium.high[i] = 2;
+  medium.nx = medium.ny = medium.nz = 2, medium.density = densities;
+  vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &medium);
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
+  def.radius = 2, def.z_min = -2, def.z_max = 2;
+  def.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f), def.emission = add_emission(&s, 1, true);
+  assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);
+  return s;
+}
+
+static void white_furnace(void **state) {
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    Case what = {k / 2 ? GRID : FOG, 40, k % 2 == 1, NULL};
+    Stage s = furnace(&what, VL_TRACER_RAYCAST);
+    s.render.tracer = VL_TRACER_RAYCAST, s.render.spp = 256; /* emission of 1 in the colours of the film */
+    Image one = stage_finish(&s);
+    Measure m = measure(furnace, &what, VL_TRACER_BIDIRECTIONAL);
+    for (int c = 0; c < AGREEMENT_CHANNELS; c++)
+      for (int band = 0; band < AGREEMENT_BANDS; band++)
+        assert_ratio("furnace", m.mean[band][c], 2 * image_mean(&one, c),
+                     0.001 + 5 * m.error[band][c] / m.mean[band][c]);
+    image_free(&one);
+  }
+}
+
+static Image in_context(vlContext *context, const void *user) {
+  Case what = *(const Case *)user;
+  what.context = context;
+  Stage s = room(&what, VL_TRACER_BIDIRECTIONAL);
+  s.render.tracer = VL_TRACER_BIDIRECTIONAL, s.render.spp = 3;
+  return stage_finish(&s);
+}
+
+static void same_bits(void **state) {
+  (void)state;
+  static const Air airs[2] = {FOG, GRID};
+  for (int k = 0; k < 2; k++) {
+    const Case what = {airs[k], 6, true, NULL};
+    Image a = assert_same_bits(in_context, &what, 2);
+    image_free(&a);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rooms), cmocka_unit_test(less_noise),
+                                     cmocka_unit_test(white_furnace), cmocka_unit_test(same_bits)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

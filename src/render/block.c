@@ -2,6 +2,7 @@
 #include "render/block.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "film/expose.h"
 
@@ -202,22 +203,61 @@ static bool ask_between(vlRenderRun *r, unsigned *state) {
   return stop;
 }
 
+/* Marks those of the n listed samples that no pixel of the block counts. Returns their number. */
+static uint32_t skip_listed(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, vlSharedGrid *grid,
+                            uint32_t n) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  uint32_t bx = r->reconstruction.border[0], by = r->reconstruction.border[1], skipped = 0;
+  if (n) vl_film_rays_points(&r->film_rays, n, &rows);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t x = (uint32_t)(rows.px[i] - b->x0) + bx, y = (uint32_t)(rows.py[i] - b->y0) + by;
+    if (vl_shared_counts(&r->reconstruction, b, x, y, rows.film_x[i], rows.film_y[i])) continue;
+    vl_shared_skip(&r->reconstruction, grid, y * (b->width + 2 * bx) + x);
+    skipped++;
+  }
+  return skipped;
+}
+
+/* Marks the samples of one index in the block's border that no pixel of the block counts, half of them with a triangle
+ * of radius 1. Returns their number. */
+static uint32_t skip_useless(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, vlSharedGrid *grid,
+                             uint32_t sample) {
+  vlFilmRayRows rows = vl_film_ray_rows(w->rows);
+  uint32_t bx = r->reconstruction.border[0], by = r->reconstruction.border[1], n = 0, skipped = 0;
+  uint32_t width = b->width + 2 * bx, height = b->height + 2 * by;
+  memset(grid->skipped, 0, (size_t)width * height * sizeof *grid->skipped);
+  if (!r->reconstruction.skips) return 0;
+  for (uint32_t y = 0; y < height; y++)
+    for (uint32_t x = 0; x < width; x++) {
+      if (x == bx && y >= by && y < by + b->height) x += b->width; /* the block's own pixels */
+      if (x == width) break;
+      rows.px[n] = b->x0 + (int32_t)x - (int32_t)bx, rows.py[n] = b->y0 + (int32_t)y - (int32_t)by;
+      rows.index[n++] = sample;
+      if (n < VL_BATCH) continue;
+      skipped += skip_listed(r, w, b, grid, n);
+      n = 0;
+    }
+  return skipped + skip_listed(r, w, b, grid, n);
+}
+
 /* Traces the samples [first, first + count) of a block and its border. False: it was stopped. */
 static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first, uint32_t count,
                          unsigned *state) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   int32_t bx = (int32_t)r->reconstruction.border[0], by = (int32_t)r->reconstruction.border[1];
   uint32_t width = b->width + 2 * (uint32_t)bx, height = b->height + 2 * (uint32_t)by;
-  uint32_t total = width * height * count, batches = (total + VL_BATCH - 1) / VL_BATCH, done = 0, n = 0, filled = 0;
+  uint32_t total = width * height * count, done = 0, n = 0, filled = 0;
   uint32_t across = (width + VL_RENDER_TILE - 1) / VL_RENDER_TILE,
            down = (height + VL_RENDER_TILE - 1) / VL_RENDER_TILE;
   uint32_t places = across * down * TILE_PIXELS;
+  for (uint32_t s = 0; s < count; s++) total -= skip_useless(r, w, b, &w->grids[s], first + s);
+  uint32_t batches = (total + VL_BATCH - 1) / VL_BATCH;
   for (uint32_t s = first; s < first + count; s++)
     for (uint32_t m = 0; m < places; m++) { /* tile by tile; in a tile in Morton order, for coherent packets */
       uint32_t tile = m / TILE_PIXELS, in = m % TILE_PIXELS;
       uint32_t x = tile % across * VL_RENDER_TILE + morton_half(in);
       uint32_t y = tile / across * VL_RENDER_TILE + morton_half(in >> 1);
-      if (x >= width || y >= height) continue;
+      if (x >= width || y >= height || w->grids[s - first].skipped[y * width + x]) continue;
       rows.px[n] = b->x0 - bx + (int32_t)x, rows.py[n] = b->y0 - by + (int32_t)y, rows.index[n] = s;
       n++, filled++;
       if (filled < (uint64_t)total * (done + 1) / batches) continue;

@@ -53,7 +53,7 @@ void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
   if (f->moves) vl_camera_retime(&f->camera, world->time_open, 1 / (world->time_close - world->time_open));
 }
 
-void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
+void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
   for (uint32_t i = n; i < VL_PAD(n); i++)
     r->px[i] = r->px[n - 1], r->py[i] = r->py[n - 1], r->index[i] = r->index[n - 1];
@@ -67,6 +67,11 @@ void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) 
       r->film_x[i] = r->film_x[i] * f->spread + 0.5f, r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
   }
   for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
+}
+
+void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
+  const vlSamplerKernels *k = f->sampler_kernels;
+  vl_film_rays_points(f, n, r);
   if (f->middle || f->centred || f->shared >= 0.0f)
     for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
   else

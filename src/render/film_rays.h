@@ -56,6 +56,8 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
                        vlIsa isa);
 /* Makes rays have world times (0 to 1) if the world has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
+/* The film points alone: film_x, film_y and the weights. n: at least 1. */
+void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 /* n: at least 1. */
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *rows);
 

@@ -23,8 +23,12 @@ bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def) {
 }
 
 vlReconstruction vl_reconstruction_of(const vlFilterTable *filter) {
-  return (vlReconstruction){.curve = {filter->curve[0], filter->curve[1]},
-                            .border = {border_of(filter->axis[0].radius), border_of(filter->axis[1].radius)}};
+  vlReconstruction r = {.curve = {filter->curve[0], filter->curve[1]}};
+  for (int axis = 0; axis < 2; axis++) {
+    r.border[axis] = border_of(filter->axis[axis].radius);
+    r.skips = r.skips || filter->axis[axis].radius < (float)r.border[axis] + 0.5f;
+  }
+  return r;
 }
 
 /* Along one axis: two pixels d apart have the correlation (f * f)(d) / (f * f)(0), f being the filter. */
@@ -52,6 +56,27 @@ void vl_shared_taps(const vlReconstruction *r, const vlFilterKernels *kernels, i
                     float *rows, size_t stride) {
   for (uint32_t k = 0; k <= 2 * r->border[axis]; k++)
     kernels->curve(&r->curve[axis], n, at, 0.5f + (float)k - (float)r->border[axis], rows + k * stride);
+}
+
+/* Whether a sample counts in the pixel of the block that is nearest along an axis. place: its pixel, from the grid's
+ * edge; at: its film point, from its pixel's corner. The same bits as its weight. */
+static bool reaches(const vlFilterCurve *curve, uint32_t border, uint32_t pixels, uint32_t place, float at) {
+  int32_t first = (int32_t)border, last = (int32_t)(border + pixels) - 1, own = (int32_t)place;
+  int32_t nearest = own < first ? first : own > last ? last : own;
+  return vl_filter_curve_at(curve, at - (0.5f + (float)(nearest - own))) > 0.0f;
+}
+
+bool vl_shared_counts(const vlReconstruction *r, const vlSharedBlock *block, uint32_t x, uint32_t y, float film_x,
+                      float film_y) {
+  return reaches(&r->curve[0], r->border[0], block->width, x, film_x) &&
+         reaches(&r->curve[1], r->border[1], block->height, y, film_y);
+}
+
+void vl_shared_skip(const vlReconstruction *r, vlSharedGrid *g, uint32_t at) {
+  for (int c = 0; c < 4; c++) g->color[c][at] = 0.0f;
+  for (uint32_t k = 0; k <= 2 * r->border[0]; k++) g->x[k][at] = 0.0f;
+  for (uint32_t k = 0; k <= 2 * r->border[1]; k++) g->y[k][at] = 0.0f;
+  g->skipped[at] = true;
 }
 
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],

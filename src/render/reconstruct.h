@@ -23,6 +23,7 @@ bool vl_shares_samples(const vlFilmDef *film, const vlRenderDef *def);
 typedef struct vlReconstruction {
   vlFilterCurve curve[2];
   uint32_t border[2]; /* pixels of the border along x and y */
+  bool skips;         /* the filter does not reach all points of the border */
 } vlReconstruction;
 vlReconstruction vl_reconstruction_of(const vlFilterTable *filter);
 /* The sum of the squared correlations of a pixel's error with those of all pixels, itself included, where the samples
@@ -41,6 +42,7 @@ static inline float vl_shared_weight(const vlReconstruction *r, float x, float y
 typedef struct vlSharedGrid {
   float color[4][VL_SHARED_GRID]; /* red, green, blue, alpha */
   float x[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID], y[2 * VL_SHARED_BORDER + 1][VL_SHARED_GRID];
+  bool skipped[VL_SHARED_GRID]; /* the sample counts in none of the block's pixels and need not be traced */
 } vlSharedGrid;
 
 /* A block: its pixels, from x0, y0 on, without the border. */
@@ -57,6 +59,12 @@ enum { VL_SHARED_LANES = 128 };
 typedef struct vlSharedTaps {
   float along[2][2 * VL_SHARED_BORDER + 1][VL_SHARED_LANES];
 } vlSharedTaps;
+/* Whether a pixel of the block counts a sample of the pixel (x, y) of the grid. film_x, film_y: its film point, from
+ * its pixel's corner. */
+bool vl_shared_counts(const vlReconstruction *r, const vlSharedBlock *block, uint32_t x, uint32_t y, float film_x,
+                      float film_y);
+/* Leaves out the sample at grid point `at`: its weights are 0. */
+void vl_shared_skip(const vlReconstruction *r, vlSharedGrid *g, uint32_t at);
 /* Stores a sample at grid point `at`; its filter values are those of lane `lane`. A sample that does not count (it is
  * not finite) has weight 0. */
 void vl_shared_store(const vlReconstruction *r, vlSharedGrid *g, uint32_t at, const float color[4],

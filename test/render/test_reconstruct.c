@@ -129,6 +129,33 @@ static void sums(void **state) {
   vl_context_destroy(context);
 }
 
+/* A sample of the border counts where it has a weight in a pixel of the block, and nowhere else. */
+static void border(void **state) {
+  (void)state;
+  vlContext *context = make_context();
+  for (int k = 0; k < FILTERS; k++) {
+    assert_int_equal(vl_filter_compile(context, &filters[k], &table_), VL_OK);
+    vlReconstruction r = vl_reconstruction_of(&table_);
+    const vlSharedBlock block = {.x0 = 40, .y0 = 7, .width = 3, .height = 2};
+    const uint32_t *b = r.border;
+    uint32_t skipped = 0;
+    for (int i = 0; i < 40000; i++) {
+      uint32_t u = (uint32_t)(random_number() * (float)(block.width + 2 * b[0]));
+      uint32_t v = (uint32_t)(random_number() * (float)(block.height + 2 * b[1]));
+      float x = random_number(), y = random_number(), most = 0;
+      for (uint32_t j = b[1]; j < b[1] + block.height; j++)
+        for (uint32_t l = b[0]; l < b[0] + block.width; l++)
+          most = fmaxf(most, vl_shared_weight(&r, x, y, (int32_t)l - (int32_t)u, (int32_t)j - (int32_t)v));
+      bool counts = vl_shared_counts(&r, &block, u, v, x, y);
+      if (counts != (most > 0)) fail_msg("filter %d at %u, %u: weight %g, counts %d", k, u, v, (double)most, counts);
+      skipped += !counts;
+    }
+    if (r.skips != (skipped > 0)) fail_msg("filter %d: %u samples need not be traced", k, skipped);
+    vl_filter_free(context, &table_);
+  }
+  vl_context_destroy(context);
+}
+
 static void rules(void **state) {
   (void)state;
   vlFilmDef film = vl_default_film_def(8, 8);
@@ -160,6 +187,7 @@ static void rules(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(weights), cmocka_unit_test(sums), cmocka_unit_test(rules)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(weights), cmocka_unit_test(sums), cmocka_unit_test(border),
+                                     cmocka_unit_test(rules)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

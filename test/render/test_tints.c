@@ -237,7 +237,8 @@ static void half(void **state) {
  * that both colour modes show the same. */
 static Image rough(vlColorMode mode, vlTracer tracer, bool media) {
   static const float tint[3] = {0.2f, 0.7f, 1.0f}, sigma[2][3] = {{0.1f, 0.3f, 0.6f}, {0.4f, 0.02f, 0.2f}};
-  Stage s = open_stage(mode, tracer, 256);
+  /* at 256 samples the red of a spectral image has a standard error of 0.25 %, that of an RGB image 0.04 % */
+  Stage s = open_stage(mode, tracer, mode == VL_COLOR_SPECTRAL ? 512 : 256);
   s.camera.fov = 0.8;
   s.render.max_depth = 12;
   s.render.merge_radius = 0.1;

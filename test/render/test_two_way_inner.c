@@ -58,28 +58,10 @@ static void rooms(void **state) {
   }
 }
 
-/* The mean of (a - b)^2 / (a + b)^2 of two seeds. */
-static double noise(vlTracer tracer) {
-  const Room what = {6, false, false};
-  Image p[2];
-  for (uint32_t k = 0; k < 2; k++) {
-    Stage s = room(&what, tracer);
-    s.render.tracer = tracer, s.render.spp = 8, s.render.seed = k;
-    p[k] = stage_finish(&s);
-  }
-  double sum = 0;
-  for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-    double a = p[0].rgba[4 * i + 1], b = p[1].rgba[4 * i + 1];
-    sum += a + b > 0 ? (a - b) * (a - b) / ((a + b) * (a + b)) : 1;
-  }
-  image_free(&p[0]);
-  image_free(&p[1]);
-  return sum / (SIZE * SIZE);
-}
-
 static void less_noise(void **state) {
   (void)state;
-  double path = noise(VL_TRACER_PATH), both = noise(VL_TRACER_BIDIRECTIONAL);
+  const Room what = {6, false, false};
+  double path = pair_noise(room, &what, VL_TRACER_PATH), both = pair_noise(room, &what, VL_TRACER_BIDIRECTIONAL);
   if (!(both < path / 5)) fail_msg("noise of the path tracer %g, bidirectional %g", path, both);
 }
 
@@ -89,10 +71,7 @@ static Stage furnace(const void *user, vlTracer tracer) {
   Stage s = stage_open_in(NULL, FURNACE, FURNACE);
   s.build.color = *(const bool *)user ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.render.max_depth = 5, s.render.spp = 16;
-  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  def.radius = 2, def.z_min = -2, def.z_max = 2;
-  def.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f), def.emission = add_emission(&s, 1, true);
-  assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);
+  add_furnace(&s);
   return s;
 }
 
@@ -100,15 +79,7 @@ static void white_furnace(void **state) {
   (void)state;
   for (int spectral = 0; spectral < 2; spectral++) {
     bool color = spectral;
-    Stage s = furnace(&color, VL_TRACER_RAYCAST);
-    s.render.tracer = VL_TRACER_RAYCAST, s.render.spp = 256; /* emission of 1 in the colours of the film */
-    Image one = stage_finish(&s);
-    Measure m = measure(furnace, &color, VL_TRACER_BIDIRECTIONAL);
-    for (int c = 0; c < AGREEMENT_CHANNELS; c++)
-      for (int band = 0; band < AGREEMENT_BANDS; band++)
-        assert_ratio("furnace", m.mean[band][c], 1.96875 * image_mean(&one, c),
-                     0.001 + 5 * m.error[band][c] / m.mean[band][c]);
-    image_free(&one);
+    assert_furnace(furnace, &color, 1.96875);
   }
 }
 

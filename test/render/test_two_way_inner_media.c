@@ -78,29 +78,12 @@ static void rooms(void **state) {
   }
 }
 
-/* The mean of (a - b)^2 / (a + b)^2 of two seeds. */
-static double noise(Air air, vlTracer tracer) {
-  const Case what = {air, 6, false, NULL};
-  Image p[2];
-  for (uint32_t k = 0; k < 2; k++) {
-    Stage s = room(&what, tracer);
-    s.render.tracer = tracer, s.render.spp = 8, s.render.seed = k;
-    p[k] = stage_finish(&s);
-  }
-  double sum = 0;
-  for (uint32_t i = 0; i < SIZE * SIZE; i++) {
-    double a = p[0].rgba[4 * i + 1], b = p[1].rgba[4 * i + 1];
-    sum += a + b > 0 ? (a - b) * (a - b) / ((a + b) * (a + b)) : 1;
-  }
-  image_free(&p[0]);
-  image_free(&p[1]);
-  return sum / (SIZE * SIZE);
-}
-
 static void less_noise(void **state) {
   (void)state;
   for (int air = FOG; air <= GRID; air++) {
-    double path = noise((Air)air, VL_TRACER_VOLPATH), both = noise((Air)air, VL_TRACER_BIDIRECTIONAL);
+    const Case what = {(Air)air, 6, false, NULL};
+    double path = pair_noise(room, &what, VL_TRACER_VOLPATH);
+    double both = pair_noise(room, &what, VL_TRACER_BIDIRECTIONAL);
     if (!(both < path / 3)) fail_msg("%s: noise of volpath %g, bidirectional %g", air_name[air], path, both);
   }
 }
@@ -120,10 +103,7 @@ static Stage furnace(const void *user, vlTracer tracer) {
   for (int i = 0; i < 3; i++) medium.low[i] = -2, medium.high[i] = 2;
   medium.nx = medium.ny = medium.nz = 2, medium.density = densities;
   vl_scene_defs(s.scene)->camera_medium = add_medium(&s, &medium);
-  vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
-  def.radius = 2, def.z_min = -2, def.z_max = 2;
-  def.material = add_diffuse(&s, 0.5f, 0.5f, 0.5f), def.emission = add_emission(&s, 1, true);
-  assert_int_not_equal(vl_scene_add_shape(s.scene, &def).index, 0);
+  add_furnace(&s);
   return s;
 }
 
@@ -131,15 +111,7 @@ static void white_furnace(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
     Case what = {k / 2 ? GRID : FOG, 40, k % 2 == 1, NULL};
-    Stage s = furnace(&what, VL_TRACER_RAYCAST);
-    s.render.tracer = VL_TRACER_RAYCAST, s.render.spp = 256; /* emission of 1 in the colours of the film */
-    Image one = stage_finish(&s);
-    Measure m = measure(furnace, &what, VL_TRACER_BIDIRECTIONAL);
-    for (int c = 0; c < AGREEMENT_CHANNELS; c++)
-      for (int band = 0; band < AGREEMENT_BANDS; band++)
-        assert_ratio("furnace", m.mean[band][c], 2 * image_mean(&one, c),
-                     0.001 + 5 * m.error[band][c] / m.mean[band][c]);
-    image_free(&one);
+    assert_furnace(furnace, &what, 2);
   }
 }
 

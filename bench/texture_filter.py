@@ -64,29 +64,30 @@ def render(velo, path, size, spp):
 
 def main():
     arguments = sys.argv[1:]
-    image = None
+    picture = None
     if "--image" in arguments:
         at = arguments.index("--image")
-        image = arguments[at + 1]
+        picture = arguments[at + 1]
         del arguments[at:at + 2]
     velo, folder = arguments[0], arguments[1] if len(arguments) > 1 else "/tmp"
+    os.makedirs(folder, exist_ok=True)
     cell = np.arange(1024) // 8
     grey = np.where((cell[:, None] + cell[None, :]) & 1, 230, 12).astype(np.uint8)
     cv2.imwrite(os.path.join(folder, "checks.png"), cv2.merge([grey] * 3))
-    image = '"imagemap" "string filename" "checks.png" "string filter" "{}"'
-    if image:
+    texture = '"imagemap" "string filename" "checks.png" "string filter" "{}"'
+    if picture:
         procedural = '"checkerboard" "float uscale" 128 "float vscale" 128 "rgb tex1" [0.003 0.003 0.003] "rgb tex2" [0.8 0.8 0.8]'
         bare = render(velo, scene(folder, "bare", procedural, MIRRORS), (480, 270), 1)
-        path = scene(folder, "filtered", image.format("trilinear"), MIRRORS)
+        path = scene(folder, "filtered", texture.format("trilinear"), MIRRORS)
         rows = [bare] + [render(velo, path, (480, 270), spp) for spp in (1, 16)]
         show = np.vstack([r[60:230] for r in rows])
-        cv2.imwrite(image, np.clip(show * 1.6, 0, 1) ** (1 / 2.2) * 255, [cv2.IMWRITE_JPEG_QUALITY, 80])
+        cv2.imwrite(picture, np.clip(show * 1.6, 0, 1) ** (1 / 2.2) * 255, [cv2.IMWRITE_JPEG_QUALITY, 80])
         return
     for name, things in (("plane", ""), ("mirrors", MIRRORS)):
-        path = scene(folder, "reference", image.format("bilinear"), things)
+        path = scene(folder, "reference", texture.format("bilinear"), things)
         reference = render(velo, path, (8 * W, 8 * H), 16).reshape(H, 8, W, 8).mean((1, 3))
         for kind in ("bilinear", "trilinear"):
-            path = scene(folder, name, image.format(kind), things)
+            path = scene(folder, name, texture.format(kind), things)
             for spp in (1, 16, 256):
                 got, cells = render(velo, path, (W, H), spp), []
                 for part, (y0, y1, x0, x1) in PARTS[name].items():

@@ -278,7 +278,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
 void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
 /* Chooses a light for each lane. Writes light->light and light->pmf. */
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
-                           vlLightSamples *light);
+                           vlLightSamples *light, float *rest);
 /* Takes one light sample for each lane. */
 void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlSurface *surface,
                      const float *u_choice, const float *u, const float *v, vlLightSamples *light);

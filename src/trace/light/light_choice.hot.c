@@ -32,7 +32,8 @@ static void start(const vlLightTree *tree, uint32_t padded, const float *u, Walk
     out->light[i] = beside ? tree->unbounded[k] : VL_INNER;
     out->pmf[i] = 1.0f / slots;
     w->node[i] = 0;
-    w->u[i] = vl_min((u[i] - p_unbounded) / (1.0f - p_unbounded), VL_ONE_MINUS_EPSILON);
+    float rest = beside ? u[i] * slots - (float)k : (u[i] - p_unbounded) / (1.0f - p_unbounded);
+    w->u[i] = vl_min(rest, VL_ONE_MINUS_EPSILON);
   }
 }
 
@@ -121,12 +122,13 @@ static uint32_t count_waiting(uint32_t n, vlLightSamples *out) {
 }
 
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
-                           vlLightSamples *out) {
+                           vlLightSamples *out, float *rest) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
       vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
+      rest[i] = c.rest;
     }
     return;
   }
@@ -142,5 +144,7 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
                                     facing_light(f, i), w.u[i], out->pmf[i]);
     out->light[i] = c.light;
     out->pmf[i] = c.pmf;
+    w.u[i] = c.rest;
   }
+  for (uint32_t i = 0; i < n; i++) rest[i] = w.u[i];
 }

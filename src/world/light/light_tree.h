@@ -97,6 +97,7 @@ static inline float vl_light_node_importance(const vlLightNode *node, vlVec3 p, 
 typedef struct vlLightChoice {
   uint32_t light; /* index of the light; VL_INNER: no light */
   float pmf;
+  float rest; /* the position of u in the light's part of [0, 1): uniform again */
 } vlLightChoice;
 
 static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u) {
@@ -108,7 +109,8 @@ static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u
     else
       high = mid;
   }
-  return (vlLightChoice){low, tree->cdf[low + 1] - tree->cdf[low]};
+  float pmf = tree->cdf[low + 1] - tree->cdf[low];
+  return (vlLightChoice){low, pmf, vl_min((u - tree->cdf[low]) / pmf, VL_ONE_MINUS_EPSILON)};
 }
 
 /* Traverses the tree from an inner node that was reached with probability pmf; the random number u in [0, 1) is
@@ -118,7 +120,7 @@ static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLight
   while (node->light == VL_INNER) {
     const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
     float ia = vl_light_node_importance(a, p, n), ib = vl_light_node_importance(b, p, n);
-    if (!(ia + ib > 0.0f)) return (vlLightChoice){VL_INNER, 0.0f};
+    if (!(ia + ib > 0.0f)) return (vlLightChoice){VL_INNER, 0.0f, 0.0f};
     float pa = ia / (ia + ib);
     bool left = u < pa;
     float part = left ? pa : 1.0f - pa;
@@ -126,11 +128,11 @@ static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLight
     pmf *= part;
     node = left ? a : b;
   }
-  return (vlLightChoice){node->light, pmf};
+  return (vlLightChoice){node->light, pmf, u};
 }
 
 static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlVec3 p, vlVec3 n, float u) {
-  vlLightChoice none = {VL_INNER, 0.0f};
+  vlLightChoice none = {VL_INNER, 0.0f, 0.0f};
   if (tree->light_count == 0) return none;
   if (tree->kind != VL_LIGHT_SAMPLER_BVH) return vl_light_choose_cdf(tree, u);
   uint32_t slots = tree->unbounded_count + (tree->node_count ? 1 : 0);
@@ -138,7 +140,7 @@ static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlVec3 p, v
   if (u < p_unbounded) {
     uint32_t i = (uint32_t)(u * (float)slots);
     i = i < tree->unbounded_count ? i : tree->unbounded_count - 1;
-    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots};
+    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots, vl_min(u * (float)slots - (float)i, VL_ONE_MINUS_EPSILON)};
   }
   if (!tree->node_count) return none;
   u = vl_min((u - p_unbounded) / (1.0f - p_unbounded), VL_ONE_MINUS_EPSILON);

@@ -32,8 +32,8 @@ enum {
   VL_DIM_TIME = 3,       /* 1 */
   VL_DIM_LENS = 4,       /* 2 */
   VL_DIM_BOUNCE = 6,
-  VL_DIM_LIGHT = 0,    /* 1: chooses the light */
-  VL_DIM_LIGHT_UV = 1, /* 2: choose the point on the light */
+  VL_DIM_LIGHT = 0,    /* 1: spare; replaces the rest of the next where too few bits are left */
+  VL_DIM_LIGHT_UV = 1, /* 2: choose the light and the point on it */
   VL_DIM_LOBE = 3,     /* 1 */
   VL_DIM_BSDF_UV = 4,  /* 2 */
   VL_DIM_ROULETTE = 6, /* 1 */

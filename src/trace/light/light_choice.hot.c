@@ -121,8 +121,8 @@ static uint32_t count_waiting(uint32_t n, vlLightSamples *out) {
   return waiting;
 }
 
-void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u,
-                           vlLightSamples *out, float *rest) {
+void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *f, const float *u, vlLightSamples *out,
+                           float *rest) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
       vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);

@@ -92,4 +92,21 @@ static void get_2d(INPUT, float *u, float *v) {
 #undef CASE
 }
 
-const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get_2d};
+static void get_2d_with(INPUT, uint32_t with, float *u, float *v) {
+  if (s->kind != VL_SAMPLER_SOBOL && s->kind != VL_SAMPLER_ZSOBOL) {
+    get_2d(s, n, px, py, index, dimension, u, v);
+    return;
+  }
+  vlSobolChunk c;
+  for (uint32_t k = 0, count = VL_PAD(n); k < count; k += VL_SAMPLER_CHUNK) {
+    uint32_t m = count - k < VL_SAMPLER_CHUNK ? count - k : VL_SAMPLER_CHUNK;
+    if (s->kind == VL_SAMPLER_SOBOL)
+      vl_sobol_chunk(s, m, px + k, py + k, index + k, dimension, with, &c);
+    else
+      vl_zsobol_chunk(s, m, px + k, py + k, index + k, dimension, with, &c);
+    vl_sobol_number(m, vl_sobol3_columns, c.j, c.x, u + k);
+    vl_sobol_number(m, vl_sobol4_columns, c.j, c.y, v + k);
+  }
+}
+
+const vlSamplerKernels vl_sampler_kernel_table = {get_1d, get_2d, get_2d_with};

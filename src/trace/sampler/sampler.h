@@ -25,7 +25,7 @@
 
 /* Version of the samples, which vl_sample_sequence returns. It is increased whenever a change of the code gives other
  * samples for the same scene and settings. */
-enum { VL_SAMPLE_SEQUENCE = 1 };
+enum { VL_SAMPLE_SEQUENCE = 2 };
 
 typedef struct vlSampler {
   vlSamplerKind kind;
@@ -58,6 +58,11 @@ typedef struct vlSamplerKernels {
                  uint32_t dimension, float *u);
   void (*get_2d)(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
                  uint32_t dimension, float *u, float *v);
+  /* As get_2d, for a pair that is well distributed together with the pair of the 2-D call at dimension `with`: sobol
+   * and zsobol take four dimensions of one Sobol' sequence. Other kinds: as get_2d. At most one pair for each `with`.
+   */
+  void (*get_2d_with)(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
+                      uint32_t dimension, uint32_t with, float *u, float *v);
 } vlSamplerKernels;
 VL_KERNEL_TABLE(vlSamplerKernels, vl_sampler)
 

@@ -3,7 +3,10 @@
  * Morton curve of the whole image (zsobol).
  *
  * Bit reversals are most of the cost, so they are merged. With r = reverse(index), and L a scramble of reversed bits:
- *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second  reverse(L(pascal j)). */
+ *   shuffled index  j = reverse(L(r)),   first number  reverse(L(j)),   second  reverse(L(pascal j)).
+ *
+ * A pair that is drawn with another one uses the third and fourth Sobol' dimension and the other's j, so that all four
+ * are one sequence. */
 #ifndef TRACE_SAMPLER_SOBOL_H
 #define TRACE_SAMPLER_SOBOL_H
 
@@ -36,6 +39,10 @@ VL_SAMPLER_INLINE void vl_sobol_pixel(const int pair, const vlSampler *s, uint32
   }
 }
 
+VL_SAMPLER_INLINE uint32_t vl_zsobol_other(uint32_t morton, uint32_t index, uint32_t shift) {
+  return vl_hash(((morton >> 1) >> (31 - shift)) ^ vl_hash(index >> shift));
+}
+
 /* The global index is i = morton(pixel) 2^shift + sample. Its low 32 bits are shuffled. Higher bits, which occur for
  * very large images and sample counts, and sample indices from 2^shift on select other scrambles. wide: the batch may
  * have such an index. The hash of 0 is 0, so both values of `wide` give the same bits for other indices. */
@@ -46,8 +53,7 @@ VL_SAMPLER_INLINE void vl_zsobol_lanes(const int pair, const int wide, vlSobolSe
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < n; i++) {
     uint32_t morton = vl_morton((uint32_t)px[i] & 0xffffu, (uint32_t)py[i] & 0xffffu);
-    uint32_t other = 0;
-    if (wide) other = vl_hash(((morton >> 1) >> (31 - shift)) ^ vl_hash(index[i] >> shift));
+    uint32_t other = wide ? vl_zsobol_other(morton, index[i], shift) : 0;
     uint32_t j = vl_sobol_shuffled(morton << shift | (index[i] & mask), seed.shuffle ^ other);
     u[i] = vl_sobol_x(j, seed.x ^ other);
     if (pair) v[i] = vl_sobol_y(j, seed.y ^ other);
@@ -63,6 +69,58 @@ VL_SAMPLER_INLINE void vl_zsobol(const int pair, const vlSampler *s, uint32_t n,
     vl_zsobol_lanes(pair, 0, seed, shift, n, px, py, index, u, v);
   else
     vl_zsobol_lanes(pair, 1, seed, shift, n, px, py, index, u, v);
+}
+
+/* ---- a pair that is drawn with another one ------------------------------------------------------------------------
+ */
+
+/* Of each lane of a chunk: the other pair's shuffled index, and the scrambles of this pair. */
+typedef struct vlSobolChunk {
+  _Alignas(64) uint32_t j[VL_SAMPLER_CHUNK], x[VL_SAMPLER_CHUNK], y[VL_SAMPLER_CHUNK];
+} vlSobolChunk;
+
+VL_SAMPLER_INLINE void vl_sobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
+                                      const uint32_t *index, uint32_t dimension, uint32_t with, vlSobolChunk *c) {
+  uint32_t seed = vl_dimension_seed(s, dimension, 0), seed_with = vl_dimension_seed(s, with, 0);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
+    uint32_t key_x = vl_hash(vl_pixel_key(px[i], py[i], seed) + 0x68e31da4u);
+    c->j[i] = vl_sobol_shuffled(index[i], vl_pixel_key(px[i], py[i], seed_with));
+    c->x[i] = key_x;
+    c->y[i] = vl_hash(key_x + 0xb5297a4du);
+  }
+}
+
+VL_SAMPLER_INLINE void vl_zsobol_chunk(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py,
+                                       const uint32_t *index, uint32_t dimension, uint32_t with, vlSobolChunk *c) {
+  uint32_t shuffle = vl_dimension_seed(s, with, 0), x = vl_dimension_seed(s, dimension, 1);
+  uint32_t y = vl_dimension_seed(s, dimension, 2), shift = s->log2_spp, mask = (1u << shift) - 1;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
+    uint32_t morton = vl_morton((uint32_t)px[i] & 0xffffu, (uint32_t)py[i] & 0xffffu);
+    uint32_t other = vl_zsobol_other(morton, index[i], shift);
+    c->j[i] = vl_sobol_shuffled(morton << shift | (index[i] & mask), shuffle ^ other);
+    c->x[i] = x ^ other;
+    c->y[i] = y ^ other;
+  }
+}
+
+/* One of the numbers: generator matrix times index, scrambled. */
+VL_SAMPLER_INLINE void vl_sobol_number(uint32_t n, const uint32_t columns[32], const uint32_t *j, const uint32_t *seed,
+                                       float *u) {
+  _Alignas(64) uint32_t product[VL_SAMPLER_CHUNK] = {0};
+  for (uint32_t k = 0; k < 32; k += 4) {
+    uint32_t a = columns[k], b = columns[k + 1], c = columns[k + 2], d = columns[k + 3];
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < n; i++) {
+      uint32_t bits = j[i] >> k;
+      product[i] ^= (a & -(bits & 1u)) ^ (b & -(bits >> 1 & 1u)) ^ (c & -(bits >> 2 & 1u)) ^ (d & -(bits >> 3 & 1u));
+    }
+  }
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < n; i++) {
+    u[i] = vl_fraction_float(vl_reverse_bits(vl_owen_reversed(product[i], seed[i])));
+  }
 }
 
 #endif

@@ -66,8 +66,14 @@ void vl_stage_light_bsdf(vlTracing *t, uint32_t n) {
 void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension) {
   vlShade *sh = &t->s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  vl_stage_lights(t->world, n, p, &t->s->surface, sh->u0, sh->u1, sh->u2, &t->s->light);
+  /* The direct light at the first hit is a function of film point and light point: the four numbers are drawn together
+   * (docs/filters.md). Deeper vertices gain nothing from it. */
+  if (dimension == VL_DIM_BOUNCE)
+    t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, VL_DIM_FILM,
+                            sh->u1, sh->u2);
+  else
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  vl_stage_lights(t->world, n, p, &t->s->surface, sh->u1, sh->u2, sh->u0, &t->s->light);
 }
 
 /* Shadow rays for the light samples that contribute, in the order of the lanes, and their radiance, weighted by BSDF

@@ -140,7 +140,8 @@ static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlVec3 p, v
   if (u < p_unbounded) {
     uint32_t i = (uint32_t)(u * (float)slots);
     i = i < tree->unbounded_count ? i : tree->unbounded_count - 1;
-    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots, vl_min(u * (float)slots - (float)i, VL_ONE_MINUS_EPSILON)};
+    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots,
+                           vl_min(u * (float)slots - (float)i, VL_ONE_MINUS_EPSILON)};
   }
   if (!tree->node_count) return none;
   u = vl_min((u - p_unbounded) / (1.0f - p_unbounded), VL_ONE_MINUS_EPSILON);

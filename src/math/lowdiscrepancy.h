@@ -51,19 +51,6 @@ static inline uint32_t vl_sobol2_reversed(uint32_t index) {
   return x ^ (x >> 16);
 }
 
-/* Columns of the generator matrices of Sobol's third and fourth dimension, bit-reversed: primitive polynomials
- * x^2 + x + 1 and x^3 + x + 1, initial direction numbers 1, 3 and 1, 3, 1 (Joe and Kuo 2008). */
-static const uint32_t vl_sobol3_columns[32] = {
-    0x00000001u, 0x00000003u, 0x00000006u, 0x00000009u, 0x00000017u, 0x0000003au, 0x00000071u, 0x000000a3u,
-    0x00000116u, 0x00000339u, 0x00000677u, 0x000009aau, 0x00001601u, 0x00003903u, 0x00007706u, 0x0000aa09u,
-    0x00010117u, 0x0003033au, 0x00060671u, 0x000909a3u, 0x00171616u, 0x003a3939u, 0x00717777u, 0x00a3aaaau,
-    0x01170001u, 0x033a0003u, 0x06710006u, 0x09a30009u, 0x16160017u, 0x3939003au, 0x77770071u, 0xaaaa00a3u};
-static const uint32_t vl_sobol4_columns[32] = {
-    0x00000001u, 0x00000003u, 0x00000004u, 0x0000000au, 0x0000001fu, 0x0000002eu, 0x00000045u, 0x000000c9u,
-    0x0000011bu, 0x000002a4u, 0x0000079au, 0x00000b67u, 0x0000101eu, 0x0000302du, 0x00004041u, 0x0000a0c3u,
-    0x0001f104u, 0x0002e28au, 0x000457dfu, 0x000c9baeu, 0x0011a105u, 0x002a7289u, 0x0079e7dbu, 0x00b6dba4u,
-    0x0100011au, 0x030002a7u, 0x0400079eu, 0x0a000b6du, 0x1f001001u, 0x2e003003u, 0x45004004u, 0xc900a00au};
-
 /* Moves the bits of x (< 2^16) to the even positions. */
 static inline uint32_t vl_spread_bits(uint32_t x) {
   x = (x | (x << 8)) & 0x00ff00ffu;

@@ -82,16 +82,14 @@ static double density(void *user, const double d[3]) {
   return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);
 }
 
-/* Light samples weighed by 1 / pdf measure the solid angle of what they reach in each cell of the sphere; uniform
- * directions measure it, too: where density() is above 0. Both are means with known variances: their difference,
- * squared and summed over the cells, is chi-square. (Edges of lights cut cells anyhow: a numerical integral would have
- * to find them.) */
+/* The part of the light samples that falls into a cell of the sphere is the integral of the density over it. Uniform
+ * directions estimate the integral. Both are means with known variances: their difference, squared and summed over the
+ * cells, is chi-square. (Edges of lights cut cells: a numerical integral would have to find them.) */
 enum { ROWS = 16, COLUMNS = 32, CELLS = ROWS * COLUMNS };
 
 typedef struct Cell {
-  double sum, sum2;
-  double density; /* sum of, over uniform directions */
-  uint32_t count;
+  double sum, sum2; /* of the density, over uniform directions */
+  uint32_t count;   /* of light samples, of uniform directions */
 } Cell;
 
 static uint32_t cell_of(double x, double y, double z) {
@@ -99,10 +97,19 @@ static uint32_t cell_of(double x, double y, double z) {
   return (row < ROWS ? row : ROWS - 1) * COLUMNS + (column < COLUMNS ? column : COLUMNS - 1);
 }
 
-static void add_to(Cell *cell, double weight) {
-  cell->sum += weight;
-  cell->sum2 += weight * weight;
-  cell->count++;
+/* Whether a density is that of direction d, or of one beside it: the rounding of d may move it across an edge of the
+ * density. */
+static bool is_density(Fixture *f, const double d[3], double pdf) {
+  const double step = 1e-5;
+  for (int k = 0; k < 7; k++) {
+    double beside[3] = {d[0], d[1], d[2]};
+    if (k) beside[(k - 1) / 2] += k % 2 ? step : -step;
+    double length = sqrt(beside[0] * beside[0] + beside[1] * beside[1] + beside[2] * beside[2]);
+    for (int i = 0; i < 3; i++) beside[i] /= length;
+    double told = density(f, beside);
+    if (fabs(told - pdf) <= 5e-3 * told) return true;
+  }
+  return false;
 }
 
 static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
@@ -115,16 +122,16 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
       s->surface.nx[i] = f->n.x, s->surface.ny[i] = f->n.y, s->surface.nz[i] = f->n.z;
       s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
     }
-    vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
+    vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u1, s->shade.u2, s->shade.u0, &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
       if (!(l->pdf[i] > 0)) continue;
       double d[3] = {l->wx[i], l->wy[i], l->wz[i]}, told = density(f, d);
       if (!(told > 0)) continue; /* at the very edge a ray may just miss, or another light stands before it */
       /* The density that comes with a sample is the one that a hit is given. */
-      if (!(fabs(told - (double)l->pdf[i]) <= 5e-3 * told))
+      if (!is_density(f, d, (double)l->pdf[i]))
         fail_msg("pdf %g with the sample, %g for the hit", (double)l->pdf[i], told);
-      add_to(&cells[cell_of(d[0], d[1], d[2])], 1 / told);
+      cells[cell_of(d[0], d[1], d[2])].count++;
     }
   }
   return done;
@@ -142,20 +149,21 @@ static void judge(Fixture *f, unsigned seed, unsigned tests) {
     double pdf = density(f, d);
     if (!(pdf > 0)) continue;
     Cell *cell = &uniform[cell_of(d[0], d[1], d[2])];
-    add_to(cell, 4 * M_PI);
-    cell->density += pdf;
+    cell->count++;
+    cell->sum += 4 * M_PI * pdf;
+    cell->sum2 += 4 * M_PI * pdf * 4 * M_PI * pdf;
   }
   double statistic = 0;
   uint32_t freedom = 0;
   for (uint32_t k = 0; k < CELLS; k++) {
     const Cell *a = &sampled[k], *b = &uniform[k];
     if (b->count < 100 || a->count < 100) {
-      double expected = b->density * 4 * M_PI / m * n;
+      double expected = b->sum / m * n;
       if (b->count >= 100 && expected > 200) fail_msg("cell %u: %u samples, %g expected", k, a->count, expected);
       continue;
     }
-    double ma = a->sum / n, mb = b->sum / m;
-    double variance = (a->sum2 / n - ma * ma) / n + (b->sum2 / m - mb * mb) / m;
+    double ma = (double)a->count / n, mb = b->sum / m;
+    double variance = mb * (1 - mb) / n + (b->sum2 / m - mb * mb) / m;
     statistic += (ma - mb) * (ma - mb) / variance;
     freedom++;
   }
@@ -210,6 +218,37 @@ static void many_triangles(void **state) {
     assert_true(fabs(sum - 1) < 1e-5);
     end(f);
   }
+}
+
+/* So many lights that the choice leaves few bits for the point. */
+static void crowd(void **state) {
+  (void)state;
+  enum { SIDE = 20, FACES = 2 * SIDE * SIDE };
+  float p[SIDE + 1][SIDE + 1][3];
+  uint32_t indices[3 * FACES], *at = indices;
+  for (uint32_t y = 0; y <= SIDE; y++)
+    for (uint32_t x = 0; x <= SIDE; x++) {
+      p[y][x][0] = (float)x * 0.2f - 2, p[y][x][1] = (float)y * 0.2f - 2, p[y][x][2] = 1;
+      uint32_t k = y * (SIDE + 1) + x;
+      if (x == SIDE || y == SIDE) continue;
+      const uint32_t faces[6] = {k, k + 1, k + SIDE + 1, k + 1, k + SIDE + 2, k + SIDE + 1};
+      memcpy(at, faces, sizeof faces);
+      at += 6;
+    }
+  Fixture *f = begin();
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.vertices = (SIDE + 1) * (SIDE + 1);
+  def.faces = FACES;
+  def.positions = p[0][0];
+  def.indices = indices;
+  def.emission = emission(f, true);
+  assert_int_not_equal(vl_scene_add_shape(f->scene, &def).index, 0);
+  f->p = vl_vec3(0.2f, 0.1f, 0);
+  f->n = vl_vec3(0, 0, 1);
+  build(f, VL_LIGHT_SAMPLER_UNIFORM);
+  assert_true(vl_light_pmf(&f->world->tree, f->p, f->n, 7) < 1.0f / 256);
+  judge(f, 15, TESTS);
+  end(f);
 }
 
 static void add_round(Fixture *f, vlShapeKind kind, const double m[16]) {
@@ -331,7 +370,7 @@ int main(void) {
       cmocka_unit_test(triangles),    cmocka_unit_test(many_triangles),
       cmocka_unit_test(round_lights), cmocka_unit_test(sphere_from_inside),
       cmocka_unit_test(patch),        cmocka_unit_test(sky),
-      cmocka_unit_test(portals),
+      cmocka_unit_test(crowd),        cmocka_unit_test(portals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

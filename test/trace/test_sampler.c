@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "statistics.h"
-#include "trace/sampler/sampler.h"
+#include "trace/sampler/sobol.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };
 static const char *const NAMES[KINDS] = {"independent", "regular", "stratified", "nrooks", "multi-jittered",
@@ -174,6 +174,67 @@ static void test_nets(void **state) {
   }
 }
 
+/* Generator matrices from the recurrence of the direction numbers (Joe and Kuo 2008). */
+static void test_columns(void **state) {
+  (void)state;
+  static const struct {
+    uint32_t degree, middle, first[3];
+    const uint32_t *columns;
+  } ROWS[2] = {{2, 1, {1, 3, 0}, vl_sobol3_columns}, {3, 1, {1, 3, 1}, vl_sobol4_columns}};
+  for (int d = 0; d < 2; d++) {
+    uint32_t m[32], s = ROWS[d].degree;
+    for (uint32_t k = 0; k < 32; k++) {
+      m[k] = k < s ? ROWS[d].first[k] : m[k - s] ^ m[k - s] << s;
+      for (uint32_t q = 1; q < s && k >= s; q++)
+        if (ROWS[d].middle >> (s - 1 - q) & 1) m[k] ^= m[k - q] << q;
+      assert_int_equal(ROWS[d].columns[k], vl_reverse_bits(m[k] << (31 - k)));
+    }
+  }
+}
+
+/* Two pairs that are drawn together: each elementary interval of 4 dimensions and volume 8 / 2^k holds 8 of 2^k points
+ * (Sobol's quality parameter t is 3), each number alone is stratified; the same bits for all
+ * sets and groupings. */
+static void test_with(void **state) {
+  (void)state;
+  enum { LOG = 9, COUNT = 1 << LOG, T = 3, WITH = 2, PAIR = 11 };
+  static float p[4][COUNT];
+  int32_t px[COUNT], py[COUNT];
+  uint32_t index[COUNT];
+  for (uint32_t i = 0; i < COUNT; i++) px[i] = 31, py[i] = 7, index[i] = i;
+  for (int kind = 0; kind < KINDS; kind++) {
+    vlSampler s;
+    vl_sampler_init(&s, (vlSamplerKind)kind, 5, 640, 480, COUNT);
+    kernels()->get_2d(&s, COUNT, px, py, index, WITH, p[0], p[1]);
+    kernels()->get_2d_with(&s, COUNT, px, py, index, PAIR, WITH, p[2], p[3]);
+    for (vlIsa isa = 0; isa <= vl_isa_best(); isa++) {
+      vl_sampler_kernels(isa)->get_2d_with(&s, COUNT, px, py, index, PAIR, WITH, u_, v_);
+      assert_memory_equal(u_, p[2], sizeof p[2]);
+      assert_memory_equal(v_, p[3], sizeof p[3]);
+      vl_sampler_kernels(isa)->get_2d_with(&s, 48, px + 160, py + 160, index + 160, PAIR, WITH, u_, v_);
+      assert_memory_equal(u_, p[2] + 160, 48 * sizeof *u_);
+      assert_memory_equal(v_, p[3] + 160, 48 * sizeof *v_);
+    }
+    if (kind != VL_SAMPLER_SOBOL && kind != VL_SAMPLER_ZSOBOL) {
+      kernels()->get_2d(&s, COUNT, px, py, index, PAIR, u_, v_);
+      assert_memory_equal(u_, p[2], sizeof p[2]);
+      continue;
+    }
+    const int bits = LOG - T;
+    for (int a = 0; a <= bits; a++)
+      for (int b = 0; a + b <= bits; b++)
+        for (int c = 0; a + b + c <= bits; c++) {
+          int d = bits - a - b - c;
+          uint32_t seen[1 << (LOG - T)] = {0};
+          for (uint32_t i = 0; i < COUNT; i++)
+            seen[((cell_of(p[0][i], 1u << a) << b | cell_of(p[1][i], 1u << b)) << c | cell_of(p[2][i], 1u << c)) << d |
+                 cell_of(p[3][i], 1u << d)]++;
+          for (int k = 0; k < 1 << bits; k++) assert_int_equal(seen[k], 1 << T);
+        }
+    assert_true(one_each(p[2], COUNT) && one_each(p[3], COUNT));
+  }
+}
+
 /* Many pixels, few samples each: every 1-D and 2-D projection is uniform; also pairs from different calls. */
 static void test_uniform(void **state) {
   (void)state;
@@ -290,9 +351,10 @@ static void test_bits(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_range),   cmocka_unit_test(test_strata),       cmocka_unit_test(test_nets),
-      cmocka_unit_test(test_uniform), cmocka_unit_test(test_independence), cmocka_unit_test(test_regular),
-      cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_range),        cmocka_unit_test(test_strata),  cmocka_unit_test(test_nets),
+      cmocka_unit_test(test_columns),      cmocka_unit_test(test_with),    cmocka_unit_test(test_uniform),
+      cmocka_unit_test(test_independence), cmocka_unit_test(test_regular), cmocka_unit_test(test_bits),
+      cmocka_unit_test(test_columns),      cmocka_unit_test(test_with),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

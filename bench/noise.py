@@ -3,10 +3,10 @@
 the samples against a perfect stop, and the bias of the image's mean.
 Usage: script/bench noise NAME=FILE[@WxH]... [--noise PERCENT] [--reference SPP] [--seeds N] [--json FILE]
 The true error of a block is the root mean square difference of its display values (sRGB) from those of a render of
---reference samples with another seed. The share of blocks below the threshold is that of all --seeds seeds. A perfect
-stop renders each block to the first number of samples (16, 24, 32, 48, ...) at which its true error is below the
-threshold; it has the first seed. The bias is the mean of the adaptive images of all seeds over the mean of the
-reference, with a standard error from the spread of the seeds. It counts the pixels that are below white in the
+--reference samples with another seed. A perfect stop renders each block to the first number of samples (8, 12, 16, 24,
+...) at which its true error is below the threshold, and at most to half of the reference's. Shares and samples are
+means over --seeds seeds. The bias is the mean of the adaptive images of all seeds over the mean of the reference, with a
+standard error from the spread of the seeds. It counts the pixels that are below white in the
 reference, as their neighbours are: the display does not show the noise of brighter ones, so --noise does not bound it,
 and the edges of lamps can have a hundred times the light of all other pixels. Needs numpy."""
 import argparse
@@ -71,11 +71,33 @@ def samples(film, shape):
     return counts
 
 
-def schedule(most):
-    n = 16
+def schedule(first, most):
+    n = first
     while n <= most:
         yield n
         n = n * 3 // 2 if n & (n - 1) == 0 else n * 4 // 3
+
+
+def perfect_samples(base, reference, threshold, most, folder):
+    """The samples of each block if it stopped as soon as its true error is below the threshold. All blocks are rendered
+    to 128 samples, then those that are still above it one by one."""
+    film, image = os.path.join(folder, "perfect.film"), os.path.join(folder, "perfect.pfm")
+    perfect = numpy.full(blocks(reference, reference).shape, numpy.inf)
+    for n in schedule(8, 128):
+        velo(*(base + ["--spp", "8", "--film", film] if n == 8 else
+               ["render", "--continue", film, "--quiet", "--spp", str(n)]), "-o", image)
+        perfect[(blocks(read(image), reference) < threshold) & numpy.isinf(perfect)] = n
+    for row, column in numpy.argwhere(numpy.isinf(perfect)):
+        x, y = int(column) * BLOCK, int(row) * BLOCK
+        part = reference[y:y + BLOCK, x:x + BLOCK]
+        crop = "%d,%d,%d,%d" % (x, y, x + part.shape[1], y + part.shape[0])
+        for n in schedule(192, most):
+            velo(*(base + ["--spp", "192", "--crop", crop, "--film", film] if n == 192 else
+                   ["render", "--continue", film, "--quiet", "--spp", str(n)]), "-o", image)
+            perfect[row, column] = n
+            if blocks(read(image), part)[0, 0] < threshold:
+                break
+    return perfect
 
 
 def measure(name, scene, size, options, folder):
@@ -85,25 +107,16 @@ def measure(name, scene, size, options, folder):
     velo(*base, "--seed", "977", "--spp", str(options.reference), "-o", path("-reference.pfm"))
     reference = read(path("-reference.pfm"))
     counted = below_white(reference)
-    means, below = [], []
+    means, below, counts, perfect = [], [], [], []
     for seed in range(options.seeds):
         film, image = path("-%d.film" % seed), path("-%d.pfm" % seed)
         velo(*base, "--seed", str(seed), "--noise", "%g%%" % options.noise, "--film", film, "-o", image)
         means.append(read(image)[counted].mean() / reference[counted].mean())
         errors = blocks(read(image), reference)
         below.append((errors < threshold).mean())
-        if seed == 0:
-            counts = samples(film, errors.shape)
-    perfect, even = numpy.full(errors.shape, numpy.inf), path("-even.film")
-    for n in schedule(2 * counts.max()):
-        first = not os.path.exists(even)
-        velo(*(base + ["--spp", str(n), "--film", even] if first else
-               ["render", "--continue", even, "--quiet", "--spp", str(n)]), "-o", path("-even.pfm"))
-        stops = blocks(read(path("-even.pfm")), reference) < threshold
-        perfect[stops & numpy.isinf(perfect)] = n
-        if numpy.isfinite(perfect).all() and n >= counts.max():
-            break
-    perfect = numpy.minimum(perfect, 2 * counts.max())
+        counts.append(samples(film, errors.shape))
+        perfect.append(perfect_samples(base + ["--seed", str(seed)], reference, threshold, options.reference // 2, folder))
+    counts, perfect = numpy.array(counts), numpy.array(perfect)
     return {"scene": name, "noise": threshold, "blocks": errors.size * options.seeds,
             "below": float(numpy.mean(below)), "counted": float(counted.mean()),
             "mean_spp": float(counts.mean()), "most_spp": int(counts.max()), "perfect_spp": float(perfect.mean()),

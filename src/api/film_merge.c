@@ -26,8 +26,8 @@ typedef struct Merge {
   uint32_t *order;               /* indices of parts, sorted by samples, most first */
   vlSampleSpan *ranges, *joined; /* samples of the result's block; working memory of join */
   uint32_t range_count;
-  uint8_t learned[16]; /* digest of the learned state; the same in all parts of a block */
-  char *sum, *data;    /* sums of the result's block; of one part's block */
+  vlComparedNoise compared; /* of the result's block: that of its only part, 0 if it has several */
+  char *sum, *data;         /* sums of the result's block; of one part's block */
   vlFileWriter file;
   vlError *error;
 } Merge;
@@ -204,11 +204,7 @@ static vlResult merge_block(Merge *m) {
     if (!p->samples) break;
     if ((result = choose(m, m->order[i], &counts)) != VL_OK) return result;
     if (!counts) continue;
-    if (first)
-      memcpy(m->learned, p->reader.head.learned, sizeof m->learned);
-    else if (memcmp(m->learned, p->reader.head.learned, sizeof m->learned) != 0)
-      return vl_fail(m->error, VL_ERROR_SCENE, "%s: its samples depend on another learned state than those before it",
-                     p->reader.path);
+    m->compared = first ? p->reader.head.compared : (vlComparedNoise){.spp = 0};
     samples += p->samples;
     if (samples > UINT64_C(1) << 31)
       return vl_fail(m->error, VL_ERROR_SCENE, "%s: a film holds at most 2^31 samples per pixel", p->reader.path);
@@ -221,7 +217,7 @@ static vlResult merge_block(Merge *m) {
   const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
   vlFilmBlockHead head;
   vl_film_block_head(def, place, m->range_count, &head);
-  if (m->range_count) memcpy(head.learned, m->learned, sizeof head.learned);
+  if (m->range_count) head.compared = m->compared;
   uint32_t crc = vl_film_crc(0, &head, sizeof head);
   crc = vl_film_crc(crc, m->ranges, m->range_count * sizeof *m->ranges);
   crc = vl_film_crc(crc, m->sum, head.data_size);

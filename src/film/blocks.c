@@ -38,6 +38,17 @@ vlResult vl_film_set_block_spp(vlFilm *film, uint32_t block, uint32_t spp) {
   return VL_OK;
 }
 
+vlComparedNoise *vl_film_compared(vlFilm *film) {
+  if (!film->compared)
+    film->compared = vl_alloc_zero(film->context, vl_film_block_count(film->def.crop), sizeof *film->compared);
+  return film->compared;
+}
+
+void vl_film_forget_compared(vlFilm *film) {
+  vl_free(film->context, film->compared);
+  film->compared = NULL;
+}
+
 bool vl_film_is_adaptive(const vlFilm *film) {
   uint32_t count = vl_film_block_count(film->def.crop);
   for (uint32_t i = 0; film->block_spp && i < count; i++)

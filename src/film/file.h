@@ -28,8 +28,8 @@ extern const char vl_film_magic[8];
 
 typedef struct vlFilmBlockHead {
   uint32_t magic, range_count, x0, y0, x1, y1;
-  uint64_t data_size;  /* bytes: range_count ? pixels * vl_film_pixel_size : 0 */
-  uint8_t learned[16]; /* digest of learned state that the samples depend on; 0: none */
+  uint64_t data_size;       /* bytes: range_count ? pixels * vl_film_pixel_size : 0 */
+  vlComparedNoise compared; /* 0 where samples were not chosen by their noise */
 } vlFilmBlockHead;
 _Static_assert(sizeof(vlFilmBlockHead) == 48, "no padding");
 enum { VL_FILM_BLOCK_MAGIC = 0x4b4c4256 }; /* "VBLK" */

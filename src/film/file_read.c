@@ -97,6 +97,13 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
     uint32_t block = vl_film_block_at(film->def.crop, r->head.x0, r->head.y0);
     if (blocks_differ && vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
       result = vl_fail_memory(error);
+    if (result == VL_OK && r->head.compared.spp) {
+      vlComparedNoise *compared = vl_film_compared(film);
+      if (compared)
+        compared[block] = r->head.compared;
+      else
+        result = vl_fail_memory(error);
+    }
   }
   vl_free(film->context, data);
   return result;

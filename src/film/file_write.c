@@ -73,6 +73,8 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   bool filled = !is_empty(range);
   vlFilmBlockHead head;
   vl_film_block_head(&run->film->def, place, filled, &head);
+  if (filled && run->film->compared)
+    head.compared = run->film->compared[vl_film_block_at(run->film->def.crop, place[0], place[1])];
   memcpy(to, &head, sizeof head);
   to += sizeof head;
   if (filled) {

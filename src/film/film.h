@@ -61,9 +61,25 @@ vlResult vl_film_set_block_spp(vlFilm *film, uint32_t block, uint32_t spp);
 /* Whether blocks have different numbers of samples. */
 bool vl_film_is_adaptive(const vlFilm *film);
 
+/* The noise of a block when adaptive sampling last compared it with the threshold (render/adaptive.h), with the number
+ * of samples that it had then and the view that made the display values: the view's kind, and the factor on the linear
+ * values. spp 0: it was never compared. Film files hold it as it is in memory. */
+typedef struct vlComparedNoise {
+  uint32_t spp;
+  float noise, factor;
+  uint32_t view;
+} vlComparedNoise;
+/* One per block. Kept with the film; null: out of memory. */
+vlComparedNoise *vl_film_compared(vlFilm *film);
+/* Sets them back to 0, for samples that adaptive sampling did not choose. */
+void vl_film_forget_compared(vlFilm *film);
+
+/* The factor on the linear values that an exposure (as vl_image_view's) and a further factor make together. */
+double vl_film_view_factor(float exposure, float scale);
+
 /* The noise of a block: an upper bound, at 95 % confidence, of the root mean square of the standard errors of its
- * display values (0 black, 1 white; all pixels, three channels). view, exposure: as vl_image_view's; scale: a further
- * factor on the linear values; correlation: the sum of the squared correlations of a pixel's error with those of all
+ * display values (0 black, 1 white; all pixels, three channels). view: as vl_image_view's; exposure, scale: as above;
+ * correlation: the sum of the squared correlations of a pixel's error with those of all
  * pixels, itself included, so 1 where they are independent. For films with errors; infinite below 2 samples. */
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation);

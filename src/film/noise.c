@@ -86,11 +86,15 @@ static double block_noise(const Block *b, const Display *d, double correlation) 
   return sqrt(mean + one_sided_95 * sqrt(correlation * (spread > 0 ? spread : 0) / n));
 }
 
+double vl_film_view_factor(float exposure, float scale) {
+  return (double)scale * vl_exp2_exact((double)exposure);
+}
+
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation) {
   const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
   if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
-  Display d = {view, (double)scale * vl_exp2_exact((double)exposure)};
+  Display d = {view, vl_film_view_factor(exposure, scale)};
   uint32_t place[4];
   vl_film_block_place(film->def.crop, block, place);
   const uint32_t *crop = film->def.crop;

@@ -103,6 +103,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->back);
   vl_free(context, film->stamp);
   vl_free(context, film->block_spp);
+  vl_free(context, film->compared);
   vl_free(context, film->scratch);
   vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
@@ -189,6 +190,7 @@ void vl_film_abandon_pass(vlFilm *film) {
 void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
   vl_film_set_spp(film, 0);
+  vl_film_forget_compared(film);
   film->sequence = (vlFilmSequence){0, 0, false};
   if (film->front && film->back) {
     vl_free(film->context, film->front);
@@ -218,6 +220,7 @@ vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
       film->def.buckets != other->def.buckets || film->def.sensor != other->def.sensor ||
       film->def.lambda_min != other->def.lambda_min || film->def.lambda_max != other->def.lambda_max)
     return VL_ERROR_ARGUMENT;
+  vl_film_forget_compared(film);
   if (!vl_film_spectrum_merge(film, other)) return VL_ERROR_MEMORY;
   if (film->def.errors && other->moments[0]) {
     if (!film->moments[0]) film->moments[0] = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof(vlFilmMoments));

@@ -43,7 +43,8 @@ struct vlFilm {
   vlFilmDef def;
   uint32_t width, height; /* of the crop window */
   uint32_t spp;
-  uint32_t *block_spp; /* samples of each block; null: all have spp */
+  uint32_t *block_spp;       /* samples of each block; null: all have spp */
+  vlComparedNoise *compared; /* of each block; null: all 0 */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
   vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */

@@ -1,23 +1,41 @@
 /* render/adaptive.c: see adaptive.h. */
 #include "render/adaptive.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/context.h"
 
-enum { FIRST_COMPARISON = 16 };
+enum { FIRST_COMPARISON = 12 };
 
-/* 2^k or 3 * 2^k, from 16 on. */
-static bool is_compared(uint32_t spp) {
-  uint32_t odd = spp;
-  while (odd && odd % 2 == 0) odd /= 2;
-  return spp >= FIRST_COMPARISON && (odd == 1 || odd == 3);
+/* The least 2^k or 3 * 2^k above spp, from 12 on. */
+static uint32_t next_comparison(uint32_t spp) {
+  if (spp < FIRST_COMPARISON) return FIRST_COMPARISON;
+  uint32_t power = 1u << (31 - __builtin_clz(spp));
+  return spp < power + power / 2 ? power + power / 2 : power <= 1u << 30 ? 2 * power : UINT32_MAX;
 }
 
-static uint32_t next_comparison(uint32_t spp) {
-  do spp++;
-  while (!is_compared(spp));
-  return spp;
+static bool is_compared(uint32_t spp) {
+  return spp >= FIRST_COMPARISON && next_comparison(spp - 1) == spp;
+}
+
+/* The part of the threshold that the noise must be expected to reach at the end, since the expectation is itself
+ * uncertain. */
+static const double MARGIN = 0.95;
+
+static float view_factor(const vlAdaptive *a) {
+  return (float)vl_film_view_factor(a->exposure, a->scale);
+}
+
+/* The number of samples at which a block ends by its last comparison; UINT32_MAX: not known yet. The error falls as the
+ * square root of the number of samples. */
+static uint32_t end_of(const vlAdaptive *a, uint32_t block) {
+  const vlComparedNoise *last = a->compared + block;
+  if (!is_compared(last->spp) || last->spp > vl_film_block_spp(a->film, block) || last->view != (uint32_t)a->view ||
+      last->factor != view_factor(a))
+    return UINT32_MAX;
+  uint32_t end = next_comparison(last->spp);
+  return (double)last->noise * sqrt((double)last->spp / end) < MARGIN * a->noise ? end : UINT32_MAX;
 }
 
 typedef struct Comparison {
@@ -29,9 +47,15 @@ static void compare_block(void *user, uint32_t block, uint32_t worker) {
   (void)worker;
   const Comparison *c = user;
   vlAdaptive *a = c->a;
-  if ((c->wanted && !c->wanted[block]) || !is_compared(vl_film_block_spp(a->film, block))) return;
-  a->seen[block] = vl_film_block_noise(a->film, block, a->view, a->exposure, a->scale, a->correlation);
-  a->done[block] = a->seen[block] < a->noise;
+  if (c->wanted && !c->wanted[block]) return;
+  uint32_t spp = vl_film_block_spp(a->film, block), end = end_of(a, block);
+  if (end == UINT32_MAX && is_compared(spp))
+    a->compared[block] = (vlComparedNoise){
+        .spp = spp,
+        .noise = (float)vl_film_block_noise(a->film, block, a->view, a->exposure, a->scale, a->correlation),
+        .factor = view_factor(a),
+        .view = (uint32_t)a->view};
+  a->done[block] = spp >= end;
 }
 
 static void compare_blocks(vlAdaptive *a, const uint8_t *wanted) {
@@ -50,9 +74,12 @@ vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, con
                     .correlation = correlation,
                     .blocks = vl_film_block_count(vl_film_def(film)->crop)};
   a->done = vl_alloc_zero(context, a->blocks, sizeof *a->done);
-  a->seen = vl_alloc_zero(context, a->blocks, sizeof *a->seen);
   a->pass = vl_alloc_zero(context, a->blocks, sizeof *a->pass);
-  if (!a->done || !a->seen || !a->pass) return VL_ERROR_MEMORY;
+  if (a->noise > 0)
+    a->compared = vl_film_compared(film);
+  else
+    vl_film_forget_compared(film);
+  if (!a->done || !a->pass || (a->noise > 0 && !a->compared)) return VL_ERROR_MEMORY;
   compare_blocks(a, NULL);
   return VL_OK;
 }
@@ -60,7 +87,6 @@ vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, con
 void vl_adaptive_destroy(vlAdaptive *a) {
   if (!a->context) return;
   vl_free(a->context, a->done);
-  vl_free(a->context, a->seen);
   vl_free(a->context, a->pass);
 }
 
@@ -105,9 +131,12 @@ double vl_adaptive_mean_spp(const vlAdaptive *a) {
 double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total) {
   double sum = 0;
   for (uint32_t i = 0; i < a->blocks; i++) {
-    double spp = vl_film_block_spp(a->film, i), ratio = a->noise > 0 ? a->seen[i] / a->noise : 0;
-    double expected = a->done[i] ? spp : a->seen[i] > 0 && spp * ratio * ratio < total ? spp * ratio * ratio : total;
-    sum += expected > spp ? expected : spp;
+    double spp = vl_film_block_spp(a->film, i), expected = total;
+    if (a->compared && a->compared[i].spp) {
+      double ratio = (double)a->compared[i].noise / (MARGIN * a->noise);
+      expected = fmin(total, (double)a->compared[i].spp * ratio * ratio);
+    }
+    sum += a->done[i] ? spp : fmax(spp, expected);
   }
   return sum / a->blocks;
 }

@@ -3,10 +3,14 @@
  * All blocks of a pass begin with the same sample. Without a noise threshold, the blocks with the fewest samples go
  * first until all have the wanted number; in a new film these are all blocks in every pass.
  *
- * With a threshold, the noise of a block (vl_film_block_noise) is compared with it when the block has 16, 24, 32, 48,
- * 64, 96, ... samples, and a block below it gets no more. The decision depends on the block's own sums at one of these
- * numbers and on nothing else. So neither the division into passes and calls, nor the threads, nor the other blocks
- * change the image, and a film in a file needs no more than its sums to be continued. */
+ * With a threshold, the noise of a block (vl_film_block_noise) is compared when the block has 12, 16, 24, 32, 48, 64,
+ * 96, ... samples. A block whose noise will be below the threshold at the next of these numbers ends there. This is
+ * two-stage sampling (Stein 1945): a block ends early where its samples happen to be alike, which makes it a little
+ * darker than it should be; the samples after the decision know nothing of it.
+ *
+ * The decision depends on the block's own sums at one of these numbers and on nothing else. So neither the division
+ * into passes and calls, nor the threads, nor the other blocks change the image. The film keeps the last comparison of
+ * each block (vlComparedNoise) with its sums, in files, too, so that it can be continued. */
 #ifndef RENDER_ADAPTIVE_H
 #define RENDER_ADAPTIVE_H
 
@@ -21,13 +25,14 @@ typedef struct vlAdaptive {
   float exposure, scale;
   double correlation; /* as in vl_film_block_noise */
   uint32_t blocks;
-  uint8_t *done; /* of each block: below the threshold */
-  double *seen;  /* of each block: its noise when it was last compared; 0: not yet */
-  uint8_t *pass; /* of each block: it gets samples in this pass */
+  uint8_t *done;             /* of each block: it has its last sample */
+  vlComparedNoise *compared; /* the film's, of each block; null without a threshold */
+  uint8_t *pass;             /* of each block: it gets samples in this pass */
   uint32_t in_pass;
 } vlAdaptive;
 
-/* Compares the blocks that have a number of samples listed above. Error: MEMORY. */
+/* Compares the blocks that have a number of samples listed above, unless the film's comparison still holds. Error:
+ * MEMORY. */
 vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, const vlRenderDef *def,
                             double correlation);
 void vl_adaptive_destroy(vlAdaptive *a);
@@ -44,7 +49,7 @@ vlResult vl_adaptive_end_pass(vlAdaptive *a, uint32_t count);
  * as the square root of the number of samples. */
 double vl_adaptive_mean_spp(const vlAdaptive *a);
 double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total);
-/* The number of blocks that are not known to be below the threshold. */
+/* The number of blocks that did not get the samples that they need. */
 uint32_t vl_adaptive_noisy(const vlAdaptive *a);
 
 #endif

@@ -59,10 +59,18 @@ PATH=$PWD/bin:$PATH sh missing.sh 2>missing.txt
 "$VELO" film develop gap.film -o gap.pfm
 "$VELO" film develop whole.film -o whole.pfm
 same "what is missing is rendered by the command that info prints" gap.pfm whole.pfm
-# stopped at 20 samples, which is between two comparisons, and continued
-$render scene.pbrt $noise --spp 20 --film s.film --channels samples,error,Z
-$render --continue s.film --spp 65536 -o b.exr
-same continued a.exr b.exr
+# stopped between two comparisons, and at a number at which some blocks are compared and others end by the last one
+for spp in 14 16 20 24 32; do
+  $render scene.pbrt $noise --spp $spp --film s.film --channels samples,error,Z
+  $render --continue s.film --spp 65536 -o b.exr
+  same "continued from $spp" a.exr b.exr
+done
+# another exposure has comparisons of its own
+$render scene.pbrt $noise --film s.film
+before=$("$VELO" film info s.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)
+check "another exposure" $render --continue s.film --exposure 3 --spp 65536 -o b.exr
+after=$("$VELO" film info s.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)
+check "a brighter view needs more samples" test "$after" -gt "$before"
 # a lower threshold goes on with the film of a higher one
 $render scene.pbrt $small --noise 1.5% -o finer.exr
 $render scene.pbrt $noise --film s.film

@@ -172,6 +172,32 @@ static vlResult merge(const char *const *paths, uint32_t count, const char *outp
   return vl_film_merge(context, paths, count, output, error);
 }
 
+/* Blocks keep their last comparison of adaptive sampling, unless samples of another part join them. */
+static void compared_noise(void **state) {
+  (void)state;
+  enum { LAST = 2 };
+  vlFilm *film = make_film(context, ERRORS, NULL, 0, SPP), *read;
+  vlComparedNoise *compared = vl_film_compared(film);
+  assert_non_null(compared);
+  compared[LAST] = (vlComparedNoise){16, 0.25f, 2.0f, 1};
+  vlError error;
+  assert_int_equal(vl_film_write(film, NULL, path_of("noise.film"), &error), VL_OK);
+  vl_film_clear(film);
+  assert_int_equal(vl_film_compared(film)[LAST].spp, 0);
+  vl_film_destroy(film);
+  write_film(path_of("more.film"), ERRORS, NULL, SPP, SPP + 8);
+  const char *paths[3] = {path_of("noise.film"), path_of("noise.film"), path_of("more.film")};
+  for (uint32_t count = 1; count <= 3; count++) { /* the same part twice counts once */
+    assert_int_equal(merge(paths, count, path_of("merged.film"), &error), VL_OK);
+    assert_int_equal(vl_film_read(context, path_of("merged.film"), false, &read, &error), VL_OK);
+    vlComparedNoise got = vl_film_compared(read)[LAST], other = vl_film_compared(read)[LAST - 1];
+    assert_int_equal(got.spp, count < 3 ? 16 : 0);
+    if (count < 3) assert_true(got.noise == 0.25f && got.factor == 2.0f && got.view == 1);
+    assert_int_equal(other.spp, 0);
+    vl_film_destroy(read);
+  }
+}
+
 static void shuffle(const char **paths, uint32_t count, uint32_t seed) {
   for (uint32_t i = count; i > 1; i--) {
     uint32_t k = vl_hash2(seed, i) % i;
@@ -398,7 +424,7 @@ static void memory_of_json_runs_out(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(compared_noise),
                                      cmocka_unit_test(parts_become_the_whole),
                                      cmocka_unit_test(what_does_not_belong_together_is_refused),
                                      cmocka_unit_test(a_film_with_gaps_is_only_developed),

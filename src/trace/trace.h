@@ -27,11 +27,13 @@ enum { VL_ROW_SIZE = VL_BATCH + 16 };
  * VL_DIM_BOUNCE + b * VL_DIM_STRIDE; VL_DIM_LIGHT to VL_DIM_FLIGHT count from there. Each comment gives the number of
  * dimensions used. */
 enum {
-  VL_DIM_FILM = 0,       /* 2 */
-  VL_DIM_WAVELENGTH = 2, /* 1 */
-  VL_DIM_TIME = 3,       /* 1 */
-  VL_DIM_LENS = 4,       /* 2 */
-  VL_DIM_BOUNCE = 6,
+  VL_DIM_FILM = 0,        /* 2 */
+  VL_DIM_FIRST_LIGHT = 2, /* 2: VL_DIM_LIGHT_UV of the first hit, drawn together with VL_DIM_FILM. Low dimensions, where
+                             halton is best */
+  VL_DIM_WAVELENGTH = 4,  /* 1 */
+  VL_DIM_TIME = 5,        /* 1 */
+  VL_DIM_LENS = 6,        /* 2 */
+  VL_DIM_BOUNCE = 8,
   VL_DIM_LIGHT = 0,    /* 1: spare; replaces the rest of the next where too few bits are left */
   VL_DIM_LIGHT_UV = 1, /* 2: choose the light and the point on it */
   VL_DIM_LOBE = 3,     /* 1 */

@@ -424,7 +424,8 @@ static void memory_of_json_runs_out(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read), cmocka_unit_test(compared_noise),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
+                                     cmocka_unit_test(compared_noise),
                                      cmocka_unit_test(parts_become_the_whole),
                                      cmocka_unit_test(what_does_not_belong_together_is_refused),
                                      cmocka_unit_test(a_film_with_gaps_is_only_developed),

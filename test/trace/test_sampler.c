@@ -354,7 +354,6 @@ int main(void) {
       cmocka_unit_test(test_range),        cmocka_unit_test(test_strata),  cmocka_unit_test(test_nets),
       cmocka_unit_test(test_columns),      cmocka_unit_test(test_with),    cmocka_unit_test(test_uniform),
       cmocka_unit_test(test_independence), cmocka_unit_test(test_regular), cmocka_unit_test(test_bits),
-      cmocka_unit_test(test_columns),      cmocka_unit_test(test_with),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

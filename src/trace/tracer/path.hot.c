@@ -69,8 +69,8 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
   /* The direct light at the first hit is a function of film point and light point: the four numbers are drawn together
    * (docs/filters.md). Deeper vertices gain nothing from it. */
   if (dimension == VL_DIM_BOUNCE)
-    t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, VL_DIM_FILM,
-                            sh->u1, sh->u2);
+    t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_FIRST_LIGHT, VL_DIM_FILM, sh->u1,
+                            sh->u2);
   else
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
   vl_stage_lights(t->world, n, p, &t->s->surface, sh->u1, sh->u2, sh->u0, &t->s->light);

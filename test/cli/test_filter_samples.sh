@@ -82,7 +82,8 @@ print("gain %.3f, means %.5f and %.5f, %.2f standard errors apart" % (gain, mean
 assert float(low) < gain < float(high) and apart < 5, gain
 END
 if is_plain_build; then
-  check "less noise: gaussian" python3 noise.py "$VELO" 2.0 3.2 --filter gaussian
+  # 2.9 for unrelated samples (docs/filters.md); light points that are drawn with the film points add to it.
+  check "less noise: gaussian" python3 noise.py "$VELO" 2.0 4.0 --filter gaussian
   check "less noise: triangle" python3 noise.py "$VELO" 6 14 --filter triangle
   check "less noise: bidirectional" python3 noise.py "$VELO" 1.5 3.2 --filter gaussian --tracer bidirectional --light-paths 1000
   check "as before: mitchell" python3 noise.py "$VELO" 0.9999 1.0001 --filter mitchell

@@ -5,15 +5,15 @@
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
 cd "$work" || exit 1
 write_scene scene.pbrt
-check json "$VELO" camera paths scene.pbrt --pixel 40,30 --samples 4 --spp 4 --show 100 --json
+check json "$VELO" camera paths scene.pbrt --pixel 40,30 --samples 16 --spp 16 --show 200 --json
 printf '%s' "$out" >paths.json
-check image "$VELO" render scene.pbrt --spp 4 --crop 40,30,41,31 --quiet -o pixel.pfm
+check image "$VELO" render scene.pbrt --spp 16 --crop 40,30,41,31 --quiet -o pixel.pfm
 cat >look.py <<'CODE'
 import json, struct
 r = json.load(open("paths.json"))
-assert r["pixel"] == [40, 30] and r["tracer"] == "path" and r["samples"] == 4 and r["dropped"] == 0
-assert 18 <= r["counted"] == len(r["paths"]) <= 36  # with those of the pixels around
-assert sorted(p["sample"] for p in r["paths"] if p["pixel"] == [40, 30]) == [0, 1, 2, 3]
+assert r["pixel"] == [40, 30] and r["tracer"] == "path" and r["samples"] == 16 and r["dropped"] == 0
+assert 72 <= r["counted"] == len(r["paths"]) <= 144  # with those of the pixels around
+assert sorted(p["sample"] for p in r["paths"] if p["pixel"] == [40, 30]) == list(range(16))
 for p in r["paths"]:
     assert all(abs(a - b) <= 1 and 0 <= x - a < 1 for a, b, x in zip(p["pixel"], r["pixel"], p["film"])), (p["pixel"], p["film"])
 seen = r["sees"]

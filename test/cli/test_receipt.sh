@@ -184,7 +184,7 @@ change_and_refuse() { # NAME TEXT EXPRESSION
   change plain.exr "$3"
   refuse "$1" 3 "$2" "$VELO" render --again changed.exr -o new.exr
 }
-change_and_refuse other_sequence "velo's sample sequence is 1, was 9" 'receipt["velo"]["sequence"] = 9'
+change_and_refuse other_sequence "velo's sample sequence is 2, was 9" 'receipt["velo"]["sequence"] = 9'
 change_and_refuse part_of_an_image "holds 1 of 3 samples per pixel" 'receipt["samples"] = 1'
 change_and_refuse later_format "later version of velo" 'receipt["velo_receipt"] = 2'
 change_and_refuse not_json "receipt: line 1" 'receipt = b"{"'

@@ -34,7 +34,7 @@ static void furnace(void **state) {
         s.build.color = rgb ? VL_COLOR_RGB : VL_COLOR_SPECTRAL;
         s.render.tracer = VL_TRACER_VOLPATH;
         s.render.sampler = VL_SAMPLER_SOBOL;
-        s.render.spp = grey ? (kind < VL_MEDIUM_CLOUD ? 512 : 256) : 128;
+        s.render.spp = grey ? (kind < VL_MEDIUM_CLOUD ? 1024 : 512) : 128;
         s.render.max_depth = 300;
         vlMediumDef def = white_medium(kind);
         if (grey) def.sigma_s = vl_spectrum_constant(2);

@@ -79,8 +79,8 @@ double vl_film_view_factor(float exposure, float scale);
 
 /* The noise of a block: an upper bound, at 95 % confidence, of the root mean square of the standard errors of its
  * display values (0 black, 1 white; all pixels, three channels). view: as vl_image_view's; exposure, scale: as above;
- * correlation: the sum of the squared correlations of a pixel's error with those of all
- * pixels, itself included, so 1 where they are independent. For films with errors; infinite below 2 samples. */
+ * correlation: the sum of the squared correlations of a pixel's error with those of all pixels, itself included, so 1
+ * where they are independent. For films with errors; infinite below 2 samples. */
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation);
 

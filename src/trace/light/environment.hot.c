@@ -98,7 +98,7 @@ static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const fl
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k], y = vl_environment_row(env, v[i], &b->dy[k]);
     b->y[k] = y, b->u[k] = u[i];
-    request(env->cell_guide + (size_t)y * VL_GUIDES + vl_guide_index(u[i]));
+    request(env->cell_guide + (size_t)y * VL_GUIDES + vl_guide_index(u[i])); /* must prefetch */
   }
   for (uint32_t k = 0; k < padded; k++)
     request(env->cells + b->y[k] * row + env->cell_guide[(size_t)b->y[k] * VL_GUIDES + vl_guide_index(b->u[k])]);
@@ -107,7 +107,7 @@ static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const fl
     b->s[k] = ((float)x + b->dx[k]) / (float)env->size;
     b->t[k] = ((float)b->y[k] + b->dy[k]) / (float)env->size;
     b->pdf[k] = env->cells[b->y[k] * row + x].pdf * (0.25f * VL_INV_PI);
-    request_texel(mip, b->s[k], b->t[k]);
+    request_texel(mip, b->s[k], b->t[k]); /* must prefetch */
   }
 }
 

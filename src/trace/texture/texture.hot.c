@@ -36,7 +36,7 @@ static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMi
   l->count = r->last - first < VL_LANES ? r->last - first : VL_LANES;
   for (uint32_t k = 0; k < l->count; k++) {
     l->at[k] = vl_image_lookup(node, mip, vl_texture_point_of(r, node, first + k));
-    vl_image_request(mip, &l->at[k]);
+    vl_prefetch_texels(node, mip, &l->at[k]); /* must prefetch */
   }
 }
 

@@ -65,7 +65,7 @@ static bool draw(const vlTracing *t, uint32_t lane, uint32_t seed, uint32_t at[C
     float u = ((float)k + vl_unit_float(vl_hash(seed + 1 + k))) * (1.0f / CANDIDATES);
     uint32_t place = (uint32_t)(u * (float)count);
     at[k] = first + (place < count ? place : count - 1);
-    __builtin_prefetch(&inner->vertices[at[k]]);
+    __builtin_prefetch(&inner->vertices[at[k]]); /* must prefetch */
   }
   return true;
 }

@@ -243,16 +243,26 @@ static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlM
   return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan(mip, at.axes)};
 }
 
-/* Prefetches the texels of the middle tap that lie within the image. */
-static inline void vl_image_request(const vlMipmap *mip, const vlImageLookup *at) {
-  for (uint32_t level = (uint32_t)at->plan.level, k = 0; k < 2 && level < mip->level_count; k++, level++) {
-    const vlMipLevel *l = &mip->levels[level];
-    float fs = at->s - __builtin_floorf(at->s), ft = at->t - __builtin_floorf(at->t); /* as if the image repeats */
-    float x = fs * (float)l->width - 0.5f, y = ft * (float)l->height - 0.5f;
-    uint32_t i = x > 0.0f ? (uint32_t)(int32_t)x : 0, j = y > 0.0f ? (uint32_t)(int32_t)y : 0;
-    for (uint32_t row = j; row < j + 2 && row < l->height && i < l->width; row++) {
-      size_t index = ((size_t)row * l->width + i) * mip->channels;
+/* Prefetches the texels of a lookup, as far as they lie within the image: two rows for each tap and level. A function
+ * without any effect but prefetches must be always_inline: gcc 12 may take it for one without effects and delete its
+ * calls. */
+static inline __attribute__((always_inline)) void vl_prefetch_texels(const vlTextureNode *node, const vlMipmap *mip,
+                                                                     const vlImageLookup *at) {
+  float inv = 1.0f / (float)at->plan.taps, ds = at->plan.s * inv, dt = -at->plan.t * inv;
+  float before = 0.5f * (float)(at->plan.taps - 1), s = at->s - before * ds, t = at->t - before * dt;
+  uint32_t first = (uint32_t)at->plan.level;
+  bool both = node->filter >= VL_FILTER_TRILINEAR && at->plan.level > (float)first;
+  for (uint32_t k = 0; k < at->plan.taps; k++, s += ds, t += dt) {
+    float fs = s - __builtin_floorf(s), ft = t - __builtin_floorf(t); /* as if the image repeats */
+    for (uint32_t level = first; level <= first + both; level++) {
+      const vlMipLevel *l = &mip->levels[level];
+      float x = fs * (float)l->width - 0.5f, y = ft * (float)l->height - 0.5f;
+      uint32_t i = x > 0.0f ? (uint32_t)(int32_t)x : 0, j = y > 0.0f ? (uint32_t)(int32_t)y : 0;
+      if (!(i < l->width && j < l->height)) continue;
+      size_t index = ((size_t)j * l->width + i) * mip->channels, row = (size_t)l->width * mip->channels;
+      size_t below = index + (j + 1 < l->height ? row : 0);
       __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + index) : (const void *)(l->floats + index), 0, 3);
+      __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + below) : (const void *)(l->floats + below), 0, 3);
     }
   }
 }

@@ -42,6 +42,17 @@ void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
+/* The event of a lane in vacuum whose ray meets no interface: the general case below, where nothing changes the path. */
+static void cross_vacuum(vlTracing *t, uint32_t i) {
+  vlHits *h = &t->s->hits_a;
+  vlVolumeScratch *v = &t->s->volume;
+  bool hit = h->shape[i] != VL_NONE;
+  v->event[i] = hit ? VL_ON_SURFACE : VL_IN_SKY;
+  v->odds[t->s->a.lane[i]] = 1.0f;
+  for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = 0.0f;
+  if (hit) h->material[i] = vl_hit_material(t->world, &t->s->a, h, i);
+}
+
 /* Traces one lane of a through media and interfaces to its event. Its origin remains that of its last scattering, which
  * the densities of light sampling need. */
 static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission, const float *t_min_row,
@@ -52,9 +63,13 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   vlVolumeScratch *v = &t->s->volume;
   vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
+  uint32_t medium = v->a.medium[i], event = VL_AT_END;
+  if (medium == VL_NONE && (h->shape[i] == VL_NONE || !vl_is_interface(world, h->shape[i]))) {
+    cross_vacuum(t, i);
+    return;
+  }
   vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
-  uint32_t medium = v->a.medium[i], event = VL_AT_END;
   for (int step = 0; step < 1024; step++) { /* a bound; no ray crosses so many interfaces */
     bool hit = h->shape[i] != VL_NONE;
     bool passes = hit && vl_is_interface(world, h->shape[i]);

@@ -177,7 +177,7 @@ static vlVec3 sky_direction(const vlWorld *world, const vlWorldLight *light, con
   float dx, dy;
   uint32_t y = vl_environment_row(env, v, &dy), x = vl_environment_cell(env, y, u, &dx);
   float s = ((float)x + dx) / (float)env->size, t = ((float)y + dy) / (float)env->size;
-  *pdf = 0.5f * (env->cells[(size_t)y * (env->size + 1) + x].pdf + 1.0f) * VL_INV_4PI;
+  *pdf = 0.5f * (env->cells[(size_t)y * env->size + x].pdf + 1.0f) * VL_INV_4PI;
   vl_emitted_at(world, e, lambda, s, t, true, radiance);
   return vl_environment_direction(env, s, t);
 }

@@ -9,10 +9,10 @@ enum { BLOCK = VL_SKY_BLOCK };
 
 /* A block of lanes. The arrays are filled to a multiple of VL_LANES with copies of the last lane. */
 typedef struct Block {
-  VL_ROW uint32_t lane[BLOCK], x[BLOCK], y[BLOCK];
+  VL_ROW uint32_t lane[BLOCK], y[BLOCK], cell[BLOCK];
   VL_ROW float u[BLOCK], dx[BLOCK], dy[BLOCK];
   VL_ROW float s[BLOCK], t[BLOCK]; /* position in the image, in [0, 1]^2 */
-  VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], pdf[BLOCK];
+  VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK];
   VL_ROW float rgb[3][BLOCK], lambda[4][BLOCK], radiance[4][BLOCK];
 } Block;
 
@@ -20,7 +20,8 @@ static inline void request(const void *address) {
   __builtin_prefetch(address, 0, 3);
 }
 
-static void request_texel(const vlMipmap *mip, float s, float t) {
+static void request_texel(const vlEnvironment *env, const vlMipmap *mip, float s, float t) {
+  if (env->cells_are_texels) return; /* the colour is in the cell */
   const vlMipLevel *l = &mip->levels[0];
   uint32_t x = (uint32_t)(int32_t)(s * (float)l->width), y = (uint32_t)(int32_t)(t * (float)l->height);
   x = x < l->width ? x : l->width - 1, y = y < l->height ? y : l->height - 1;
@@ -36,14 +37,21 @@ static uint32_t fill_lanes(Block *b, const uint32_t *lanes, uint32_t count) {
 
 /* ---- radiance ---------------------------------------------------------------------------------------------------- */
 
-/* Looks up the image's colours at s, t. */
-static void read_texels(const vlMipmap *mip, float scale, uint32_t padded, Block *b) {
+static inline float scaled(float scale, float value) {
+  float y = scale * value;
+  return y > 0.0f ? y : 0.0f;
+}
+
+/* Looks up the image's colours at s, t, in b->cell. */
+static void read_colors(const vlEnvironment *env, const vlMipmap *mip, float scale, uint32_t padded, Block *b) {
+  if (env->cells_are_texels) {
+    for (uint32_t k = 0; k < padded; k++)
+      for (int c = 0; c < 3; c++) b->rgb[c][k] = scaled(scale, env->cells[b->cell[k]].color[c]);
+    return;
+  }
   for (uint32_t k = 0; k < padded; k++) {
     vlTexel x = vl_nearest(mip, 0, b->s[k], b->t[k], VL_WRAP_OCTAHEDRAL);
-    for (int c = 0; c < 3; c++) {
-      float y = scale * x.c[mip->channels < 3 ? 0 : c];
-      b->rgb[c][k] = y > 0.0f ? y : 0.0f;
-    }
+    for (int c = 0; c < 3; c++) b->rgb[c][k] = scaled(scale, x.c[mip->channels < 3 ? 0 : c]);
   }
 }
 
@@ -66,8 +74,9 @@ static void upsample(const vlRgbTable *table, const vlSpectral *illuminant, uint
   }
 }
 
-static void radiance(const vlWorld *world, const vlEmitted *e, const vlPaths *paths, uint32_t padded, Block *b) {
-  read_texels(world->images.items[e->image].mipmap, e->image_scale, padded, b);
+static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmitted *e, const vlPaths *paths,
+                     uint32_t padded, Block *b) {
+  read_colors(env, world->images.items[e->image].mipmap, e->image_scale, padded, b);
   if (world->def.color == VL_COLOR_RGB) {
     for (uint32_t k = 0; k < padded; k++)
       for (int c = 0; c < 4; c++) b->radiance[c][k] = c < 3 ? b->rgb[c][k] * e->spectrum.scale : 0.0f;
@@ -94,20 +103,21 @@ static void directions(const vlEnvironment *env, uint32_t padded, Block *restric
 
 static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const float *u, const float *v, uint32_t padded,
                          Block *b) {
-  size_t row = env->size + 1;
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k], y = vl_environment_row(env, v[i], &b->dy[k]);
     b->y[k] = y, b->u[k] = u[i];
     request(env->cell_guide + (size_t)y * VL_GUIDES + vl_guide_index(u[i])); /* must prefetch */
   }
   for (uint32_t k = 0; k < padded; k++)
-    request(env->cells + b->y[k] * row + env->cell_guide[(size_t)b->y[k] * VL_GUIDES + vl_guide_index(b->u[k])]);
+    request(env->below + (size_t)b->y[k] * (env->size + 1) +
+            env->cell_guide[(size_t)b->y[k] * VL_GUIDES + vl_guide_index(b->u[k])]);
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t x = vl_environment_cell(env, b->y[k], b->u[k], &b->dx[k]);
     b->s[k] = ((float)x + b->dx[k]) / (float)env->size;
     b->t[k] = ((float)b->y[k] + b->dy[k]) / (float)env->size;
-    b->pdf[k] = env->cells[b->y[k] * row + x].pdf * (0.25f * VL_INV_PI);
-    request_texel(mip, b->s[k], b->t[k]); /* must prefetch */
+    b->cell[k] = b->y[k] * env->size + x;
+    request(env->cells + b->cell[k]);
+    request_texel(env, mip, b->s[k], b->t[k]); /* must prefetch */
   }
 }
 
@@ -119,13 +129,14 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, cons
   uint32_t padded = fill_lanes(&b, lanes, count);
   choose_cells(env, world->images.items[e->image].mipmap, u, v, padded, &b);
   directions(env, padded, &b);
-  radiance(world, e, paths, padded, &b);
+  radiance(world, env, e, paths, padded, &b);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = b.lane[k];
     out->delta[i] = false;
     out->distant[i] = true;
-    if (!(b.pdf[k] > 0.0f) || !(b.pdf[k] < VL_INFINITY)) continue;
-    float total = b.pdf[k] * out->pmf[i], inv = 1.0f / total;
+    float pdf = env->cells[b.cell[k]].pdf * (0.25f * VL_INV_PI);
+    if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) continue;
+    float total = pdf * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
     out->wx[i] = out->tx[i] = b.wx[k], out->wy[i] = out->ty[i] = b.wy[k], out->wz[i] = out->tz[i] = b.wz[k];
     for (int c = 0; c < 4; c++) out->radiance[c][i] = b.radiance[c][k] * inv;
@@ -160,14 +171,13 @@ void vl_hit_environment(const vlWorld *world, const vlWorldLight *light, const v
   uint32_t padded = fill_lanes(&b, lanes, count);
   squares(env, paths, padded, &b);
   for (uint32_t k = 0; k < padded; k++) {
-    request_texel(mip, b.s[k], b.t[k]);
-    if (!paths->specular[b.lane[k]]) request(env->cells + vl_environment_at(env, b.s[k], b.t[k]));
+    b.cell[k] = vl_environment_at(env, b.s[k], b.t[k]);
+    request(env->cells + b.cell[k]);
+    request_texel(env, mip, b.s[k], b.t[k]);
   }
-  radiance(world, e, paths, padded, &b);
+  radiance(world, env, e, paths, padded, &b);
   for (uint32_t k = 0; k < count; k++) {
     for (int c = 0; c < 4; c++) out->radiance[c][k] = b.radiance[c][k];
-    out->pdf[k] = 0.0f;
-    if (!paths->specular[b.lane[k]])
-      out->pdf[k] = env->cells[vl_environment_at(env, b.s[k], b.t[k])].pdf * (0.25f * VL_INV_PI);
+    out->pdf[k] = paths->specular[b.lane[k]] ? 0.0f : env->cells[b.cell[k]].pdf * (0.25f * VL_INV_PI);
   }
 }

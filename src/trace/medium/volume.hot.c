@@ -42,7 +42,8 @@ void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
-/* The event of a lane in vacuum whose ray meets no interface: the general case below, where nothing changes the path. */
+/* The event of a lane in vacuum whose ray meets no interface: the general case below, where nothing changes the path.
+ */
 static void cross_vacuum(vlTracing *t, uint32_t i) {
   vlHits *h = &t->s->hits_a;
   vlVolumeScratch *v = &t->s->volume;

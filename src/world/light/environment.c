@@ -25,7 +25,7 @@ static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_
           if (l > 0) sum += l;
           count++;
         }
-      env->cells[(size_t)y * (size + 1) + x].pdf = (float)(sum / count);
+      env->cells[(size_t)y * size + x].pdf = (float)(sum / count);
       *sum_all += sum / count;
       vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)size, ((float)y + 0.5f) / (float)size);
       *upper += d.z > 0 ? sum / count * d.z : 0;
@@ -39,11 +39,11 @@ static double compensate(vlEnvironment *env, double mean) {
   uint32_t size = env->size;
   bool flat = true;
   for (uint32_t y = 0; y < size; y++)
-    for (uint32_t x = 0; x < size; x++) flat = flat && env->cells[(size_t)y * (size + 1) + x].pdf <= mean * 1.0001;
+    for (uint32_t x = 0; x < size; x++) flat = flat && env->cells[(size_t)y * size + x].pdf <= mean * 1.0001;
   double sum = 0;
   for (uint32_t y = 0; y < size; y++)
     for (uint32_t x = 0; x < size; x++) {
-      float *pdf = &env->cells[(size_t)y * (size + 1) + x].pdf;
+      float *pdf = &env->cells[(size_t)y * size + x].pdf;
       double w = flat ? 1 : *pdf > mean ? *pdf - mean : 0;
       *pdf = (float)w;
       sum += w;
@@ -51,13 +51,13 @@ static double compensate(vlEnvironment *env, double mean) {
   return sum;
 }
 
-/* Makes a guide table: for each interval of u, the last of n intervals that starts at or before it. from[i * stride]:
- * start of interval i. */
-static void make_guide(const float *from, size_t stride, uint32_t n, uint16_t *guide) {
+/* Makes a guide table: for each interval of u, the last of n intervals that starts at or before it. from[i]: start of
+ * interval i. */
+static void make_guide(const float *from, uint32_t n, uint16_t *guide) {
   uint32_t i = 0;
   for (uint32_t k = 0; k < VL_GUIDES; k++) {
     float u = (float)k * (1.0f / VL_GUIDES);
-    while (i + 1 < n && from[(i + 1) * stride] <= u) i++;
+    while (i + 1 < n && from[i + 1] <= u) i++;
     guide[k] = (uint16_t)i;
   }
 }
@@ -67,22 +67,32 @@ static void make_distribution(vlEnvironment *env, double sum_all) {
   double marginal = 0;
   env->rows[0] = 0;
   for (uint32_t y = 0; y < size; y++) {
-    vlEnvironmentCell *row = env->cells + (size_t)y * (size + 1);
+    vlEnvironmentCell *row = env->cells + (size_t)y * size;
+    float *below = env->below + (size_t)y * (size + 1);
     double row_sum = 0, run = 0;
     for (uint32_t x = 0; x < size; x++) row_sum += row[x].pdf;
-    row[0].below = 0;
+    below[0] = 0;
     for (uint32_t x = 0; x < size; x++) {
       run += row[x].pdf;
-      row[x + 1].below = row_sum > 0 ? (float)(run / row_sum) : (float)(x + 1) / (float)size;
+      below[x + 1] = row_sum > 0 ? (float)(run / row_sum) : (float)(x + 1) / (float)size;
     }
-    row[size].below = 1;
+    below[size] = 1;
     marginal += row_sum;
     env->rows[y + 1] = (float)(marginal / sum_all);
     for (uint32_t x = 0; x < size; x++) row[x].pdf = (float)(row[x].pdf / sum_all * size * size);
-    make_guide(&row[0].below, sizeof *row / sizeof(float), size, env->cell_guide + (size_t)y * VL_GUIDES);
+    make_guide(below, size, env->cell_guide + (size_t)y * VL_GUIDES);
   }
   env->rows[size] = 1;
-  make_guide(env->rows, 1, size, env->row_guide);
+  make_guide(env->rows, size, env->row_guide);
+}
+
+static void copy_colors(const vlMipmap *mip, vlEnvironment *env) {
+  for (uint32_t y = 0; y < env->size; y++)
+    for (uint32_t x = 0; x < env->size; x++) {
+      vlTexel texel = vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP);
+      float *color = env->cells[(size_t)y * env->size + x].color;
+      for (int c = 0; c < 3; c++) color[c] = texel.c[mip->channels < 3 ? 0 : c];
+    }
 }
 
 /* The weight of a cell is the mean luminance of its texels minus the mean of all texels (MIS compensation, Karlik et
@@ -93,11 +103,13 @@ vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *
   uint32_t n = mip->levels[0].width, step = (n + VL_ENVIRONMENT_CELLS - 1) / VL_ENVIRONMENT_CELLS;
   uint32_t size = (n + step - 1) / step;
   env->size = size;
-  env->cells = vl_world_block(world, (size_t)size * (size + 1), sizeof *env->cells);
+  env->cells_are_texels = step == 1;
+  env->cells = vl_world_block(world, (size_t)size * size, sizeof *env->cells);
+  env->below = vl_world_block(world, (size_t)size * (size + 1), sizeof *env->below);
   env->rows = vl_world_block(world, size + 1, sizeof *env->rows);
   env->row_guide = vl_world_block(world, VL_GUIDES, sizeof *env->row_guide);
   env->cell_guide = vl_world_block(world, (size_t)size * VL_GUIDES, sizeof *env->cell_guide);
-  if (!env->cells || !env->rows || !env->row_guide || !env->cell_guide) return vl_fail_memory(error);
+  if (!env->cells || !env->below || !env->rows || !env->row_guide || !env->cell_guide) return vl_fail_memory(error);
   double total = 0, upper = 0;
   vlResult r = cell_luminances(mip, env, step, &total, &upper, error);
   if (r != VL_OK) return r;
@@ -106,5 +118,6 @@ vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *
   /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true illuminance. */
   *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
   make_distribution(env, compensate(env, mean));
+  if (env->cells_are_texels) copy_colors(mip, env);
   return VL_OK;
 }

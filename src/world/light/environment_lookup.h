@@ -14,17 +14,19 @@
 /* A power of two, so that u * VL_GUIDES is exact; at least VL_ENVIRONMENT_CELLS. */
 enum { VL_ENVIRONMENT_CELLS = 1024, VL_GUIDES = 1024 };
 
+/* 16 bytes, so that density and radiance are in one cache line. */
 typedef struct vlEnvironmentCell {
-  float below; /* cumulative distribution: of the row's cells before this one, from 0 to 1 */
-  float pdf;   /* density over the unit square */
+  float pdf;      /* density over the unit square */
+  float color[3]; /* of the cell's texel, if cells are texels */
 } vlEnvironmentCell;
 
 typedef struct vlEnvironment {
   int32_t image;
   uint32_t size;            /* of the distribution: size x size cells */
-  vlEnvironmentCell *cells; /* size rows of size + 1 cells; the last cell of a row only ends the distribution (its
-                               member below is 1) */
+  bool cells_are_texels;    /* the image has as many texels, so that the cells hold its colours */
+  vlEnvironmentCell *cells; /* size rows of size cells */
   float *rows;              /* size + 1: cumulative distribution of the rows */
+  float *below;             /* size rows of size + 1: cumulative distribution of each row's cells, from 0 to 1 */
   uint16_t *row_guide;      /* guide table of VL_GUIDES entries for the rows */
   uint16_t *cell_guide;     /* a guide table of VL_GUIDES entries per row, for its cells */
   float light_from_world[9], world_from_light[9]; /* rotations, row-major */
@@ -50,18 +52,18 @@ static inline uint32_t vl_environment_row(const vlEnvironment *env, float u, flo
   return i;
 }
 static inline uint32_t vl_environment_cell(const vlEnvironment *env, uint32_t y, float u, float *within) {
-  const vlEnvironmentCell *row = env->cells + (size_t)y * (env->size + 1);
+  const float *below = env->below + (size_t)y * (env->size + 1);
   uint32_t i = env->cell_guide[(size_t)y * VL_GUIDES + vl_guide_index(u)];
-  while (i + 1 < env->size && row[i + 1].below <= u) i++;
-  *within = vl_within_cell(row[i].below, row[i + 1].below, u);
+  while (i + 1 < env->size && below[i + 1] <= u) i++;
+  *within = vl_within_cell(below[i], below[i + 1], u);
   return i;
 }
 
 /* The cell that contains a point of the unit square, as an index into cells. */
-static inline size_t vl_environment_at(const vlEnvironment *env, float s, float t) {
+static inline uint32_t vl_environment_at(const vlEnvironment *env, float s, float t) {
   uint32_t x = (uint32_t)(int32_t)(s * (float)env->size), y = (uint32_t)(int32_t)(t * (float)env->size);
   x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
-  return (size_t)y * (env->size + 1) + x;
+  return y * env->size + x;
 }
 
 static inline vlVec3 vl_environment_turn(const float m[9], vlVec3 d) {

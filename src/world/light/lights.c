@@ -84,7 +84,8 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
     if (known->image != image) continue;
     if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
     *kept = *known;
-    env->size = from->size, env->cells = from->cells, env->rows = from->rows;
+    env->size = from->size, env->cells_are_texels = from->cells_are_texels, env->cells = from->cells;
+    env->rows = from->rows, env->below = from->below;
     env->row_guide = from->row_guide, env->cell_guide = from->cell_guide;
     *mean = known->mean, *illuminance = known->illuminance;
     return VL_OK;

@@ -62,6 +62,26 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   }
 }
 
+/* Large meshes are not in the cache: what gather_triangle reads of later lanes is prefetched, first the indices, then
+ * the vertices. */
+enum { AHEAD = 8, LARGE_MESH = 4096 };
+static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world, const vlHits *hits,
+                                                                   uint32_t i) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  if (s->kind == VL_SHAPE_TRIANGLES) __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
+}
+static inline __attribute__((always_inline)) void prefetch_vertices(const vlWorld *world, const vlHits *hits,
+                                                                    uint32_t i) {
+  const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
+  if (s->kind != VL_SHAPE_TRIANGLES || s->faces < LARGE_MESH) return;
+  const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
+  for (int k = 0; k < 3; k++) {
+    __builtin_prefetch(s->positions + 3 * (size_t)f[k]);
+    if (s->normals) __builtin_prefetch(s->normals + 3 * (size_t)f[k]);
+    if (s->uvs) __builtin_prefetch(s->uvs + 2 * (size_t)f[k]);
+  }
+}
+
 /* Corners of a moving triangle at a time; normals are zero if it has none. */
 typedef struct MovedTriangle {
   vlVec3 p[3], n[3];
@@ -311,6 +331,8 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
                       vlSurface *out) {
   bool others = false;
   for (uint32_t i = 0; i < n; i++) {
+    if (i + 2 * AHEAD < n) prefetch_indices(world, hits, i + 2 * AHEAD); /* must prefetch */
+    if (i + AHEAD < n) prefetch_vertices(world, hits, i + AHEAD);        /* must prefetch */
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     if (s->kind == VL_SHAPE_TRIANGLES) gather_triangle(world, hits, i, c);
     if (world->moves && s->kind == VL_SHAPE_TRIANGLES && triangle_moves(world, hits->shape[i], hits->instance[i]))

@@ -250,7 +250,21 @@ static void square_to_sphere(double u, double v, double d[3]) {
   d[1] = copysign(sin(phi), v) * r * sqrt(2 - r * r);
 }
 
-enum { SKY = 16 };
+/* REPEAT: how often each texel is repeated along both axes for an image with more texels than its distribution has
+ * cells (1024 x 1024). */
+enum { SKY = 16, REPEAT = 72 };
+
+static vlImage *make_sky(Stage *s, const float *sky, int repeat) {
+  int n = SKY * repeat;
+  float *texels = malloc((size_t)n * (size_t)n * 3 * sizeof *texels);
+  assert_non_null(texels);
+  for (int y = 0; y < n; y++)
+    for (int x = 0; x < n; x++)
+      memcpy(texels + 3 * ((size_t)y * (size_t)n + (size_t)x), sky + 3 * (y / repeat * SKY + x / repeat), 12);
+  vlImage *image = make_image(s, (uint32_t)n, (uint32_t)n, texels);
+  free(texels);
+  return image;
+}
 
 static void sky_orientation(void **state) {
   (void)state;
@@ -264,7 +278,7 @@ static void sky_orientation(void **state) {
   float sky[SKY * SKY * 3];
   for (int i = 0; i < SKY * SKY * 3; i++) sky[i] = 0.1f + (float)((i * 7919) % 101) / 50.0f;
   for (int turned = 0; turned < 2; turned++)
-    for (int k = 0; k < 24; k++) {
+    for (int k = 0; k < 26; k++) {
       int x = (k * 5 + 3) % SKY, y = (k * 11 + 1) % SKY;
       square_to_sphere((x + 0.5) / SKY, (y + 0.5) / SKY, d);
       Stage s = stage_open(4, 4);
@@ -275,7 +289,7 @@ static void sky_orientation(void **state) {
       for (int i = 0; i < 3; i++) s.camera.lookat[i] = w[i];
       s.camera.up[0] = 0.3, s.camera.up[1] = 0.5, s.camera.up[2] = 0.8;
       vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
-      vlImage *image = make_image(&s, SKY, SKY, sky);
+      vlImage *image = make_sky(&s, sky, k < 24 ? 1 : REPEAT);
       def.image = image;
       def.scale = 2;
       if (turned) set_matrix(def.world_from_light, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0);
@@ -310,13 +324,14 @@ static void sky_light_against_the_integral(void **state) {
         double z = m[6] * d[0] + m[7] * d[1] + m[8] * d[2];
         if (z > 0) expected += z * sky[3 * (y / 8 * SKY + x / 8)] * 4 * M_PI / ((double)fine * fine);
       }
-    for (int sampler = 0; sampler < 3; sampler++) {
+    for (int kind = 0; kind < 4; kind++) { /* the light samplers, and a large image */
+      if (kind == 3 && way > 0) continue;
       Stage s = floor_stage(false);
       s.render.spp = 64;
-      s.build.light_sampler =
-          (vlLightSampler[3]){VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM}[sampler];
+      s.build.light_sampler = (vlLightSampler[4]){VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER,
+                                                  VL_LIGHT_SAMPLER_UNIFORM, VL_LIGHT_SAMPLER_BVH}[kind];
       vlLightDef def = vl_default_light_def(VL_LIGHT_INFINITE);
-      vlImage *image = make_image(&s, SKY, SKY, sky);
+      vlImage *image = make_sky(&s, sky, kind < 3 ? 1 : REPEAT);
       def.image = image;
       set_matrix(def.world_from_light, m[0], m[1], m[2], 0, m[3], m[4], m[5], 0, m[6], m[7], m[8], 0);
       vl_scene_add_light(s.scene, &def);

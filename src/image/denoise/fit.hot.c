@@ -13,8 +13,11 @@ enum {
   SIDE = 2 * P + 1,
   U = VL_DENOISE_UNKNOWNS,
   F = VL_DENOISE_FEATURES,
-  TERMS = U * (U + 1) / 2
+  TERMS = U * (U + 1) / 2,
+  N = VL_LANES, /* pixels whose equations are added up at once */
+  W = VL_DENOISE_WINDOW
 };
+_Static_assert((int)VL_DENOISE_TILE_X % (int)N == 0, "tiles are divided into runs of N pixels");
 
 static const float BANDWIDTH2 = 0.36f;  /* square of k in docs/denoising.md */
 static const float PIXEL_SHARE = 0.02f; /* factor on the distance between the two single pixels */
@@ -74,39 +77,57 @@ static void weights(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, u
 
 /* ---- the fit ----------------------------------------------------------------------------------------------------- */
 
-/* Normal equations of a row of pixels. a: the lower triangle of the symmetric matrix, row by row; the unknowns are the
- * slopes of the features, of x and of y, then the constant. b: the right-hand sides for R, G and B. */
+/* Normal equations of N pixels of a row. a: the lower triangle of the symmetric matrix, row by row; the unknowns are
+ * the slopes of the features, of x and of y, then the constant. b: the right-hand sides for R, G and B. */
 typedef struct Equations {
-  float a[TERMS][X], b[3][U][X];
+  float a[TERMS][N], b[3][U][N];
 } Equations;
 
-/* Adds the neighbour at the offset (dx, dy) of each pixel of the row. `at`: index of the row's first pixel. */
-static void add(const vlDenoisePlanes *p, Equations *e, const float *w, ptrdiff_t at, int dx, int dy) {
-  float diff[U][X], weighted[U][X];
+/* The neighbours of N pixels in a row of their windows: the differences from the pixels, and these times the weights.
+ * The equations are read and written once per row. */
+typedef struct Neighbours {
+  float diff[W][U][N], weighted[W][U][N];
+} Neighbours;
+
+/* Sets neighbour g, at the offset (dx, dy), of the N pixels from index `at` on. */
+static void set_neighbour(const vlDenoisePlanes *p, Neighbours *q, int g, const float *w, ptrdiff_t at, int dx,
+                          int dy) {
   ptrdiff_t to = at + dy * p->stride + dx;
   for (int k = 0; k < F; k++) {
-    const float *f = p->feature[k] + at, *g = p->feature[k] + to;
-    VL_SIMD for (int i = 0; i < X; i++) {
-      diff[k][i] = g[i] - f[i];
-      weighted[k][i] = w[i] * diff[k][i];
+    const float *f = p->feature[k] + at, *h = p->feature[k] + to;
+    VL_SIMD for (int i = 0; i < N; i++) {
+      q->diff[g][k][i] = h[i] - f[i];
+      q->weighted[g][k][i] = w[i] * q->diff[g][k][i];
     }
   }
   float ox = (float)dx * (1.0f / R), oy = (float)dy * (1.0f / R);
-  VL_SIMD for (int i = 0; i < X; i++) {
-    diff[F][i] = ox, diff[F + 1][i] = oy, diff[F + 2][i] = 1.0f;
-    weighted[F][i] = w[i] * ox, weighted[F + 1][i] = w[i] * oy, weighted[F + 2][i] = w[i];
+  VL_SIMD for (int i = 0; i < N; i++) {
+    q->diff[g][F][i] = ox, q->diff[g][F + 1][i] = oy, q->diff[g][F + 2][i] = 1.0f;
+    q->weighted[g][F][i] = w[i] * ox, q->weighted[g][F + 1][i] = w[i] * oy, q->weighted[g][F + 2][i] = w[i];
   }
+}
+
+/* Adds a row of neighbours to the equations. `to`: index of the first neighbour of the first pixel. */
+static void add(const vlDenoisePlanes *p, Equations *restrict e, const Neighbours *restrict q, ptrdiff_t to) {
   int term = 0;
   for (int k = 0; k < U; k++)
     for (int l = 0; l <= k; l++, term++) {
       /* must vectorise */
-      VL_SIMD for (int i = 0; i < X; i++) e->a[term][i] += weighted[k][i] * diff[l][i];
+      VL_SIMD for (int i = 0; i < N; i++) {
+        float sum = e->a[term][i];
+        for (int g = 0; g < W; g++) sum += q->weighted[g][k][i] * q->diff[g][l][i];
+        e->a[term][i] = sum;
+      }
     }
   for (int c = 0; c < 3; c++) {
     const float *color = p->color[c] + to;
     for (int k = 0; k < U; k++) {
-      /* must vectorise */
-      VL_SIMD for (int i = 0; i < X; i++) e->b[c][k][i] += weighted[k][i] * color[i];
+      /* must vectorise (gcc) */
+      VL_SIMD for (int i = 0; i < N; i++) {
+        float sum = e->b[c][k][i];
+        for (int g = 0; g < W; g++) sum += q->weighted[g][k][i] * color[i + g];
+        e->b[c][k][i] = sum;
+      }
     }
   }
 }
@@ -115,41 +136,47 @@ static void add(const vlDenoisePlanes *p, Equations *e, const float *w, ptrdiff_
  * pivots above 0. */
 static void solve(const vlDenoisePlanes *p, Equations *e, ptrdiff_t at) {
   const float *total = e->a[TERMS - 1];
-  float sum[X];
-  for (int i = 0; i < X; i++) sum[i] = total[i];
+  float sum[N];
+  for (int i = 0; i < N; i++) sum[i] = total[i];
   for (int k = 0; k < U - 1; k++) {
     float *pivot = e->a[k * (k + 1) / 2 + k], ridge = k < F ? RIDGE_FEATURE : RIDGE_PLACE;
-    VL_SIMD for (int i = 0; i < X; i++) pivot[i] = 1.0f / (pivot[i] + ridge * sum[i] + 1e-20f);
+    VL_SIMD for (int i = 0; i < N; i++) pivot[i] = 1.0f / (pivot[i] + ridge * sum[i] + 1e-20f);
     for (int m = k + 1; m < U; m++) {
       const float *lead = e->a[m * (m + 1) / 2 + k];
-      float factor[X];
-      VL_SIMD for (int i = 0; i < X; i++) factor[i] = lead[i] * pivot[i];
+      float factor[N];
+      VL_SIMD for (int i = 0; i < N; i++) factor[i] = lead[i] * pivot[i];
       for (int l = k + 1; l <= m; l++) {
         float *a = e->a[m * (m + 1) / 2 + l];
         const float *b = e->a[l * (l + 1) / 2 + k];
-        VL_SIMD for (int i = 0; i < X; i++) a[i] -= factor[i] * b[i];
+        VL_SIMD for (int i = 0; i < N; i++) a[i] -= factor[i] * b[i];
       }
       for (int c = 0; c < 3; c++) {
         float *a = e->b[c][m];
         const float *b = e->b[c][k];
-        VL_SIMD for (int i = 0; i < X; i++) a[i] -= factor[i] * b[i];
+        VL_SIMD for (int i = 0; i < N; i++) a[i] -= factor[i] * b[i];
       }
     }
   }
   for (int c = 0; c < 3; c++)
-    for (int i = 0; i < X; i++) p->result[c][at + i] = e->b[c][U - 1][i] / (total[i] + 1e-20f);
+    for (int i = 0; i < N; i++) p->result[c][at + i] = e->b[c][U - 1][i] / (total[i] + 1e-20f);
+}
+
+/* Fits N pixels from index `at` of the planes and index `place` of the tile on. */
+static void fit(const vlDenoisePlanes *p, float (*weight)[VL_DENOISE_TILE], int place, ptrdiff_t at) {
+  Equations e = {0};
+  Neighbours q;
+  for (int dy = -R; dy <= R; dy++) {
+    for (int g = 0; g < W; g++) set_neighbour(p, &q, g, weight[(dy + R) * W + g] + place, at, g - R, dy);
+    add(p, &e, &q, at + dy * p->stride - R);
+  }
+  solve(p, &e, at);
 }
 
 static void tile(const vlDenoisePlanes *p, vlDenoiseScratch *s, uint32_t x, uint32_t y) {
   for (int dy = -R, k = 0; dy <= R; dy++)
     for (int dx = -R; dx <= R; dx++, k++) weights(p, s, x, y, dx, dy, s->weight[k]);
-  for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++) {
-    Equations e = {0};
-    ptrdiff_t at = ((ptrdiff_t)y + j) * p->stride + (ptrdiff_t)x;
-    for (int dy = -R, k = 0; dy <= R; dy++)
-      for (int dx = -R; dx <= R; dx++, k++) add(p, &e, s->weight[k] + j * X, at, dx, dy);
-    solve(p, &e, at);
-  }
+  for (int j = 0; j < Y && y + (uint32_t)j < p->height; j++)
+    for (int i = 0; i < X; i += N) fit(p, s->weight, j * X + i, ((ptrdiff_t)y + j) * p->stride + (ptrdiff_t)x + i);
 }
 
 const vlDenoiseKernels vl_denoise_kernel_table = {tile};

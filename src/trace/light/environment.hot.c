@@ -16,11 +16,13 @@ typedef struct Block {
   VL_ROW float rgb[3][BLOCK], lambda[4][BLOCK], radiance[4][BLOCK];
 } Block;
 
-static inline void request(const void *address) {
+/* Always inlined: see vl_prefetch_texels. */
+static inline __attribute__((always_inline)) void request(const void *address) {
   __builtin_prefetch(address, 0, 3);
 }
 
-static void request_texel(const vlEnvironment *env, const vlMipmap *mip, float s, float t) {
+static inline __attribute__((always_inline)) void request_texel(const vlEnvironment *env, const vlMipmap *mip, float s,
+                                                                float t) {
   if (env->cells_are_texels) return; /* the colour is in the cell */
   const vlMipLevel *l = &mip->levels[0];
   uint32_t x = (uint32_t)(int32_t)(s * (float)l->width), y = (uint32_t)(int32_t)(t * (float)l->height);

@@ -42,16 +42,19 @@ void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32
 
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
-/* The event of a lane in vacuum whose ray meets no interface: the general case below, where nothing changes the path.
- */
-static void cross_vacuum(vlTracing *t, uint32_t i) {
+/* Stores how the ray of lane i ended. given: radiance that media added. */
+static void end_lane(vlTracing *t, uint32_t i, uint32_t event, float odds, const float given[4]) {
   vlHits *h = &t->s->hits_a;
   vlVolumeScratch *v = &t->s->volume;
-  bool hit = h->shape[i] != VL_NONE;
-  v->event[i] = hit ? VL_ON_SURFACE : VL_IN_SKY;
-  v->odds[t->s->a.lane[i]] = 1.0f;
-  for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = 0.0f;
-  if (hit) h->material[i] = vl_hit_material(t->world, &t->s->a, h, i);
+  uint32_t lane = t->s->a.lane[i];
+  v->event[i] = (uint8_t)event;
+  v->odds[lane] = vl_some_odds(odds);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += given[c];
+  for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = given[c];
+  if (event == VL_ON_SURFACE)
+    h->material[i] = vl_hit_material(t->world, &t->s->a, h, i);
+  else
+    h->shape[i] = VL_NONE;
 }
 
 /* Traces one lane of a through media and interfaces to its event. Its origin remains that of its last scattering, which
@@ -62,13 +65,13 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
   vlVolumeScratch *v = &t->s->volume;
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
   uint32_t medium = v->a.medium[i], event = VL_AT_END;
   if (medium == VL_NONE && (h->shape[i] == VL_NONE || !vl_is_interface(world, h->shape[i]))) {
-    cross_vacuum(t, i);
+    end_lane(t, i, h->shape[i] == VL_NONE ? VL_IN_SKY : VL_ON_SURFACE, 1.0f, given); /* nothing changes the path */
     return;
   }
+  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
   vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
   f.first = t->s->shade.u0[i];
   for (int step = 0; step < 1024; step++) { /* a bound; no ray crosses so many interfaces */
@@ -93,14 +96,7 @@ static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission,
   store_flight(p, &v->a, i, &f);
   for (int c = 0; world->by_channel && c < 3; c++) t->s->passed[c][p->lane[i]] = f.passed[c];
   v->a.medium[i] = medium;
-  v->event[i] = (uint8_t)event;
-  v->odds[p->lane[i]] = vl_some_odds(f.odds);
-  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += given[c];
-  for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = given[c];
-  if (event == VL_ON_SURFACE)
-    h->material[i] = vl_hit_material(world, p, h, i);
-  else
-    h->shape[i] = VL_NONE;
+  end_lane(t, i, event, f.odds, given);
 }
 
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {

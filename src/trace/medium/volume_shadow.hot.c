@@ -61,8 +61,8 @@ static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
 
 vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth) {
   bool vacuum = t->s->volume.shadow_medium[k] == VL_NONE && !t->world->has_interfaces;
-  vlFlight f = {.channels = vl_volume_rgb(t) ? 3 : 4, .odds = 1.0f};
-  if (!vacuum) f = vl_volume_flight(t, p, rows, t->s->volume.from[k], depth, VL_KEY_SHADOW);
+  vlFlight f = vacuum ? (vlFlight){.channels = vl_volume_rgb(t) ? 3 : 4, .odds = 1.0f}
+                      : vl_volume_flight(t, p, rows, t->s->volume.from[k], depth, VL_KEY_SHADOW);
   for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
   for (int c = 0; t->world->by_channel && c < 3; c++) f.passed[c] = t->s->volume.shadow_passed[c][k];
   if (!vacuum) pass_media(t, k, &f);

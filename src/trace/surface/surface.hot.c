@@ -65,15 +65,18 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
 /* Large meshes are not in the cache: what gather_triangle reads of later lanes is prefetched, first the indices, then
  * the vertices. */
 enum { AHEAD = 8, LARGE_MESH = 4096 };
+static inline bool in_large_mesh(const vlWorldShape *s) {
+  return s->kind == VL_SHAPE_TRIANGLES && s->faces >= LARGE_MESH;
+}
 static inline __attribute__((always_inline)) void prefetch_indices(const vlWorld *world, const vlHits *hits,
                                                                    uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-  if (s->kind == VL_SHAPE_TRIANGLES) __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
+  if (in_large_mesh(s)) __builtin_prefetch(s->indices + 3 * (size_t)hits->prim[i]);
 }
 static inline __attribute__((always_inline)) void prefetch_vertices(const vlWorld *world, const vlHits *hits,
                                                                     uint32_t i) {
   const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
-  if (s->kind != VL_SHAPE_TRIANGLES || s->faces < LARGE_MESH) return;
+  if (!in_large_mesh(s)) return;
   const uint32_t *f = s->indices + 3 * (size_t)hits->prim[i];
   for (int k = 0; k < 3; k++) {
     __builtin_prefetch(s->positions + 3 * (size_t)f[k]);

@@ -67,7 +67,7 @@ void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t
   vlShade *sh = &t->s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT, sh->u0);
   /* The direct light at the first hit is a function of film point and light point: the four numbers are drawn together
-   * (docs/filters.md). Deeper vertices gain nothing from it. */
+   * (docs/tracers.md). Deeper vertices gain nothing from it. */
   if (dimension == VL_DIM_BOUNCE)
     t->sampler->get_2d_with(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_FIRST_LIGHT, VL_DIM_FILM, sh->u1,
                             sh->u2);

@@ -8,24 +8,27 @@
 
 _Static_assert(VL_ENVIRONMENT_CELLS <= VL_GUIDES && VL_GUIDES <= 65536, "cells are found from a guide of 16 bits");
 
-/* Sets the pdf of each cell to its weight, the mean luminance. *sum_all receives the sum of all weights, *upper the
- * sum over the upper half of directions of weight times cosine. */
+/* Sets the pdf of each cell to its weight, the mean luminance, and its colour to that of its (last) texel. *sum_all
+ * receives the sum of all weights, *upper the sum over the upper half of directions of weight times cosine. */
 static vlResult cell_luminances(const vlMipmap *mip, vlEnvironment *env, uint32_t step, double *sum_all, double *upper,
                                 vlError *error) {
   uint32_t n = mip->levels[0].width, channels = mip->channels, size = env->size;
   for (uint32_t y = 0; y < size; y++)
     for (uint32_t x = 0; x < size; x++) {
+      vlEnvironmentCell *cell = &env->cells[(size_t)y * size + x];
       double sum = 0;
       uint32_t count = 0;
       for (uint32_t j = y * step; j < (y + 1) * step && j < n; j++)
         for (uint32_t i = x * step; i < (x + 1) * step && i < n; i++) {
-          float l = vl_light_texel_luminance(vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP), channels);
+          vlTexel texel = vl_texel(mip, 0, (int32_t)i, (int32_t)j, VL_WRAP_CLAMP);
+          for (int c = 0; c < 3; c++) cell->color[c] = texel.c[channels < 3 ? 0 : c];
+          float l = vl_light_texel_luminance(texel, channels);
           if (!isfinite(l))
             return vl_fail(error, VL_ERROR_SCENE, "pixel (%u, %u) of the image of the sky is not finite", i, j);
           if (l > 0) sum += l;
           count++;
         }
-      env->cells[(size_t)y * size + x].pdf = (float)(sum / count);
+      cell->pdf = (float)(sum / count);
       *sum_all += sum / count;
       vlVec3 d = vl_octahedral_decode(((float)x + 0.5f) / (float)size, ((float)y + 0.5f) / (float)size);
       *upper += d.z > 0 ? sum / count * d.z : 0;
@@ -86,15 +89,6 @@ static void make_distribution(vlEnvironment *env, double sum_all) {
   make_guide(env->rows, size, env->row_guide);
 }
 
-static void copy_colors(const vlMipmap *mip, vlEnvironment *env) {
-  for (uint32_t y = 0; y < env->size; y++)
-    for (uint32_t x = 0; x < env->size; x++) {
-      vlTexel texel = vl_texel(mip, 0, (int32_t)x, (int32_t)y, VL_WRAP_CLAMP);
-      float *color = env->cells[(size_t)y * env->size + x].color;
-      for (int c = 0; c < 3; c++) color[c] = texel.c[mip->channels < 3 ? 0 : c];
-    }
-}
-
 /* The weight of a cell is the mean luminance of its texels minus the mean of all texels (MIS compensation, Karlik et
  * al. 2019), so that the uniform part is left to BSDF sampling. */
 vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *mean_luminance, double *illuminance,
@@ -118,6 +112,5 @@ vlResult vl_world_build_environment(vlWorld *world, vlEnvironment *env, double *
   /* pbrt-v4 takes the upper half for a hemisphere that fills the square: half of the true illuminance. */
   *illuminance = upper * (world->def.imitate_pbrt ? 2 : 4) * M_PI / ((double)size * size);
   make_distribution(env, compensate(env, mean));
-  if (env->cells_are_texels) copy_colors(mip, env);
   return VL_OK;
 }

@@ -208,11 +208,12 @@ typedef struct vlRenderDef {
    * limit while the render runs. */
   double time_limit;
   /** Adaptive sampling: above 0, the threshold of noise in display values (1: white). The film needs
-   * vlFilmDef.errors. It is divided into blocks of 32 x 32 pixels. When a block has 16, 24, 32, 48, 64, 96, ...
-   * samples per pixel, its noise is estimated: the root mean square, over its pixels and channels, of the standard
-   * errors of the display values. A block whose noise is below the threshold with 95 % confidence gets no more
-   * samples; the other blocks get up to spp. first_sample must be 0. A crop has the pixels of the whole image if it
-   * ends at multiples of 32. Default 0: none. */
+   * vlFilmDef.errors. It is divided into blocks of 32 x 32 pixels. When a block has 8, 12, 16, 24, 32, 48, 64, ...
+   * samples per pixel, its noise is estimated: an upper bound of the root mean square, over its pixels and channels, of
+   * the standard errors of the display values. If the noise will be below the threshold before the next of these
+   * numbers, the block gets the samples that this needs and no more; the other blocks get up to spp
+   * (docs/adaptive.md). first_sample must be 0. A crop has the pixels of the whole image if it ends at multiples of 32.
+   * Default 0: none. */
   double noise;
   vlView noise_view;      /**< the view that makes the display values; default standard */
   float noise_exposure;   /**< as vl_image_view's: a factor of 2^noise_exposure before the view; default 0 */

@@ -64,7 +64,7 @@ const vlReceipt *vl_film_file_receipt(const vlFilmFile *file) {
 
 static vlResult check_data(vlFilmFile *file, vlError *error) {
   vlFilmReader *r = &file->reader;
-  size_t most = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&r->shape.def);
+  size_t most = vl_film_most_data(&r->shape.def);
   if (!file->data && !(file->data = vl_alloc(r->context, most))) return vl_fail_memory(error);
   return vl_film_reader_data(r, file->data, error);
 }

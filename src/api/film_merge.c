@@ -27,7 +27,7 @@ typedef struct Merge {
   vlSampleSpan *ranges, *joined; /* samples of the result's block; working memory of join */
   uint32_t range_count;
   vlComparedNoise compared; /* of the result's block: that of its only part, 0 if it has several */
-  char *sum, *data;         /* sums of the result's block; of one part's block */
+  char *sum, *data;         /* the result's block, with the means of its only part; one part's block */
   vlFileWriter file;
   vlError *error;
 } Merge;
@@ -216,8 +216,7 @@ static vlResult merge_block(Merge *m) {
   }
   const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
   vlFilmBlockHead head;
-  vl_film_block_head(def, place, m->range_count, &head);
-  if (m->range_count) head.compared = m->compared;
+  vl_film_block_head(def, place, m->range_count, &m->compared, &head);
   uint32_t crc = vl_film_crc(0, &head, sizeof head);
   crc = vl_film_crc(crc, m->ranges, m->range_count * sizeof *m->ranges);
   crc = vl_film_crc(crc, m->sum, head.data_size);
@@ -232,7 +231,7 @@ static vlResult merge_block(Merge *m) {
 
 static vlResult merge_opened(Merge *m, const char *output) {
   const vlFilmShape *shape = &m->parts[0].reader.shape;
-  size_t size = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&shape->def);
+  size_t size = vl_film_most_data(&shape->def);
   m->sum = vl_alloc(m->context, size);
   m->data = vl_alloc(m->context, size);
   m->ranges = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->ranges);

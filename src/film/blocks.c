@@ -41,12 +41,14 @@ vlResult vl_film_set_block_spp(vlFilm *film, uint32_t block, uint32_t spp) {
 vlComparedNoise *vl_film_compared(vlFilm *film) {
   if (!film->compared)
     film->compared = vl_alloc_zero(film->context, vl_film_block_count(film->def.crop), sizeof *film->compared);
-  return film->compared;
+  if (!film->earlier) film->earlier = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof *film->earlier);
+  return film->earlier ? film->compared : NULL;
 }
 
 void vl_film_forget_compared(vlFilm *film) {
   vl_free(film->context, film->compared);
-  film->compared = NULL;
+  vl_free(film->context, film->earlier);
+  film->compared = NULL, film->earlier = NULL;
 }
 
 bool vl_film_is_adaptive(const vlFilm *film) {

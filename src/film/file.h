@@ -10,7 +10,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "film files are little-endian, and sums are stored as they are");
 
 enum {
-  VL_FILM_FORMAT = 1,
+  VL_FILM_FORMAT = 2, /* 1 is read, too: it has no vlEarlierMean */
   VL_FILM_MOST_RANGES = 1 << 16,
   VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
 };
@@ -28,7 +28,7 @@ extern const char vl_film_magic[8];
 
 typedef struct vlFilmBlockHead {
   uint32_t magic, range_count, x0, y0, x1, y1;
-  uint64_t data_size;       /* bytes: range_count ? pixels * vl_film_pixel_size : 0 */
+  uint64_t data_size;       /* bytes of sums, and of a vlEarlierMean per pixel where there is a comparison */
   vlComparedNoise compared; /* 0 where samples were not chosen by their noise */
 } vlFilmBlockHead;
 _Static_assert(sizeof(vlFilmBlockHead) == 48, "no padding");
@@ -40,9 +40,14 @@ typedef struct vlFilmShape {
   uint32_t sequence;
 } vlFilmShape;
 
+/* Bytes of a pixel's sums in a file. */
 static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
   return sizeof(vlFilmPixel) + (def->errors ? sizeof(vlFilmMoments) : 0) +
          def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
+}
+/* The most bytes of a block's data. */
+static inline size_t vl_film_most_data(const vlFilmDef *def) {
+  return (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * (vl_film_pixel_size(def) + sizeof(vlEarlierMean));
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
@@ -60,6 +65,7 @@ typedef struct vlFilmReader {
   vlContext *context;
   int descriptor; /* -1: closed */
   uint64_t size, at;
+  uint32_t format;
   char *path;
   vlFilmShape shape;
   char *receipt; /* text; null: none */
@@ -79,7 +85,8 @@ vlResult vl_film_reader_open(vlFilmReader *reader, vlContext *context, const cha
 void vl_film_reader_close(vlFilmReader *reader);
 /* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
-/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra. */
+/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra, then vlEarlierMean if
+ * head.compared.spp. */
 vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
@@ -95,7 +102,8 @@ void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, const void
 uint64_t vl_film_samples(const vlSampleSpan *ranges, uint32_t count);
 /* Writes preamble and header. */
 vlResult vl_film_put_header(vlFileWriter *writer, const char *header);
-/* Fills a block's head. Returns the size of the block in the file, bytes. */
-size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count, vlFilmBlockHead *head);
+/* Fills a block's head. compared: null: none. Returns the size of the block in the file, bytes. */
+size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count,
+                          const vlComparedNoise *compared, vlFilmBlockHead *head);
 
 #endif

@@ -54,19 +54,22 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
                  r->path);
 }
 
-/* Copies a block's sums into the film. data: the sums as stored in the file. */
+/* Copies a block's data, as stored in the file, into the film. */
 static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data) {
   uint32_t width = h->x1 - h->x0, height = h->y1 - h->y0, n = film->def.buckets;
   size_t pixels = (size_t)width * height;
   const char *moments = data + pixels * sizeof(vlFilmPixel);
   const char *sums = moments + (film->def.errors ? pixels * sizeof(vlFilmMoments) : 0);
   const char *weights = sums + pixels * n * sizeof(vlInt128);
+  const char *earlier = weights + pixels * n * sizeof(int64_t);
   for (uint32_t y = 0; y < height; y++) {
     size_t from = (size_t)y * width;
     size_t to = (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
     memcpy(film->front + to, data + from * sizeof(vlFilmPixel), width * sizeof(vlFilmPixel));
     if (film->def.errors)
       memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments), width * sizeof(vlFilmMoments));
+    if (h->compared.spp)
+      memcpy(film->earlier + to, earlier + from * sizeof(vlEarlierMean), width * sizeof(vlEarlierMean));
     if (!n) continue;
     memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128), width * n * sizeof(vlInt128));
     memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t), width * n * sizeof(int64_t));
@@ -75,7 +78,6 @@ static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data
 
 static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError *error) {
   size_t count = vl_film_pixels(film), n = film->def.buckets;
-  size_t most = (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&film->def);
   film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
   bool good = film->front != NULL;
   if (good && film->def.errors) {
@@ -87,23 +89,23 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
     film->spectrum.weights[0] = vl_alloc_zero(film->context, count * n, sizeof *film->spectrum.weights[0]);
     good = film->spectrum.sums[0] && film->spectrum.weights[0];
   }
-  char *data = good ? vl_alloc(film->context, most) : NULL;
+  char *data = good ? vl_alloc(film->context, vl_film_most_data(&film->def)) : NULL;
   vlResult result = data ? VL_OK : vl_fail_memory(error);
   while (result == VL_OK && r->next < r->blocks) {
     result = vl_film_reader_next(r, error);
     if (result == VL_OK) result = vl_film_reader_data(r, data, error);
     if (result != VL_OK || !r->head.range_count) continue;
-    place_block(film, &r->head, data);
     uint32_t block = vl_film_block_at(film->def.crop, r->head.x0, r->head.y0);
+    if (r->head.compared.spp) {
+      if (!vl_film_compared(film)) {
+        result = vl_fail_memory(error);
+        break;
+      }
+      film->compared[block] = r->head.compared;
+    }
+    place_block(film, &r->head, data);
     if (blocks_differ && vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
       result = vl_fail_memory(error);
-    if (result == VL_OK && r->head.compared.spp) {
-      vlComparedNoise *compared = vl_film_compared(film);
-      if (compared)
-        compared[block] = r->head.compared;
-      else
-        result = vl_fail_memory(error);
-    }
   }
   vl_free(film->context, data);
   return result;

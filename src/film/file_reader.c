@@ -2,6 +2,7 @@
  * and their sizes must match the size of the file. */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -50,7 +51,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
   if (memcmp(p.magic, vl_film_magic, sizeof p.magic) != 0)
     return vl_fail(error, VL_ERROR_SCENE, "%s: not a film file", r->path);
   if (vl_film_crc(0, &p, offsetof(vlFilmPreamble, crc)) != p.crc) return damaged(r, "its first bytes", error);
-  if (p.format != VL_FILM_FORMAT)
+  if (p.format < 1 || p.format > VL_FILM_FORMAT)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "%s: film file of format %u; this version of velo reads format %d",
                    r->path, p.format, VL_FILM_FORMAT);
   if (p.header_size > r->size - sizeof p || p.header_size > VL_FILM_MOST_HEADER)
@@ -62,6 +63,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
   if (result == VL_OK)
     result = vl_film_header_read(r->context, r->path, text, p.header_size, &r->shape, &r->receipt, error);
   vl_free(r->context, text);
+  r->format = p.format;
   r->at = sizeof p + p.header_size;
   r->blocks = vl_film_block_count(r->shape.def.crop);
   return result;
@@ -116,7 +118,8 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (result != VL_OK) return result;
   vl_film_block_place(r->shape.def.crop, r->next, place);
   bool good = h->magic == VL_FILM_BLOCK_MAGIC && h->range_count <= VL_FILM_MOST_RANGES;
-  size_t whole = vl_film_block_head(&r->shape.def, place, good ? h->range_count : 0, &expected);
+  size_t whole = vl_film_block_head(&r->shape.def, place, good ? h->range_count : 0,
+                                    r->format > 1 ? &h->compared : NULL, &expected);
   if (!good || h->x0 != place[0] || h->y0 != place[1] || h->x1 != place[2] || h->y1 != place[3] ||
       h->data_size != expected.data_size)
     return damaged(r, "a block's head", error);
@@ -130,6 +133,7 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (size && (result = get(r, r->ranges, size, r->at + sizeof *h, error)) != VL_OK) return result;
   if (!good_ranges(r->ranges, h->range_count)) return damaged(r, "a block's samples", error);
   r->crc = vl_film_crc(vl_film_crc(0, h, sizeof *h), r->ranges, size);
+  if (r->format == 1) h->compared = (vlComparedNoise){.spp = 0}; /* its means are missing */
   r->data_at = r->at + sizeof *h + size;
   r->at += whole;
   r->next++;
@@ -170,6 +174,16 @@ static bool good_values(const vlFilmDef *def, size_t pixels, uint64_t samples, c
   return good;
 }
 
+static bool good_means(const vlFilmDef *def, size_t pixels, uint64_t samples, const char *data) {
+  const vlEarlierMean *mean = (const void *)(data + pixels * vl_film_pixel_size(def));
+  bool good = true;
+  for (size_t i = 0; i < pixels; i++) {
+    for (int c = 0; c < 3; c++) good &= isfinite(mean[i].color[c]);
+    good &= mean[i].samples <= samples && mean[i].samples == mean[0].samples;
+  }
+  return good;
+}
+
 vlResult vl_film_reader_data(vlFilmReader *r, void *data, vlError *error) {
   const vlFilmBlockHead *h = &r->head;
   if (!h->data_size) return VL_OK;
@@ -179,7 +193,9 @@ vlResult vl_film_reader_data(vlFilmReader *r, void *data, vlError *error) {
   if (result != VL_OK) return result;
   if (vl_film_crc(r->crc, data, h->data_size) != crc) return damaged(r, "the CRC of a block", error);
   size_t pixels = (size_t)(h->x1 - h->x0) * (h->y1 - h->y0);
-  if (!good_values(&r->shape.def, pixels, vl_film_samples(r->ranges, h->range_count), data))
+  uint64_t samples = vl_film_samples(r->ranges, h->range_count);
+  if (!good_values(&r->shape.def, pixels, samples, data) ||
+      (h->compared.spp && !good_means(&r->shape.def, pixels, samples, data)))
     return damaged(r, "sums that its samples cannot have", error);
   return VL_OK;
 }

@@ -36,8 +36,12 @@ static vlSampleSpan samples_of(const vlFilm *film, const uint32_t place[4]) {
   return (vlSampleSpan){first, first + vl_film_block_spp(film, vl_film_block_at(c, place[0], place[1]))};
 }
 
-static bool is_empty(vlSampleSpan span) {
-  return span.first == span.end;
+/* The head of a block of the window. Returns the size of the block in the file, bytes. */
+static size_t head_of(const vlFilm *film, const uint32_t place[4], vlSampleSpan samples, vlFilmBlockHead *head) {
+  bool filled = samples.first < samples.end;
+  const vlComparedNoise *compared =
+      filled && film->compared ? film->compared + vl_film_block_at(film->def.crop, place[0], place[1]) : NULL;
+  return vl_film_block_head(&film->def, place, filled, compared, head);
 }
 
 /* Whether the crop lies in the window and no block of the window is partly inside the crop. */
@@ -47,8 +51,8 @@ static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
   return crop[0] >= window[0] && crop[1] >= window[1] && crop[2] <= window[2] && crop[3] <= window[3];
 }
 
-/* Copies a block's sums to `to`, in the order of the file. Returns the end of the copied data. */
-static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
+/* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data. */
+static char *gather(const vlFilm *film, const uint32_t place[4], bool compared, char *to) {
   uint32_t width = place[2] - place[0], n = film->def.buckets;
   size_t first = (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
   size_t rows = place[3] - place[1], line = film->width;
@@ -60,6 +64,8 @@ static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
     memcpy(to, film->spectrum.sums[0] + (first + y * line) * n, width * n * sizeof(vlInt128));
   for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(int64_t))
     memcpy(to, film->spectrum.weights[0] + (first + y * line) * n, width * n * sizeof(int64_t));
+  for (size_t y = 0; y < rows && compared; y++, to += width * sizeof(vlEarlierMean))
+    memcpy(to, film->earlier + first + y * line, width * sizeof(vlEarlierMean));
   return to;
 }
 
@@ -70,16 +76,13 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   uint32_t place[4];
   vl_film_block_place(run->window, block, place);
   vlSampleSpan range = samples_of(run->film, place);
-  bool filled = !is_empty(range);
   vlFilmBlockHead head;
-  vl_film_block_head(&run->film->def, place, filled, &head);
-  if (filled && run->film->compared)
-    head.compared = run->film->compared[vl_film_block_at(run->film->def.crop, place[0], place[1])];
+  head_of(run->film, place, range, &head);
   memcpy(to, &head, sizeof head);
   to += sizeof head;
-  if (filled) {
+  if (head.range_count) {
     memcpy(to, &range, sizeof range);
-    to = gather(run->film, place, to + sizeof range);
+    to = gather(run->film, place, head.compared.spp > 0, to + sizeof range);
   }
   uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
   memcpy(to, &crc, sizeof crc);
@@ -98,8 +101,8 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
 
 static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlError *error) {
   uint32_t count = vl_film_block_count(run->window), threads = vl_context_threads(writer->context);
-  run->buffer_size = sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) +
-                     (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * vl_film_pixel_size(&run->film->def);
+  run->buffer_size =
+      sizeof(vlFilmBlockHead) + sizeof(vlSampleSpan) + sizeof(uint32_t) + vl_film_most_data(&run->film->def);
   run->buffer_size = (run->buffer_size + 63) & ~(size_t)63;
   run->offsets = vl_alloc_array(writer->context, count, sizeof *run->offsets);
   run->buffers = vl_alloc_array(writer->context, threads, run->buffer_size);
@@ -109,7 +112,7 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
     vlFilmBlockHead head;
     vl_film_block_place(run->window, i, place);
     run->offsets[i] = at;
-    at += vl_film_block_head(&run->film->def, place, !is_empty(samples_of(run->film, place)), &head);
+    at += head_of(run->film, place, samples_of(run->film, place), &head);
   }
   if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
   vl_free(writer->context, run->offsets);

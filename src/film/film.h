@@ -63,7 +63,7 @@ bool vl_film_is_adaptive(const vlFilm *film);
 
 /* The noise of a block when adaptive sampling last compared it with the threshold (render/adaptive.h), with the number
  * of samples that it had then and the view that made the display values: the view's kind, and the factor on the linear
- * values. spp 0: it was never compared. Film files hold it as it is in memory. */
+ * values. spp 0: it was never compared. Film files hold it as it is in memory, with the means below. */
 typedef struct vlComparedNoise {
   uint32_t spp;
   float noise, factor;
@@ -71,18 +71,27 @@ typedef struct vlComparedNoise {
 } vlComparedNoise;
 /* One per block. Kept with the film; null: out of memory. */
 vlComparedNoise *vl_film_compared(vlFilm *film);
-/* Sets them back to 0, for samples that adaptive sampling did not choose. */
+/* The mean of a pixel's first samples, kept when its block was last compared at a power of two samples; samples 0: none
+ * was kept. The difference from the mean of more samples shows how much the error really falls. */
+typedef struct vlEarlierMean {
+  float color[3];
+  uint32_t samples;
+} vlEarlierMean;
+/* Sets both back to 0, for samples that adaptive sampling did not choose. */
 void vl_film_forget_compared(vlFilm *film);
 
 /* The factor on the linear values that an exposure (as vl_image_view's) and a further factor make together. */
 double vl_film_view_factor(float exposure, float scale);
 
-/* The noise of a block: an upper bound, at 95 % confidence, of the root mean square of the standard errors of its
- * display values (0 black, 1 white; all pixels, three channels). view: as vl_image_view's; exposure, scale: as above;
- * correlation: the sum of the squared correlations of a pixel's error with those of all pixels, itself included, so 1
- * where they are independent. For films with errors; infinite below 2 samples. */
+/* The noise of a block: an upper bound of the root mean square of the standard errors of its display values (0 black,
+ * 1 white; all pixels, three channels). view: as vl_image_view's; exposure, scale: as above; correlation: the sum of
+ * the squared correlations of a pixel's error with those of all pixels, itself included, so 1 where they are
+ * independent. For films with errors; infinite below 2 samples. */
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation);
+/* Sets the block's vlComparedNoise to the above, and keeps its means if it has a power of two samples. After
+ * vl_film_compared, which allocates both. Different blocks at the same time. */
+void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation);
 
 /* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
  * first sample; a film without samples has length 0. */

@@ -3,14 +3,21 @@
  * The error e of a display value is half the distance between the display values one standard error above and below
  * the linear value. Where the view clips, this is smaller than the derivative of the view would give. The noise of a
  * block is the root of the mean of e^2. That mean is itself estimated from the same samples, and a block that happens
- * to look too clean would stop too early: the upper limit of its one-sided 95 % confidence interval replaces it, from
- * the spread of e^2 over the block's pixels. Where pixels share samples their e^2 are correlated, and the mean of
- * them is less certain.
+ * to look too clean would stop too early: the mean plus three of its standard errors replaces it, from the spread of
+ * e^2 over the block's pixels. Where pixels share samples their e^2 are correlated, and the mean of them is less
+ * certain.
  *
  * Where light is rare and bright, a few pixels have found it and the others have not. The view is steep in the dark and
  * flat in the bright, so the first look too clean, and the second have no error at all. There the means over 3 x 3
  * pixels are closer to the truth, of the linear values (between black and white) and of the squares of their errors.
- * The noise is computed both ways, and the larger one counts. */
+ * The noise is computed both ways, and the larger one counts.
+ *
+ * These errors treat a pixel's samples as independent, but they are better distributed than that. The difference D
+ * between the display values of the first m and of all n samples shows it. Where D has no correlation with the error
+ * after n, the variance after m is that after n plus the mean of D^2. So if the variance falls at least as fast as
+ * 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and equal to it for independent samples. The
+ * ratio of its mean to that of e^2, plus two standard errors, reduces the noise if it is below 1. Rare bright samples
+ * that were not found are missing in both, so the ratio says nothing about them. */
 #include <math.h>
 
 #include "film/sums.h"
@@ -22,6 +29,9 @@ typedef struct Block {
   uint32_t width, height;
   double mean[VL_FILM_BLOCK][VL_FILM_BLOCK][3], square[VL_FILM_BLOCK][VL_FILM_BLOCK][3];
 } Block;
+
+/* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to e^2. */
+static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
 
 typedef struct Display {
   vlView view;
@@ -74,8 +84,8 @@ static void pool(const Block *from, double white, Block *to) {
     }
 }
 
-static double block_noise(const Block *b, const Display *d, double correlation) {
-  const double one_sided_95 = 1.645; /* quantile of the normal distribution */
+/* The upper limit of the mean of e^2 over a block. */
+static double block_square(const Block *b, const Display *d, double correlation) {
   double sum = 0, squares = 0, n = (double)(b->width * b->height);
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
@@ -83,7 +93,45 @@ static double block_noise(const Block *b, const Display *d, double correlation) 
       sum += e, squares += e * e;
     }
   double mean = sum / n, spread = squares / n - mean * mean;
-  return sqrt(mean + one_sided_95 * sqrt(correlation * (spread > 0 ? spread : 0) / n));
+  return mean + ERRORS_OF_MEAN * sqrt(correlation * (spread > 0 ? spread : 0) / n);
+}
+
+/* The square of the difference between the display values of two linear values, the mean over R, G, B. */
+static double difference_square(const Display *d, const double mean[3], const float earlier[3]) {
+  float now[3], then[3];
+  double sum = 0;
+  for (int c = 0; c < 3; c++) now[c] = (float)(mean[c] * d->factor), then[c] = (float)((double)earlier[c] * d->factor);
+  vl_view_display(d->view, now, now);
+  vl_view_display(d->view, then, then);
+  for (int c = 0; c < 3; c++) sum += ((double)now[c] - (double)then[c]) * ((double)now[c] - (double)then[c]) / 3.0;
+  return sum;
+}
+
+/* The upper limit of the ratio of D^2 m / (n - m) to e^2, at most 1. earlier: of the block's first pixel, with rows of
+ * `line` elements; spp: n. */
+static double square_ratio(const Block *b, const Display *d, double correlation, const vlEarlierMean *earlier,
+                           size_t line, uint32_t spp) {
+  if (!earlier->samples || earlier->samples >= spp) return 1;
+  double scale = (double)earlier->samples / (spp - earlier->samples);
+  double sums[2] = {0}, products[3] = {0};
+  for (uint32_t y = 0; y < b->height; y++)
+    for (uint32_t x = 0; x < b->width; x++) {
+      double p = scale * difference_square(d, b->mean[y][x], earlier[y * line + x].color);
+      double q = display_square(d, b->mean[y][x], b->square[y][x]);
+      sums[0] += p, sums[1] += q;
+      products[0] += p * p, products[1] += p * q, products[2] += q * q;
+    }
+  if (sums[0] >= sums[1]) return 1; /* also where both are 0 */
+  double ratio = sums[0] / sums[1];
+  double rest = products[0] - 2 * ratio * products[1] + ratio * ratio * products[2]; /* sum of (p - ratio q)^2 */
+  double limit = ratio + ERRORS_OF_RATIO * sqrt(correlation * (rest > 0 ? rest : 0)) / sums[1];
+  return limit < 1 ? limit : 1;
+}
+
+/* A pixel's value; 0 if the sum of its weights is not positive. */
+static double linear_mean(const vlFilmPixel *p, int c) {
+  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
+  return p->weight > 0 ? (double)p->color[c] / (double)p->weight * unit : 0;
 }
 
 double vl_film_view_factor(float exposure, float scale) {
@@ -92,7 +140,6 @@ double vl_film_view_factor(float exposure, float scale) {
 
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation) {
-  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
   if (!film->front || !film->moments[0] || vl_film_block_spp(film, block) < 2) return INFINITY;
   Display d = {view, vl_film_view_factor(exposure, scale)};
   uint32_t place[4];
@@ -106,11 +153,34 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
       if (p->weight <= 0) return INFINITY;
       for (int c = 0; c < 3; c++) {
         double error = vl_film_standard_error(film, at, c);
-        b.mean[y][x][c] = (double)p->color[c] / (double)p->weight * unit, b.square[y][x][c] = error * error;
+        b.mean[y][x][c] = linear_mean(p, c), b.square[y][x][c] = error * error;
       }
     }
   Block pooled;
   pool(&b, 1.0 / d.factor, &pooled);
-  double each = block_noise(&b, &d, correlation), together = block_noise(&pooled, &d, correlation);
-  return each > together ? each : together;
+  double each = block_square(&b, &d, correlation), together = block_square(&pooled, &d, correlation), ratio = 1;
+  if (film->earlier) {
+    const vlEarlierMean *earlier = film->earlier + (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
+    ratio = square_ratio(&b, &d, correlation, earlier, film->width, vl_film_block_spp(film, block));
+  }
+  return sqrt(ratio * (each > together ? each : together));
+}
+
+void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation) {
+  uint32_t spp = vl_film_block_spp(film, block), place[4];
+  film->compared[block] =
+      (vlComparedNoise){.spp = spp,
+                        .noise = (float)vl_film_block_noise(film, block, view, exposure, scale, correlation),
+                        .factor = (float)vl_film_view_factor(exposure, scale),
+                        .view = (uint32_t)view};
+  if (spp & (spp - 1)) return;
+  const uint32_t *crop = film->def.crop;
+  vl_film_block_place(crop, block, place);
+  for (uint32_t y = place[1]; y < place[3]; y++)
+    for (uint32_t x = place[0]; x < place[2]; x++) {
+      size_t at = (size_t)(y - crop[1]) * film->width + (x - crop[0]);
+      vlEarlierMean *to = film->earlier + at;
+      for (int c = 0; c < 3; c++) to->color[c] = (float)linear_mean(film->front + at, c);
+      to->samples = spp;
+    }
 }

@@ -91,7 +91,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
 uint64_t vl_film_memory(const vlFilmDef *def) {
   uint64_t pixels = (uint64_t)(def->crop[2] - def->crop[0]) * (def->crop[3] - def->crop[1]);
   uint64_t each = 2 * sizeof(vlFilmPixel) + sizeof(uint32_t);
-  if (def->errors) each += 2 * sizeof(vlFilmMoments);
+  if (def->errors) each += 2 * sizeof(vlFilmMoments) + sizeof(vlEarlierMean);
   if (def->buckets) each += 2 * (uint64_t)def->buckets * (sizeof(vlInt128) + sizeof(int64_t)) + sizeof(uint32_t);
   return pixels * each;
 }
@@ -104,6 +104,7 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->stamp);
   vl_free(context, film->block_spp);
   vl_free(context, film->compared);
+  vl_free(context, film->earlier);
   vl_free(context, film->scratch);
   vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);

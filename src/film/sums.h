@@ -45,6 +45,7 @@ struct vlFilm {
   uint32_t spp;
   uint32_t *block_spp;       /* samples of each block; null: all have spp */
   vlComparedNoise *compared; /* of each block; null: all 0 */
+  vlEarlierMean *earlier;    /* of each pixel, where compared is */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
   vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */

@@ -6,22 +6,23 @@
 
 #include "base/context.h"
 
-enum { FIRST_COMPARISON = 12 };
+enum { FIRST_COMPARISON = 8 };
 
-/* The least 2^k or 3 * 2^k above spp, from 12 on. */
+/* The least number above spp (> 0) of the form n * 2^k, with n from `parts` to 2 * parts - 1; parts: a power of two.
+ * spp >= parts. */
+static uint32_t next_number(uint32_t spp, uint32_t parts) {
+  uint32_t step = (1u << (31 - __builtin_clz(spp))) / parts;
+  return spp < UINT32_MAX - step ? (spp / step + 1) * step : UINT32_MAX;
+}
+
+/* The least 2^k or 3 * 2^k above spp, from 8 on. */
 static uint32_t next_comparison(uint32_t spp) {
-  if (spp < FIRST_COMPARISON) return FIRST_COMPARISON;
-  uint32_t power = 1u << (31 - __builtin_clz(spp));
-  return spp < power + power / 2 ? power + power / 2 : power <= 1u << 30 ? 2 * power : UINT32_MAX;
+  return spp < FIRST_COMPARISON ? FIRST_COMPARISON : next_number(spp, 2);
 }
 
 static bool is_compared(uint32_t spp) {
   return spp >= FIRST_COMPARISON && next_comparison(spp - 1) == spp;
 }
-
-/* The part of the threshold that the noise must be expected to reach at the end, since the expectation is itself
- * uncertain. */
-static const double MARGIN = 0.95;
 
 static float view_factor(const vlAdaptive *a) {
   return (float)vl_film_view_factor(a->exposure, a->scale);
@@ -34,8 +35,10 @@ static uint32_t end_of(const vlAdaptive *a, uint32_t block) {
   if (!is_compared(last->spp) || last->spp > vl_film_block_spp(a->film, block) || last->view != (uint32_t)a->view ||
       last->factor != view_factor(a))
     return UINT32_MAX;
-  uint32_t end = next_comparison(last->spp);
-  return (double)last->noise * sqrt((double)last->spp / end) < MARGIN * a->noise ? end : UINT32_MAX;
+  double ratio = (double)last->noise / a->noise, needed = (double)last->spp * ratio * ratio;
+  uint32_t end = next_number(last->spp, 4), next = next_comparison(last->spp);
+  while (end < needed && end < next) end = next_number(end, 4);
+  return end >= needed ? end : UINT32_MAX;
 }
 
 typedef struct Comparison {
@@ -49,13 +52,15 @@ static void compare_block(void *user, uint32_t block, uint32_t worker) {
   vlAdaptive *a = c->a;
   if (c->wanted && !c->wanted[block]) return;
   uint32_t spp = vl_film_block_spp(a->film, block), end = end_of(a, block);
-  if (end == UINT32_MAX && is_compared(spp))
-    a->compared[block] = (vlComparedNoise){
-        .spp = spp,
-        .noise = (float)vl_film_block_noise(a->film, block, a->view, a->exposure, a->scale, a->correlation),
-        .factor = view_factor(a),
-        .view = (uint32_t)a->view};
-  a->done[block] = spp >= end;
+  if (end == UINT32_MAX && is_compared(spp)) {
+    vl_film_compare_block(a->film, block, a->view, a->exposure, a->scale, a->correlation);
+    end = end_of(a, block);
+  }
+  a->end[block] = end;
+}
+
+static bool is_done(const vlAdaptive *a, uint32_t block) {
+  return vl_film_block_spp(a->film, block) >= a->end[block];
 }
 
 static void compare_blocks(vlAdaptive *a, const uint8_t *wanted) {
@@ -73,33 +78,35 @@ vlResult vl_adaptive_create(vlAdaptive *a, vlContext *context, vlFilm *film, con
                     .scale = def->noise_scale,
                     .correlation = correlation,
                     .blocks = vl_film_block_count(vl_film_def(film)->crop)};
-  a->done = vl_alloc_zero(context, a->blocks, sizeof *a->done);
+  a->end = vl_alloc_array(context, a->blocks, sizeof *a->end);
   a->pass = vl_alloc_zero(context, a->blocks, sizeof *a->pass);
   if (a->noise > 0)
     a->compared = vl_film_compared(film);
   else
     vl_film_forget_compared(film);
-  if (!a->done || !a->pass || (a->noise > 0 && !a->compared)) return VL_ERROR_MEMORY;
+  if (!a->end || !a->pass || (a->noise > 0 && !a->compared)) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < a->blocks; i++) a->end[i] = UINT32_MAX;
   compare_blocks(a, NULL);
   return VL_OK;
 }
 
 void vl_adaptive_destroy(vlAdaptive *a) {
   if (!a->context) return;
-  vl_free(a->context, a->done);
+  vl_free(a->context, a->end);
   vl_free(a->context, a->pass);
 }
 
 bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *count) {
   uint32_t least = total, end = total;
   for (uint32_t i = 0; i < a->blocks; i++)
-    if (!a->done[i] && vl_film_block_spp(a->film, i) < least) least = vl_film_block_spp(a->film, i);
+    if (!is_done(a, i) && vl_film_block_spp(a->film, i) < least) least = vl_film_block_spp(a->film, i);
   a->in_pass = 0;
   for (uint32_t i = 0; i < a->blocks; i++) {
     uint32_t spp = vl_film_block_spp(a->film, i);
-    a->pass[i] = !a->done[i] && spp == least && spp < total;
+    a->pass[i] = !is_done(a, i) && spp == least && spp < total;
     a->in_pass += a->pass[i];
-    if (!a->done[i] && spp > least && spp < end) end = spp;
+    if (a->pass[i] && a->end[i] < end) end = a->end[i];
+    if (!is_done(a, i) && spp > least && spp < end) end = spp;
   }
   if (a->noise > 0 && next_comparison(least) < end) end = next_comparison(least);
   *first = least, *count = end - least;
@@ -133,16 +140,16 @@ double vl_adaptive_expected_spp(const vlAdaptive *a, uint32_t total) {
   for (uint32_t i = 0; i < a->blocks; i++) {
     double spp = vl_film_block_spp(a->film, i), expected = total;
     if (a->compared && a->compared[i].spp) {
-      double ratio = (double)a->compared[i].noise / (MARGIN * a->noise);
+      double ratio = (double)a->compared[i].noise / a->noise;
       expected = fmin(total, (double)a->compared[i].spp * ratio * ratio);
     }
-    sum += a->done[i] ? spp : fmax(spp, expected);
+    sum += is_done(a, i) ? spp : fmax(spp, expected);
   }
   return sum / a->blocks;
 }
 
 uint32_t vl_adaptive_noisy(const vlAdaptive *a) {
   uint32_t count = 0;
-  for (uint32_t i = 0; i < a->blocks && a->noise > 0; i++) count += !a->done[i];
+  for (uint32_t i = 0; i < a->blocks && a->noise > 0; i++) count += !is_done(a, i);
   return count;
 }

@@ -3,14 +3,16 @@
  * All blocks of a pass begin with the same sample. Without a noise threshold, the blocks with the fewest samples go
  * first until all have the wanted number; in a new film these are all blocks in every pass.
  *
- * With a threshold, the noise of a block (vl_film_block_noise) is compared when the block has 12, 16, 24, 32, 48, 64,
- * 96, ... samples. A block whose noise will be below the threshold at the next of these numbers ends there. This is
- * two-stage sampling (Stein 1945): a block ends early where its samples happen to be alike, which makes it a little
- * darker than it should be; the samples after the decision know nothing of it.
+ * With a threshold, the noise of a block (vl_film_block_noise) is compared when the block has 8, 12, 16, 24, 32, 48,
+ * 64, ... samples. A block whose noise will be below the threshold at the next of these numbers ends there, or at the
+ * least number 4, 5, 6, 7 * 2^k before it that suffices. This is two-stage sampling (Stein 1945): a block ends early
+ * where its samples happen to be alike, which makes it a little darker than it should be; the samples after the
+ * decision know nothing of it.
  *
- * The decision depends on the block's own sums at one of these numbers and on nothing else. So neither the division
- * into passes and calls, nor the threads, nor the other blocks change the image. The film keeps the last comparison of
- * each block (vlComparedNoise) with its sums, in files, too, so that it can be continued. */
+ * The decision depends on the block's own sums at the numbers where it was compared, and on nothing else. So neither
+ * the division into passes and calls, nor the threads, nor the other blocks change the image. The film keeps the last
+ * comparison of each block (vlComparedNoise, vlEarlierMean) with its sums, in files, too, so that it can be
+ * continued. */
 #ifndef RENDER_ADAPTIVE_H
 #define RENDER_ADAPTIVE_H
 
@@ -25,7 +27,7 @@ typedef struct vlAdaptive {
   float exposure, scale;
   double correlation; /* as in vl_film_block_noise */
   uint32_t blocks;
-  uint8_t *done;             /* of each block: it has its last sample */
+  uint32_t *end;             /* of each block: the samples at which it ends; UINT32_MAX: not known yet */
   vlComparedNoise *compared; /* the film's, of each block; null without a threshold */
   uint8_t *pass;             /* of each block: it gets samples in this pass */
   uint32_t in_pass;

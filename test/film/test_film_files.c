@@ -1,5 +1,6 @@
 /* Film files: a film is read as it was written, parts merge to the whole in any order, and all damage is detected. */
 #include <limits.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,6 +14,7 @@
 
 #include "failing_allocator.h"
 #include "film/file.h"
+#include "film/sums.h"
 #include "math/hash.h"
 #include "velo/film.h"
 #include "velo/receipt.h"
@@ -172,28 +174,92 @@ static vlResult merge(const char *const *paths, uint32_t count, const char *outp
   return vl_film_merge(context, paths, count, output, error);
 }
 
-/* Blocks keep their last comparison of adaptive sampling, unless samples of another part join them. */
+/* Whether the means of a block's first 16 samples are in the film. */
+static bool has_means(const vlFilm *film, uint32_t block) {
+  uint32_t place[4], count = 0;
+  vl_film_block_place(film->def.crop, block, place);
+  vlImage *image;
+  assert_int_equal(vl_film_develop(film, NULL, &image), VL_OK);
+  const float *pixels = vl_image_const_pixels(image);
+  for (uint32_t y = place[1]; y < place[3]; y++)
+    for (uint32_t x = place[0]; x < place[2]; x++) {
+      size_t at = (size_t)(y - film->def.crop[1]) * film->width + (x - film->def.crop[0]);
+      const vlEarlierMean *mean = film->earlier + at;
+      count += mean->samples == 16;
+      for (int c = 0; c < 3 && mean->samples; c++)
+        assert_true(fabsf(mean->color[c] - pixels[vl_image_channels(image) * at + (size_t)c]) <=
+                    1e-6f * fabsf(mean->color[c]));
+    }
+  vl_image_destroy(image);
+  assert_true(count == 0 || count == (place[2] - place[0]) * (place[3] - place[1]));
+  return count > 0;
+}
+
+/* Turns a file of the present format, without comparisons, into one of format 1 whose first block has one. */
+static void make_format_1(const char *path) {
+  size_t size;
+  char *bytes = bytes_of(path, &size);
+  vlFilmPreamble p;
+  vlFilmBlockHead head;
+  memcpy(&p, bytes, sizeof p);
+  p.format = 1;
+  p.crc = vl_film_crc(0, &p, offsetof(vlFilmPreamble, crc));
+  memcpy(bytes, &p, sizeof p);
+  char *block = bytes + sizeof p + p.header_size;
+  memcpy(&head, block, sizeof head);
+  head.compared = (vlComparedNoise){16, 0.25f, 2.0f, 1};
+  memcpy(block, &head, sizeof head);
+  size_t before = sizeof head + head.range_count * sizeof(vlSampleSpan) + head.data_size;
+  uint32_t crc = vl_film_crc(0, block, before);
+  memcpy(block + before, &crc, sizeof crc);
+  put_bytes(path, bytes, size);
+  free(bytes);
+}
+
+static void format_1_is_read(void **state) {
+  (void)state;
+  const char *path = path_of("old.film"), *again = path_of("new.film"), *same = path_of("same.film");
+  vlError error;
+  vlFilm *film;
+  write_film(path, ERRORS, NULL, 0, 16);
+  assert_int_equal(vl_film_read(context, path, false, &film, &error), VL_OK);
+  assert_int_equal(vl_film_write(film, NULL, same, &error), VL_OK);
+  vl_film_destroy(film);
+  make_format_1(path);
+  assert_false(same_bytes(path, same));
+  if (vl_film_read(context, path, false, &film, &error) != VL_OK) fail_msg("%s", error.message);
+  assert_null(film->compared); /* without its means it is of no use */
+  assert_int_equal(vl_film_write(film, NULL, again, &error), VL_OK);
+  assert_true(same_bytes(again, same));
+  vl_film_destroy(film);
+  assert_int_equal(merge(&path, 1, again, &error), VL_OK);
+  assert_true(same_bytes(again, same));
+}
+
+/* Blocks keep their last comparison of adaptive sampling and its means, unless samples of another part join them. */
 static void compared_noise(void **state) {
   (void)state;
   enum { LAST = 2 };
-  vlFilm *film = make_film(context, ERRORS, NULL, 0, SPP), *read;
-  vlComparedNoise *compared = vl_film_compared(film);
-  assert_non_null(compared);
-  compared[LAST] = (vlComparedNoise){16, 0.25f, 2.0f, 1};
+  vlFilm *film = make_film(context, ERRORS, NULL, 0, 16), *read;
+  assert_non_null(vl_film_compared(film));
+  vl_film_compare_block(film, LAST, VL_VIEW_STANDARD, 1, 1, 1);
+  float noise = film->compared[LAST].noise;
+  assert_true(noise > 0 && has_means(film, LAST) && !has_means(film, LAST - 1));
   vlError error;
   assert_int_equal(vl_film_write(film, NULL, path_of("noise.film"), &error), VL_OK);
   vl_film_clear(film);
   assert_int_equal(vl_film_compared(film)[LAST].spp, 0);
   vl_film_destroy(film);
-  write_film(path_of("more.film"), ERRORS, NULL, SPP, SPP + 8);
+  write_film(path_of("more.film"), ERRORS, NULL, 16, SPP);
   const char *paths[3] = {path_of("noise.film"), path_of("noise.film"), path_of("more.film")};
   for (uint32_t count = 1; count <= 3; count++) { /* the same part twice counts once */
     assert_int_equal(merge(paths, count, path_of("merged.film"), &error), VL_OK);
     assert_int_equal(vl_film_read(context, path_of("merged.film"), false, &read, &error), VL_OK);
     vlComparedNoise got = vl_film_compared(read)[LAST], other = vl_film_compared(read)[LAST - 1];
     assert_int_equal(got.spp, count < 3 ? 16 : 0);
-    if (count < 3) assert_true(got.noise == 0.25f && got.factor == 2.0f && got.view == 1);
+    if (count < 3) assert_true(got.noise == noise && got.factor == 2.0f && got.view == VL_VIEW_STANDARD);
     assert_int_equal(other.spp, 0);
+    assert_true(has_means(read, LAST) == (count < 3) && !has_means(read, LAST - 1));
     vl_film_destroy(read);
   }
 }
@@ -426,6 +492,7 @@ static void memory_of_json_runs_out(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
                                      cmocka_unit_test(compared_noise),
+                                     cmocka_unit_test(format_1_is_read),
                                      cmocka_unit_test(parts_become_the_whole),
                                      cmocka_unit_test(what_does_not_belong_together_is_refused),
                                      cmocka_unit_test(a_film_with_gaps_is_only_developed),

@@ -84,16 +84,33 @@ static void pool(const Block *from, double white, Block *to) {
     }
 }
 
-/* The upper limit of the mean of e^2 over a block. */
-static double block_square(const Block *b, const Display *d, double correlation) {
-  double sum = 0, squares = 0, n = (double)(b->width * b->height);
+/* A mean over the pixels of a block, and its standard error. */
+typedef struct Mean {
+  double value, error;
+} Mean;
+
+static Mean mean_of(double sum, double squares, double count, double correlation) {
+  double mean = sum / count, spread = squares / count - mean * mean;
+  return (Mean){mean, sqrt(correlation * (spread > 0 ? spread : 0) / count)};
+}
+
+static double pixels_of(const Block *b) {
+  return (double)(b->width * b->height);
+}
+
+/* The mean of e^2. */
+static Mean block_square(const Block *b, const Display *d, double correlation) {
+  double sum = 0, squares = 0;
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
       double e = display_square(d, b->mean[y][x], b->square[y][x]);
       sum += e, squares += e * e;
     }
-  double mean = sum / n, spread = squares / n - mean * mean;
-  return mean + ERRORS_OF_MEAN * sqrt(correlation * (spread > 0 ? spread : 0) / n);
+  return mean_of(sum, squares, pixels_of(b), correlation);
+}
+
+static double upper_limit(Mean mean) {
+  return mean.value + ERRORS_OF_MEAN * mean.error;
 }
 
 /* The square of the difference between the display values of two linear values, the mean over R, G, B. */
@@ -107,24 +124,22 @@ static double difference_square(const Display *d, const double mean[3], const fl
   return sum;
 }
 
-/* The upper limit of the ratio of D^2 m / (n - m) to e^2, at most 1. earlier: of the block's first pixel, with rows of
- * `line` elements; spp: n. */
-static double square_ratio(const Block *b, const Display *d, double correlation, const vlEarlierMean *earlier,
-                           size_t line, uint32_t spp) {
-  if (!earlier->samples || earlier->samples >= spp) return 1;
-  double scale = (double)earlier->samples / (spp - earlier->samples);
-  double sums[2] = {0}, products[3] = {0};
+/* The upper limit of the ratio of the mean of D^2 m / (n - m) to that of e^2, at most 1. The errors of both means count
+ * as independent, although both see the same rare bright samples: those that are missing are missing in both. earlier:
+ * of the block's first pixel, with rows of `line` elements; spp: n. */
+static double square_ratio(const Block *b, const Display *d, double correlation, Mean square,
+                           const vlEarlierMean *earlier, size_t line, uint32_t spp) {
+  if (!earlier->samples || earlier->samples >= spp || !(square.value > 0)) return 1;
+  double scale = (double)earlier->samples / (spp - earlier->samples), sum = 0, squares = 0;
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
       double p = scale * difference_square(d, b->mean[y][x], earlier[y * line + x].color);
-      double q = display_square(d, b->mean[y][x], b->square[y][x]);
-      sums[0] += p, sums[1] += q;
-      products[0] += p * p, products[1] += p * q, products[2] += q * q;
+      sum += p, squares += p * p;
     }
-  if (sums[0] >= sums[1]) return 1; /* also where both are 0 */
-  double ratio = sums[0] / sums[1];
-  double rest = products[0] - 2 * ratio * products[1] + ratio * ratio * products[2]; /* sum of (p - ratio q)^2 */
-  double limit = ratio + ERRORS_OF_RATIO * sqrt(correlation * (rest > 0 ? rest : 0)) / sums[1];
+  Mean difference = mean_of(sum, squares, pixels_of(b), correlation);
+  double ratio = difference.value / square.value, other = ratio * square.error;
+  double error = sqrt(difference.error * difference.error + other * other) / square.value;
+  double limit = ratio + ERRORS_OF_RATIO * error;
   return limit < 1 ? limit : 1;
 }
 
@@ -158,10 +173,11 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
     }
   Block pooled;
   pool(&b, 1.0 / d.factor, &pooled);
-  double each = block_square(&b, &d, correlation), together = block_square(&pooled, &d, correlation), ratio = 1;
+  Mean square = block_square(&b, &d, correlation);
+  double each = upper_limit(square), together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
   if (film->earlier) {
     const vlEarlierMean *earlier = film->earlier + (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
-    ratio = square_ratio(&b, &d, correlation, earlier, film->width, vl_film_block_spp(film, block));
+    ratio = square_ratio(&b, &d, correlation, square, earlier, film->width, vl_film_block_spp(film, block));
   }
   return sqrt(ratio * (each > together ? each : together));
 }

@@ -36,8 +36,8 @@ static uint32_t end_of(const vlAdaptive *a, uint32_t block) {
       last->factor != view_factor(a))
     return UINT32_MAX;
   double ratio = (double)last->noise / a->noise, needed = (double)last->spp * ratio * ratio;
-  uint32_t end = next_number(last->spp, 4), next = next_comparison(last->spp);
-  while (end < needed && end < next) end = next_number(end, 4);
+  uint32_t end = next_number(last->spp, 8), next = next_comparison(last->spp);
+  while (end < needed && end < next) end = next_number(end, 8);
   return end >= needed ? end : UINT32_MAX;
 }
 

@@ -5,8 +5,8 @@
  *
  * With a threshold, the noise of a block (vl_film_block_noise) is compared when the block has 8, 12, 16, 24, 32, 48,
  * 64, ... samples. A block whose noise will be below the threshold at the next of these numbers ends there, or at the
- * least number 4, 5, 6, 7 * 2^k before it that suffices. This is two-stage sampling (Stein 1945): a block ends early
- * where its samples happen to be alike, which makes it a little darker than it should be; the samples after the
+ * least number n * 2^k (n from 8 to 15) before it that suffices. This is two-stage sampling (Stein 1945): a block ends
+ * early where its samples happen to be alike, which makes it a little darker than it should be; the samples after the
  * decision know nothing of it.
  *
  * The decision depends on the block's own sums at the numbers where it was compared, and on nothing else. So neither

@@ -14,11 +14,11 @@ check whole $render scene.pbrt $noise -o a.exr --film a.film --channels samples,
 counts=$("$VELO" film info a.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -nu | tr '\n' ' ')
 echo "samples: $counts"
 least=${counts%% *} most=$(printf '%s' "$counts" | tr ' ' '\n' | tail -n 1)
-check adapts test "$least" -ge 10 -a "$((3 * least))" -le "$most"
+check adapts test "$least" -ge 9 -a "$((3 * least))" -le "$most"
 for count in $counts; do
-  part=$count # 4, 5, 6, or 7 times a power of two
-  while [ "$part" -gt 7 ] && [ $((part % 2)) = 0 ]; do part=$((part / 2)); done
-  if [ "$part" -ge 4 ] && [ "$part" -le 7 ]; then pass "end at $count"; else fail "end at $count"; fi
+  part=$count # 8 to 15 times a power of two
+  while [ "$part" -gt 15 ] && [ $((part % 2)) = 0 ]; do part=$((part / 2)); done
+  if [ "$part" -ge 8 ] && [ "$part" -le 15 ]; then pass "end at $count"; else fail "end at $count"; fi
 done
 # The channel `samples` has the numbers of the film's blocks.
 "$VELO" image convert a.exr samples.pfm --channel samples.Y

@@ -30,6 +30,9 @@ static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a biased one below that of the
  * best unbiased one times BIASED. */
 static const double SURE = 0.85, BIASED = 2.0 / 3.0;
+/* The squared relative difference that what merging blurs may make, by its wide radius in the coarse images. Seen: up
+ * to 0.001, where a thin object stands on a ground (docs/tracers.md); light that is missing makes more. */
+static const double BLUR = 0.002;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
 
 /* A tracer of the race. */
@@ -95,7 +98,7 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
 /* Whether the tracers with light paths render this world and film (tracer_of in render.c). */
 static bool can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film) {
   bool rolls = (world->moves || camera->moves) && camera->readout > 0;
-  return !film->buckets && !world->has_subsurface && !rolls && world->lights.count > 0;
+  return !film->buckets && !world->has_subsurface && !world->has_one_sided && !rolls && world->lights.count > 0;
 }
 
 /* ---- running ----------------------------------------------------------------------------------------------------- */
@@ -206,7 +209,8 @@ static double block_missing(const Race *race, uint32_t t, uint32_t m, uint32_t x
   return sum;
 }
 
-/* The light that merging finds and trial t does not; 0 unless it is above three standard errors. */
+/* The light that merging finds and trial t does not, without what may be blur; 0 unless it is above three standard
+ * errors. */
 static double missing_of(Race *race, uint32_t t, uint32_t m) {
   size_t n = 0, out;
   double squares = 0;
@@ -216,7 +220,7 @@ static double missing_of(Race *race, uint32_t t, uint32_t m) {
   double mean = trimmed_mean(race->sorted, n, out, out);
   for (size_t i = out; i + out < n; i++) squares += (race->sorted[i] - mean) * (race->sorted[i] - mean);
   double significant = n > 2 * out ? 3 * sqrt(squares) / (double)(n - 2 * out) : INFINITY;
-  return mean > significant ? mean : 0;
+  return mean > significant && mean > BLUR ? mean - BLUR : 0;
 }
 
 static void measure(Race *race, vlTracerChoice *choice) {

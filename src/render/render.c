@@ -127,9 +127,11 @@ static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
     vl_log(world->context, VL_LOG_INFO, NULL, "this tracer has no spectral film: volpath is used");
     return VL_TRACER_VOLPATH;
   }
-  if (!vl_two_way_tracer(tracer) || (!rolls && !world->has_subsurface)) return tracer;
-  vl_log(world->context, VL_LOG_INFO, NULL, "this tracer does not support %s: volpath is used",
-         rolls ? "motion with a rolling shutter" : "material \"subsurface\"");
+  if (!vl_two_way_tracer(tracer) || (!rolls && !world->has_subsurface && !world->has_one_sided)) return tracer;
+  const char *what = rolls                   ? "motion with a rolling shutter"
+                     : world->has_subsurface ? "material \"subsurface\""
+                                             : "surfaces that rays pass through from one side";
+  vl_log(world->context, VL_LOG_INFO, NULL, "this tracer does not support %s: volpath is used", what);
   return VL_TRACER_VOLPATH;
 }
 

@@ -275,6 +275,7 @@ struct vlWorld {
   uint32_t *rank; /* per material: its position in an order in which materials of one kind are adjacent */
   bool has_interfaces, has_mixtures; /* a material is an interface; a material is mixed */
   bool has_subsurface;               /* a shape has subsurface scattering */
+  bool has_one_sided;                /* rays pass through a shape from one side */
   bool by_channel; /* a medium (vlWorldMedium.by_channel) or a material (vlWorldPrincipled.by_channel) attenuates light
                       per channel of linear sRGB */
   uint32_t camera_medium;       /* index into media, VL_NONE: vacuum */

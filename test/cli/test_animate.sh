@@ -8,7 +8,7 @@ python3 - <<'END'
 import base64, json, struct
 data = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0) + struct.pack("<2f", 0, 2) + struct.pack("<6f", 0, 0, 0, 4, 0, 0)
 json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [0, 2, 0]}],
-  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5, "material": 0}]}], "materials": [{"doubleSided": True}],
   "animations": [{"name": "Walk", "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
   "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
                 {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2]},
@@ -34,6 +34,26 @@ check some "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 1-3:2 $option
 check some_are_those cmp f01.exr g01.exr
 check some_are_those_too cmp f03.exr g03.exr
 check some_number test "$(ls g*.exr | wc -l)" = 2
+# A part has the exposure of the whole; so do the frames that --skip-existing left.
+check part_exposure "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 2-3 $options -o h%02d.png --exposure auto
+check part_exposure_same cmp h03.png f03.png
+rm f02.png
+check skip_exposure "$VELO" render walk.gltf --animate 0:2 --fps 2 $options -o f%02d.png --skip-existing --exposure auto
+check skip_exposure_same cmp h02.png f02.png
+# All frames have the tracer that the first one's race chose, parts of the animation, too.
+raced="--resolution 160x120 --spp 64 --tracer auto"
+check race "$VELO" render walk.gltf --turntable 3 $raced -o r%d.exr -o r%d.png
+check race_once test "$(printf '%s' "$err" | grep -c '^velo: auto:')" = 1
+check race_part "$VELO" render walk.gltf --turntable 3 --frames 1-1 $raced -o s%d.exr -o s%d.png
+check race_part_once test "$(printf '%s' "$err" | grep -c '^velo: auto:')" = 1
+check race_part_same cmp r1.exr s1.exr
+check race_part_display_same cmp r1.png s1.png
+check race_again "$VELO" render --again s1.exr -o again.exr
+check race_again_same cmp r1.exr again.exr
+check race_default "$VELO" render walk.gltf --turntable 2 --resolution 160x120 --spp 64 -o d%d.exr
+check race_default_once test "$(printf '%s' "$err" | grep -c '^velo: auto:')" = 1
+check race_named "$VELO" render walk.gltf --turntable 2 $raced --tracer volpath -o d%d.exr
+check race_named_none test "$(printf '%s' "$err" | grep -c '^velo: auto:')" = 0
 expect_code 2 too_many "$VELO" render walk.gltf --animate 0:2 --fps 2 --frames 2-4 $options -o g%02d.exr
 check turns "$VELO" render walk.gltf --turntable 4 $options -o t%d.exr
 check turns_verbose "$VELO" render walk.gltf --turntable 4 $options -o v%d.exr --verbose

@@ -77,8 +77,19 @@ static Stage room(vlContext *context) {
   return s;
 }
 
+/* A triangle behind the camera that rays pass through from one side. */
+static void add_one_sided(Stage *s) {
+  static const float positions[9] = {0, 0, 3, 1, 0, 3, 0, 1, 3};
+  static const uint32_t indices[3] = {0, 1, 2};
+  vlShapeDef sheet = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  sheet.positions = positions, sheet.vertices = 3, sheet.indices = indices, sheet.faces = 1;
+  sheet.one_sided = true;
+  assert_int_not_equal(vl_scene_add_shape(s->scene, &sheet).index, 0);
+}
+
 typedef struct How {
   uint32_t threads, crop, seed, first, spp;
+  bool one_sided;
 } How;
 
 static vlTracerChoice choice_of(How how) {
@@ -87,6 +98,7 @@ static vlTracerChoice choice_of(How how) {
   vlContext *context;
   assert_int_equal(vl_context_create(&def, &context), VL_OK);
   Stage s = room(context);
+  if (how.one_sided) add_one_sided(&s);
   vlWorld *world = NULL;
   vlCamera camera;
   vlError error = {0};
@@ -123,6 +135,28 @@ static void too_short(void **state) {
   assert_int_equal(choice.tracer, VL_TRACER_VOLPATH);
 }
 
+static Image with_sheet(vlTracer tracer) {
+  Stage s = room(NULL);
+  add_one_sided(&s);
+  s.render.spp = 4, s.render.tracer = tracer;
+  return stage_finish(&s);
+}
+
+/* Light paths would meet the other side of what camera paths meet: volpath renders such worlds. */
+static void one_sided_surfaces(void **state) {
+  (void)state;
+  vlTracerChoice choice = choice_of((How){.threads = 1, .one_sided = true});
+  assert_true(choice.count == 0 && choice.tracer == VL_TRACER_VOLPATH);
+  Image path = with_sheet(VL_TRACER_VOLPATH);
+  static const vlTracer others[] = {VL_TRACER_BIDIRECTIONAL, VL_TRACER_LIGHT_PATH, VL_TRACER_MERGING, VL_TRACER_SPPM};
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+    Image other = with_sheet(others[k]);
+    assert_memory_equal(path.rgba, other.rgba, (size_t)path.width * path.height * 4 * sizeof(float));
+    image_free(&other);
+  }
+  image_free(&path);
+}
+
 static Stage chosen(const void *user, vlTracer tracer) {
   const vlTracerChoice *choice = user;
   Stage s = room(NULL);
@@ -140,6 +174,7 @@ static void the_same_mean(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(by_numbers), cmocka_unit_test(the_same_choice),
-                                     cmocka_unit_test(too_short), cmocka_unit_test(the_same_mean)};
+                                     cmocka_unit_test(too_short), cmocka_unit_test(the_same_mean),
+                                     cmocka_unit_test(one_sided_surfaces)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

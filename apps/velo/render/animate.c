@@ -112,6 +112,25 @@ static int render_frame(const Command *command, const Arguments *arguments, cons
   return status;
 }
 
+/* The first frame of all sets the exposure and the tracer of each part. Whether it does is not known before the scene
+ * is loaded, unless both are given. */
+static bool needs_first(const Arguments *arguments, const Animation *a) {
+  const OptionValue *v = arguments->values;
+  bool tracer = v[RENDER_TRACER].given && v[RENDER_TRACER].integer != TRACER_AUTO;
+  bool exposure = v[RENDER_EXPOSURE].given && strcmp(v[RENDER_EXPOSURE].text, "auto") != 0;
+  return (a->first > 0 || v[RENDER_SKIP_EXISTING].given) && !(tracer && exposure) && !v[RENDER_DRY_RUN].given;
+}
+
+static int prepare(const Command *command, const Arguments *arguments, const Animation *a, AnimateRender *render,
+                   AnimateShared *shared) {
+  Arguments all = *arguments;
+  all.values[RENDER_SKIP_EXISTING].given = false;
+  shared->preparing = true;
+  int status = render_frame(command, &all, a, 0, render, shared);
+  shared->preparing = false;
+  return status;
+}
+
 int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render) {
   Animation a = {0};
   AnimateShared shared = {.exposure = NAN};
@@ -120,7 +139,8 @@ int animate_run(const Command *command, const Arguments *arguments, AnimateRende
   if (status < 0) status = choose_frames(arguments, &a);
   if (status >= 0) return status;
   shared.still = a.turns;
-  for (uint64_t i = a.first; i <= a.last; i += a.step) {
+  status = needs_first(arguments, &a) ? prepare(command, arguments, &a, render, &shared) : STATUS_OK;
+  for (uint64_t i = a.first; i <= a.last && status == STATUS_OK; i += a.step) {
     status = render_frame(command, arguments, &a, (uint32_t)i, render, &shared);
     if (status != STATUS_OK || signals_pending() || arguments->values[RENDER_DRY_RUN].given) break;
   }

@@ -3,14 +3,20 @@
 #ifndef APP_RENDER_ANIMATE_H
 #define APP_RENDER_ANIMATE_H
 
+#include "render/job.h"
 #include "render/scene_options.h"
+#include "velo/choose.h"
 
 /* What the frames have in common. They are built in one context, each with the world of the frame before it, so that
  * what has not changed is neither read nor built again (vlBuildDef.previous). With --turntable only the camera changes:
  * scene and world are those of the first frame. */
 typedef struct AnimateShared {
   float exposure; /* of all frames, in stops; NaN until the first one has been metered */
-  bool still;     /* --turntable */
+  bool preparing; /* the first frame of all is not rendered: it only sets the exposure and the tracer */
+  bool raced;     /* the first frame had its race, or needed none */
+  RaceKind race;  /* RACE_NONE: none was needed, and choice is not set */
+  vlTracerChoice choice;
+  bool still; /* --turntable */
   vlContext *context;
   vlScene *scene; /* with --turntable; null before the first frame */
   vlWorld *world; /* of the last frame; null before the first one */

@@ -9,6 +9,7 @@
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/animate.h"
 #include "render/shard.h"
 
 /* By default there is a race from LEAST_SAMPLES on. It is planned for at most MOST_SAMPLES, so that all longer renders
@@ -25,7 +26,6 @@ int race_check(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (!is_asked(arguments)) return -1;
   if (render->resumed.path) return report_usage("--tracer auto: a film is continued with its own tracer");
-  if (render->shared) return report_usage("--tracer auto: the frames of an animation have one tracer; give its name");
   if (v[RENDER_LIGHT_PATHS].given)
     return report_usage("--light-paths: --tracer auto chooses their number; give the name of a tracer");
   return -1;
@@ -42,7 +42,7 @@ static uint32_t expected_samples(const vlSceneDefs *defs) {
 static bool is_default(const Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   const vlSceneDefs *whole = &render->film_plan.whole;
-  if (render->resumed.path || render->again.receipt || render->shared) return false;
+  if (render->resumed.path || render->again.receipt) return false;
   if (v[RENDER_LIGHT_PATHS].given || v[RENDER_MERGE_RADIUS].given || whole->build.imitate_pbrt) return false;
   if (expected_samples(whole) < LEAST_SAMPLES) return false;
   bool free_paths = whole->render.light_paths == VL_AS_MANY_AS_PIXELS;
@@ -143,9 +143,21 @@ static void take_all(Render *render, const vlTracerChoice *choice) {
   }
 }
 
+/* The frames of an animation have the race of the first one of all. */
+static int take_shared(Render *render, const AnimateShared *shared) {
+  render->job.race = shared->race;
+  render->job.raced = shared->race != RACE_NONE;
+  if (shared->race != RACE_NONE) take_all(render, &shared->choice);
+  return -1;
+}
+
 int race_run(Render *render, const Arguments *arguments) {
   Job *job = &render->job;
-  if (job->race == RACE_NONE || arguments->values[RENDER_DRY_RUN].given) return -1;
+  AnimateShared *shared = render->shared;
+  if (arguments->values[RENDER_DRY_RUN].given) return -1;
+  if (shared && shared->raced) return take_shared(render, shared);
+  if (shared) shared->raced = true;
+  if (job->race == RACE_NONE) return -1;
   const vlSceneDefs *whole = &render->film_plan.whole;
   vlRenderDef def = whole->render;
   vlTracerChoice choice;
@@ -166,6 +178,7 @@ int race_run(Render *render, const Arguments *arguments) {
   if (!choice.count && job->race == RACE_LIGHT_PATHS) return -1;
   job->raced = choice.count > 0 || is_asked(arguments);
   take_all(render, &choice);
+  if (shared && job->raced) shared->race = job->race, shared->choice = choice;
   shard_warn(arguments, job->defs->render.tracer);
   return -1;
 }

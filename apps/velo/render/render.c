@@ -368,6 +368,7 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
   if (status < 0) status = race_run(&render, arguments);
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0) status = meter_model(&render, arguments);
+  if (status < 0 && shared && shared->preparing) status = STATUS_OK;
   if (status < 0)
     status = noise_expose(&render.outputs, render.many, &render.job.defs->render, &render.film_plan.whole.render);
   if (status < 0 && render.again.receipt) status = check_again(&render);

@@ -133,7 +133,9 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   s->faces = s->steps = 1;
   store_affine_d(&m, s->from_shape);
   store_affine_d(&inverse, s->to_shape);
-  return add_geometry(world, scene, index, &m, &inverse, s, error);
+  vlResult result = add_geometry(world, scene, index, &m, &inverse, s, error);
+  world->has_one_sided = world->has_one_sided || s->one_sided;
+  return result;
 }
 
 /* Extends the box by a shape. */

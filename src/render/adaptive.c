@@ -28,13 +28,18 @@ static float view_factor(const vlAdaptive *a) {
   return (float)vl_film_view_factor(a->exposure, a->scale);
 }
 
-/* The number of samples at which a block ends by its last comparison; UINT32_MAX: not known yet. The error falls as the
- * square root of the number of samples. */
-static uint32_t end_of(const vlAdaptive *a, uint32_t block) {
+/* The block's last comparison, if it was of these display values; null: there is none. */
+static const vlComparedNoise *last_comparison(const vlAdaptive *a, uint32_t block) {
   const vlComparedNoise *last = a->compared + block;
-  if (!is_compared(last->spp) || last->spp > vl_film_block_spp(a->film, block) || last->view != (uint32_t)a->view ||
-      last->factor != view_factor(a))
-    return UINT32_MAX;
+  bool holds = is_compared(last->spp) && last->spp <= vl_film_block_spp(a->film, block) &&
+               last->view == (uint32_t)a->view && last->factor == view_factor(a);
+  return holds ? last : NULL;
+}
+
+/* The number of samples at which a block ends by this comparison, which may be null; UINT32_MAX: not known yet. The
+ * error falls as the square root of the number of samples. */
+static uint32_t end_by(const vlAdaptive *a, const vlComparedNoise *last) {
+  if (!last) return UINT32_MAX;
   double ratio = (double)last->noise / a->noise, needed = (double)last->spp * ratio * ratio;
   uint32_t end = next_number(last->spp, 8), next = next_comparison(last->spp);
   while (end < needed && end < next) end = next_number(end, 8);
@@ -51,12 +56,14 @@ static void compare_block(void *user, uint32_t block, uint32_t worker) {
   const Comparison *c = user;
   vlAdaptive *a = c->a;
   if (c->wanted && !c->wanted[block]) return;
-  uint32_t spp = vl_film_block_spp(a->film, block), end = end_of(a, block);
-  if (end == UINT32_MAX && is_compared(spp)) {
+  const vlComparedNoise *last = last_comparison(a, block);
+  uint32_t spp = vl_film_block_spp(a->film, block);
+  bool is_new = is_compared(spp) && (!last || last->spp < spp);
+  if (is_new && end_by(a, last) == UINT32_MAX) {
     vl_film_compare_block(a->film, block, a->view, a->exposure, a->scale, a->correlation);
-    end = end_of(a, block);
+    last = last_comparison(a, block);
   }
-  a->end[block] = end;
+  a->end[block] = end_by(a, last);
 }
 
 static bool is_done(const vlAdaptive *a, uint32_t block) {

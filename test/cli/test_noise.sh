@@ -67,6 +67,11 @@ for spp in 8 9 11 12 14 16 20 24 30 32; do
   $render --continue s.film --spp 65536 -o b.exr
   same "continued from $spp" a.exr b.exr
 done
+# continued without more samples: the comparison at this number is not repeated, its means are those of these samples
+$render scene.pbrt $noise --spp 16 --film s.film
+cp s.film t.film
+check "no more samples" $render --continue s.film --spp 16
+same "no more samples leave the film" s.film t.film
 # another exposure has comparisons of its own
 $render scene.pbrt $noise --film s.film
 before=$("$VELO" film info s.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)

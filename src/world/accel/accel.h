@@ -1,5 +1,6 @@
-/* world/accel/accel.h: nearest-hit and occlusion queries. Only embree.c calls Embree. Queries return ids. velo
- * recomputes t, u and v in its own arithmetic, because Embree's values differ between its instruction sets. */
+/* world/accel/accel.h: nearest-hit and occlusion queries: by Embree (embree.h), or for worlds of few primitives by brute
+ * force (brute_force.h). Queries return ids. velo recomputes t, u and v in its own arithmetic, because Embree's values
+ * differ between its instruction sets. */
 #ifndef WORLD_ACCEL_ACCEL_H
 #define WORLD_ACCEL_ACCEL_H
 
@@ -37,6 +38,8 @@ typedef struct vlAccel {
   bool split;
   vlAccelBundle *bundles; /* one per group */
   uint32_t *members;      /* memory of the members of all bundles */
+  struct vlBruteForce *brute_force; /* of a world of few primitives, where it answers all queries; else null */
+  const struct vlBruteForceKernels *brute_force_kernels;
   vlRayLogFn *log;        /* null except in benchmarks */
   void *log_user;
 } vlAccel;

@@ -6,7 +6,7 @@
  *
  * For reproducible results (docs/decisions/0013-the-bits-of-embree.md): Embree runs with an instruction set without
  * fused multiply-add, and a filter decides which of several hits is the nearest (nearest.h). */
-#include "world/accel/accel.h"
+#include "world/accel/embree.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -89,14 +89,6 @@ static inline uint32_t instance_of(const vlWorld *world, unsigned inst) {
 static vlLocalRay local_ray(const Query *q, unsigned id, uint32_t inst) {
   uint32_t instance = inst == VL_NONE ? VL_NONE : inst - q->world->groups.items[0].count;
   return vl_local_ray(q->world, q->rays, id, instance);
-}
-
-unsigned vl_accel_enter(void) {
-  return vl_machine_flush_denormals();
-}
-
-void vl_accel_leave(unsigned state) {
-  vl_machine_restore_denormals(state);
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
@@ -521,7 +513,7 @@ static vlResult make_whole(const Builder *b, vlError *error) {
   return r == VL_OK ? commit(world, scene, 1, error) : r;
 }
 
-vlResult vl_accel_build(vlWorld *world, vlError *error) {
+vlResult vl_embree_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   if (!has_room(world)) return vl_fail_memory(error);
   RTCDevice device;
@@ -546,7 +538,7 @@ vlResult vl_accel_build(vlWorld *world, vlError *error) {
   return r == VL_OK ? device_error(device, error) : r;
 }
 
-void vl_accel_destroy(vlContext *context, vlAccel *a) {
+void vl_embree_destroy(vlContext *context, vlAccel *a) {
   for (uint32_t k = 0; k < a->group_count; k++)
     if (a->groups[k]) rtcReleaseScene(a->groups[k]);
   if (a->scene) rtcReleaseScene(a->scene);
@@ -663,9 +655,8 @@ static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   q->mask = (unsigned)-1, q->id = i, q->flags = 0;
 }
 
-void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
+void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                       uint32_t *prim, uint32_t *instance, float *t) {
-  if (world->accel.log) world->accel.log(world->accel.log_user, coherent ? 0 : 1, n, rays);
   if (coherent) {
     closest_packets(world, n, rays, shape, prim, instance, t);
     return;
@@ -686,8 +677,7 @@ void vl_accel_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool
   }
 }
 
-void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
-  if (world->accel.log) world->accel.log(world->accel.log_user, 2, n, rays);
+void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
   BEGIN_QUERY(query, rays, false);
   for (uint32_t i = 0; i < n; i++) {
     struct RTCRay q;

@@ -1,0 +1,223 @@
+/* world/accel/brute_force.hot.c: every ray against every primitive of a small world. Rays of a block are tested against
+ * one face at a time; a few single rays are tested against many faces at a time, by the same operations. */
+#include "world/accel/brute_force.h"
+
+#include "math/vec.h"
+#include "world/shape/surface_point.h"
+
+enum { BLOCK = 64, FEW_RAYS = 4, NO_HIT = -1 };
+
+/* The constants of a face (vlBruteForce). */
+typedef struct Face {
+  vlVec3 edge[4], moment[4], normal, corner;
+} Face;
+
+static inline Face face_at(const vlBruteForce *b, uint32_t j) {
+  Face q;
+  for (int k = 0; k < 4; k++) {
+    q.edge[k] = vl_vec3(b->edge[k][0][j], b->edge[k][1][j], b->edge[k][2][j]);
+    q.moment[k] = vl_vec3(b->moment[k][0][j], b->moment[k][1][j], b->moment[k][2][j]);
+  }
+  q.normal = vl_vec3(b->normal[0][j], b->normal[1][j], b->normal[2][j]);
+  q.corner = vl_vec3(b->corner[0][j], b->corner[1][j], b->corner[2][j]);
+  return q;
+}
+
+/* Where a ray crosses the plane of a face: at the distance height / speed, in units of the ray's direction; speed is
+ * not negative. speed 0: the ray does not cross the face. */
+typedef struct Crossing {
+  float height, speed;
+} Crossing;
+
+/* moment: of the ray, o x d relative to the centre. */
+static inline Crossing cross(Face q, vlVec3 o, vlVec3 d, vlVec3 moment) {
+  float side[4];
+  for (int k = 0; k < 4; k++) side[k] = vl_dot(d, q.moment[k]) + vl_dot(moment, q.edge[k]);
+  float least = vl_min(vl_min(side[0], side[1]), vl_min(side[2], side[3]));
+  float most = vl_max(vl_max(side[0], side[1]), vl_max(side[2], side[3]));
+  float speed = vl_dot(q.normal, d), height = vl_dot(q.normal, vl_sub(q.corner, o));
+  int inside = (least >= 0.0f) | (most <= 0.0f);
+  Crossing at = {speed < 0.0f ? -height : height, inside ? vl_abs(speed) : 0.0f};
+  return at;
+}
+
+/* Whether the distance is above `low` and below near.height / near.speed. */
+static inline int is_between(Crossing at, float low, Crossing near) {
+  return (at.height > low * at.speed) & (at.height * near.speed < near.height * at.speed);
+}
+
+/* A block of rays. The rows are padded with copies of the last ray. */
+typedef struct Block {
+  uint32_t n;
+  _Alignas(64) float ox[BLOCK], oy[BLOCK], oz[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
+  _Alignas(64) float mx[BLOCK], my[BLOCK], mz[BLOCK]; /* moments */
+  _Alignas(64) float low[BLOCK];                      /* start of the ray */
+  _Alignas(64) float height[BLOCK], speed[BLOCK];     /* the nearest crossing; at first the end of the ray */
+  _Alignas(64) int32_t id[BLOCK];
+} Block;
+
+static vlVec3 moment_of(const vlBruteForce *b, vlVec3 o, vlVec3 d) {
+  return vl_cross(vl_sub(o, vl_vec3(b->center[0], b->center[1], b->center[2])), d);
+}
+
+/* Rays first to first + n - 1. */
+static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t first, uint32_t n) {
+  k->n = n;
+  uint32_t padded = VL_PAD(n);
+  for (uint32_t i = 0; i < padded; i++) {
+    uint32_t at = first + (i < n ? i : n - 1);
+    k->ox[i] = r->ox[at], k->oy[i] = r->oy[at], k->oz[i] = r->oz[at];
+    k->dx[i] = r->dx[at], k->dy[i] = r->dy[at], k->dz[i] = r->dz[at];
+    k->low[i] = r->t_min ? r->t_min[at] : 0.0f;
+    k->height[i] = r->t_max ? r->t_max[at] : __builtin_inff();
+    k->speed[i] = 1.0f;
+    k->id[i] = NO_HIT;
+  }
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 m = moment_of(b, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]));
+    k->mx[i] = m.x, k->my[i] = m.y, k->mz[i] = m.z;
+  }
+}
+
+/* The nearest crossing of each ray with face j, if it is nearer than that so far. */
+static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
+  Face q = face_at(b, j);
+  uint32_t padded = VL_PAD(k->n);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    Crossing at = cross(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                        vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+    Crossing near = {k->height[i], k->speed[i]};
+    int nearer = is_between(at, k->low[i], near);
+    k->height[i] = nearer ? at.height : near.height;
+    k->speed[i] = nearer ? at.speed : near.speed;
+    k->id[i] = nearer ? (int32_t)j : k->id[i];
+  }
+}
+
+/* Marks the rays that face j blocks: id 0. */
+static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
+  Face q = face_at(b, j);
+  uint32_t padded = VL_PAD(k->n);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    Crossing at = cross(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                        vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+    Crossing end = {k->height[i], 1.0f};
+    k->id[i] = is_between(at, k->low[i], end) ? 0 : k->id[i];
+  }
+}
+
+/* The same for few rays: each against all faces, many at a time. any: marks rays as cross_any does. */
+static void cross_few(Block *k, const vlBruteForce *b, bool any) {
+  _Alignas(64) float height[VL_BRUTE_FACES], speed[VL_BRUTE_FACES];
+  uint32_t padded = VL_PAD(b->faces);
+  for (uint32_t i = 0; i < k->n; i++) {
+    vlVec3 o = vl_vec3(k->ox[i], k->oy[i], k->oz[i]), d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
+    vlVec3 m = vl_vec3(k->mx[i], k->my[i], k->mz[i]);
+    /* must vectorise */
+    VL_SIMD for (uint32_t j = 0; j < padded; j++) {
+      Crossing at = cross(face_at(b, j), o, d, m);
+      height[j] = at.height, speed[j] = at.speed;
+    }
+    Crossing near = {k->height[i], k->speed[i]};
+    for (uint32_t j = 0; j < b->faces; j++) {
+      Crossing at = {height[j], speed[j]};
+      if ((any && b->pass_shadow[j]) || !is_between(at, k->low[i], near)) continue;
+      k->id[i] = any ? 0 : (int32_t)j;
+      if (any) break;
+      near = at;
+    }
+    k->height[i] = near.height, k->speed[i] = near.speed;
+  }
+}
+
+/* Which rays come near the bounding sphere of a primitive: 1. The bounds are wider than the rounding errors, which grow
+ * with the distance. */
+static void approach(const Block *k, const float sphere[4], int32_t *near) {
+  vlVec3 c = vl_vec3(sphere[0], sphere[1], sphere[2]);
+  uint32_t padded = VL_PAD(k->n);
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
+    vlVec3 w = vl_sub(c, vl_vec3(k->ox[i], k->oy[i], k->oz[i]));
+    float away = vl_length2(w), radius2 = 1.002f * sphere[3] + 1e-10f * away;
+    int meets = vl_length2(vl_cross(w, d)) <= radius2 * vl_length2(d);
+    near[i] = meets & ((vl_dot(w, d) >= 0.0f) | (away <= radius2));
+  }
+}
+
+/* Whether ray i, which meets the quadrilateral j, does so in its second triangle. */
+static bool is_second(const Block *k, const vlBruteForce *b, uint32_t j, uint32_t i) {
+  const float *e = b->diagonal_edge[j], *m = b->diagonal_moment[j];
+  vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
+  float side = vl_dot(d, vl_vec3(m[0], m[1], m[2])) +
+               vl_dot(vl_vec3(k->mx[i], k->my[i], k->mz[i]), vl_vec3(e[0], e[1], e[2]));
+  float facing = vl_dot(d, vl_vec3(b->normal[0][j], b->normal[1][j], b->normal[2][j]));
+  return facing < 0.0f ? side < 0.0f : side > 0.0f;
+}
+
+static bool meets_other(const Block *k, const vlWorldShape *s, uint32_t prim, uint32_t i, float t_max, double *t) {
+  double o[3] = {k->ox[i], k->oy[i], k->oz[i]}, d[3] = {k->dx[i], k->dy[i], k->dz[i]};
+  vlShapeHit hit;
+  if (!vl_shape_intersect(s, prim, o, d, k->low[i], t_max, &hit)) return false;
+  *t = hit.t;
+  return true;
+}
+
+static void closest(const vlWorld *world, const vlBruteForce *b, uint32_t n, const vlRays *rays, uint32_t *shape,
+                    uint32_t *prim, uint32_t *instance, float *t) {
+  Block k;
+  _Alignas(64) int32_t near[BLOCK];
+  for (uint32_t first = 0; first < n; first += BLOCK) {
+    load(&k, b, rays, first, n - first < BLOCK ? n - first : BLOCK);
+    if (k.n <= FEW_RAYS)
+      cross_few(&k, b, false);
+    else
+      for (uint32_t j = 0; j < b->faces; j++) cross_closest(&k, b, j);
+    for (uint32_t i = 0; i < k.n; i++) k.height[i] /= k.speed[i];
+    for (uint32_t j = 0; j < b->others; j++) {
+      uint32_t id = b->faces + j;
+      double met;
+      approach(&k, b->sphere[j], near);
+      for (uint32_t i = 0; i < k.n; i++)
+        if (near[i] && meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i, k.height[i], &met))
+          k.height[i] = (float)met, k.id[i] = (int32_t)id;
+    }
+    for (uint32_t i = 0; i < k.n; i++) {
+      bool hit = k.id[i] != NO_HIT;
+      uint32_t face = (uint32_t)k.id[i], second = hit && face < b->faces && b->pair[face] && is_second(&k, b, face, i);
+      shape[first + i] = hit ? b->shape[k.id[i]] : VL_NONE;
+      prim[first + i] = hit ? b->prim[k.id[i]] + second : VL_NONE;
+      instance[first + i] = VL_NONE;
+      t[first + i] = k.height[i];
+    }
+  }
+}
+
+static void occluded(const vlWorld *world, const vlBruteForce *b, uint32_t n, const vlRays *rays, uint8_t *blocked) {
+  Block k;
+  _Alignas(64) int32_t near[BLOCK];
+  for (uint32_t first = 0; first < n; first += BLOCK) {
+    load(&k, b, rays, first, n - first < BLOCK ? n - first : BLOCK);
+    if (k.n <= FEW_RAYS)
+      cross_few(&k, b, true);
+    else
+      for (uint32_t j = 0; j < b->faces; j++)
+        if (!b->pass_shadow[j]) cross_any(&k, b, j);
+    for (uint32_t j = 0; j < b->others; j++) {
+      uint32_t id = b->faces + j;
+      double met;
+      if (b->pass_shadow[id]) continue;
+      approach(&k, b->sphere[j], near);
+      for (uint32_t i = 0; i < k.n; i++)
+        if (near[i] && k.id[i] == NO_HIT &&
+            meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i, k.height[i], &met))
+          k.id[i] = 0;
+    }
+    for (uint32_t i = 0; i < k.n; i++) blocked[first + i] = k.id[i] != NO_HIT;
+  }
+}
+
+const vlBruteForceKernels vl_brute_force_kernel_table = {closest, occluded};

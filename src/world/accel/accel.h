@@ -1,6 +1,6 @@
-/* world/accel/accel.h: nearest-hit and occlusion queries: by Embree (embree.h), or for worlds of few primitives by brute
- * force (brute_force.h). Queries return ids. velo recomputes t, u and v in its own arithmetic, because Embree's values
- * differ between its instruction sets. */
+/* world/accel/accel.h: nearest-hit and occlusion queries: by Embree (embree.h), or for worlds of few primitives by
+ * brute force (brute_force.h). Queries return ids. velo recomputes t, u and v in its own arithmetic, because Embree's
+ * values differ between its instruction sets. */
 #ifndef WORLD_ACCEL_ACCEL_H
 #define WORLD_ACCEL_ACCEL_H
 
@@ -36,11 +36,11 @@ typedef struct vlAccel {
   /* The shapes of group 0 are in a scene of their own, which `scene` contains as instance 0. It can then be shared
    * with the previous world, although instances have moved. The numbers of the other instances are the same. */
   bool split;
-  vlAccelBundle *bundles; /* one per group */
-  uint32_t *members;      /* memory of the members of all bundles */
+  vlAccelBundle *bundles;           /* one per group */
+  uint32_t *members;                /* memory of the members of all bundles */
   struct vlBruteForce *brute_force; /* of a world of few primitives, where it answers all queries; else null */
   const struct vlBruteForceKernels *brute_force_kernels;
-  vlRayLogFn *log;        /* null except in benchmarks */
+  vlRayLogFn *log; /* null except in benchmarks */
   void *log_user;
 } vlAccel;
 

@@ -116,27 +116,32 @@ static void make_edge(const vlBruteForce *b, const double from[3], const double 
   for (int i = 0; i < 3; i++) edge[i] = (float)(q[i] - p[i]), moment[i] = (float)cross_at(p, q, i);
 }
 
-static void add_face(vlBruteForce *b, const Face *f) {
+/* extent: radius of the world. */
+static void add_face(vlBruteForce *b, const Face *f, float extent) {
   uint32_t at = b->faces++;
+  float longest = 0;
   for (int k = 0; k < 4; k++) {
     float edge[3], moment[3];
     int from = k < f->corners ? k : f->corners - 1;
     make_edge(b, f->corner[from], f->corner[(from + 1) % f->corners], edge, moment);
     for (int i = 0; i < 3; i++) b->edge[k][i][at] = edge[i], b->moment[k][i][at] = moment[i];
+    for (int i = 0; i < 3; i++) longest = fmaxf(longest, fabsf(edge[i]));
   }
+  b->tolerance[at] = 0x1p-23f * extent * longest;
   for (int i = 0; i < 3; i++) b->normal[i][at] = (float)f->normal[i], b->corner[i][at] = (float)f->corner[0][i];
   b->pair[at] = f->corners == 4;
   if (b->pair[at]) make_edge(b, f->diagonal[0], f->diagonal[1], b->diagonal_edge[at], b->diagonal_moment[at]);
 }
 
 /* Adds the triangles of a shape. False: there are too many. */
-static bool add_triangles(vlBruteForce *b, uint32_t shape, const vlWorldShape *s) {
+static bool add_triangles(vlBruteForce *b, const vlWorld *world, uint32_t shape) {
+  const vlWorldShape *s = &world->shapes.items[shape];
   for (uint32_t prim = 0; prim < s->faces; prim++) {
     if (b->faces == VL_BRUTE_FACES) return false;
     b->shape[b->faces] = shape, b->prim[b->faces] = prim, b->pass_shadow[b->faces] = s->pass_shadow;
     Face f = triangle_face(s, prim);
     if (prim + 1 < s->faces) extend(&f, s, prim + 1);
-    add_face(b, &f);
+    add_face(b, &f, world->radius);
     if (f.corners == 4) prim++;
   }
   return true;
@@ -166,8 +171,8 @@ static void add_others(vlBruteForce *b, uint32_t shape, const vlWorldShape *s) {
 static bool add_shapes(vlBruteForce *b, const vlWorld *world) {
   const vlWorldGroup *group = &world->groups.items[0];
   for (uint32_t k = 0; k < group->count; k++) {
-    const vlWorldShape *s = &world->shapes.items[group->shapes[k]];
-    if (s->kind == VL_SHAPE_TRIANGLES && !add_triangles(b, group->shapes[k], s)) return false;
+    uint32_t shape = group->shapes[k];
+    if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES && !add_triangles(b, world, shape)) return false;
   }
   for (uint32_t k = 0; k < group->count; k++) {
     const vlWorldShape *s = &world->shapes.items[group->shapes[k]];

@@ -7,20 +7,13 @@
 
 enum { BLOCK = 64, FEW_RAYS = 4, NO_HIT = -1 };
 
-/* The constants of a face (vlBruteForce). */
-typedef struct Face {
-  vlVec3 edge[4], moment[4], normal, corner;
-} Face;
+static inline vlVec3 at3(const float rows[3][VL_BRUTE_FACES], uint32_t j) {
+  return vl_vec3(rows[0][j], rows[1][j], rows[2][j]);
+}
 
-static inline Face face_at(const vlBruteForce *b, uint32_t j) {
-  Face q;
-  for (int k = 0; k < 4; k++) {
-    q.edge[k] = vl_vec3(b->edge[k][0][j], b->edge[k][1][j], b->edge[k][2][j]);
-    q.moment[k] = vl_vec3(b->moment[k][0][j], b->moment[k][1][j], b->moment[k][2][j]);
-  }
-  q.normal = vl_vec3(b->normal[0][j], b->normal[1][j], b->normal[2][j]);
-  q.corner = vl_vec3(b->corner[0][j], b->corner[1][j], b->corner[2][j]);
-  return q;
+/* On which side a ray passes an edge (vlBruteForce). m: moment of the ray, o x d relative to the centre. */
+static inline float side_of(vlVec3 edge, vlVec3 moment, vlVec3 d, vlVec3 m) {
+  return vl_dot(d, moment) + vl_dot(m, edge);
 }
 
 /* Where a ray crosses the plane of a face: at the distance height / speed, in units of the ray's direction; speed is
@@ -29,16 +22,33 @@ typedef struct Crossing {
   float height, speed;
 } Crossing;
 
-/* moment: of the ray, o x d relative to the centre. */
-static inline Crossing cross(Face q, vlVec3 o, vlVec3 d, vlVec3 moment) {
-  float side[4];
-  for (int k = 0; k < 4; k++) side[k] = vl_dot(d, q.moment[k]) + vl_dot(moment, q.edge[k]);
-  float least = vl_min(vl_min(side[0], side[1]), vl_min(side[2], side[3]));
-  float most = vl_max(vl_max(side[0], side[1]), vl_max(side[2], side[3]));
-  float speed = vl_dot(q.normal, d), height = vl_dot(q.normal, vl_sub(q.corner, o));
-  int inside = (least >= 0.0f) | (most <= 0.0f);
+/* a, b, c, e: the sides on which the ray passes the edges. */
+static inline Crossing cross(float a, float b, float c, float e, vlVec3 normal, vlVec3 corner, float tolerance,
+                             vlVec3 o, vlVec3 d) {
+  float least = vl_min(vl_min(a, b), vl_min(c, e)), most = vl_max(vl_max(a, b), vl_max(c, e));
+  float speed = vl_dot(normal, d), height = vl_dot(normal, vl_sub(corner, o));
+  float wide = tolerance * vl_abs(speed);
+  int inside = (least >= -wide) | (most <= wide);
   Crossing at = {speed < 0.0f ? -height : height, inside ? vl_abs(speed) : 0.0f};
   return at;
+}
+
+/* The constants of a face. */
+typedef struct Face {
+  vlVec3 edge[4], moment[4], normal, corner;
+  float tolerance;
+} Face;
+
+static Face face_at(const vlBruteForce *b, uint32_t j) {
+  Face q = {.normal = at3(b->normal, j), .corner = at3(b->corner, j), .tolerance = b->tolerance[j]};
+  for (int k = 0; k < 4; k++) q.edge[k] = at3(b->edge[k], j), q.moment[k] = at3(b->moment[k], j);
+  return q;
+}
+
+static inline Crossing cross_face(Face q, vlVec3 o, vlVec3 d, vlVec3 m) {
+  return cross(side_of(q.edge[0], q.moment[0], d, m), side_of(q.edge[1], q.moment[1], d, m),
+               side_of(q.edge[2], q.moment[2], d, m), side_of(q.edge[3], q.moment[3], d, m), q.normal, q.corner,
+               q.tolerance, o, d);
 }
 
 /* Whether the distance is above `low` and below near.height / near.speed. */
@@ -56,13 +66,10 @@ typedef struct Block {
   _Alignas(64) int32_t id[BLOCK];
 } Block;
 
-static vlVec3 moment_of(const vlBruteForce *b, vlVec3 o, vlVec3 d) {
-  return vl_cross(vl_sub(o, vl_vec3(b->center[0], b->center[1], b->center[2])), d);
-}
-
 /* Rays first to first + n - 1. */
 static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t first, uint32_t n) {
   k->n = n;
+  vlVec3 center = vl_vec3(b->center[0], b->center[1], b->center[2]);
   uint32_t padded = VL_PAD(n);
   for (uint32_t i = 0; i < padded; i++) {
     uint32_t at = first + (i < n ? i : n - 1);
@@ -75,7 +82,7 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 m = moment_of(b, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]));
+    vlVec3 m = vl_cross(vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center), vl_vec3(k->dx[i], k->dy[i], k->dz[i]));
     k->mx[i] = m.x, k->my[i] = m.y, k->mz[i] = m.z;
   }
 }
@@ -86,8 +93,8 @@ static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
   uint32_t padded = VL_PAD(k->n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    Crossing at = cross(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
-                        vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+    Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                             vl_vec3(k->mx[i], k->my[i], k->mz[i]));
     Crossing near = {k->height[i], k->speed[i]};
     int nearer = is_between(at, k->low[i], near);
     k->height[i] = nearer ? at.height : near.height;
@@ -102,8 +109,8 @@ static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
   uint32_t padded = VL_PAD(k->n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    Crossing at = cross(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
-                        vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+    Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+                             vl_vec3(k->mx[i], k->my[i], k->mz[i]));
     Crossing end = {k->height[i], 1.0f};
     k->id[i] = is_between(at, k->low[i], end) ? 0 : k->id[i];
   }
@@ -114,11 +121,15 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
   _Alignas(64) float height[VL_BRUTE_FACES], speed[VL_BRUTE_FACES];
   uint32_t padded = VL_PAD(b->faces);
   for (uint32_t i = 0; i < k->n; i++) {
-    vlVec3 o = vl_vec3(k->ox[i], k->oy[i], k->oz[i]), d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
-    vlVec3 m = vl_vec3(k->mx[i], k->my[i], k->mz[i]);
+    vlVec3 o = vl_vec3(k->ox[i], k->oy[i], k->oz[i]), d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
+           m = vl_vec3(k->mx[i], k->my[i], k->mz[i]);
     /* must vectorise */
     VL_SIMD for (uint32_t j = 0; j < padded; j++) {
-      Crossing at = cross(face_at(b, j), o, d, m);
+      Crossing at = cross(side_of(at3(b->edge[0], j), at3(b->moment[0], j), d, m),
+                          side_of(at3(b->edge[1], j), at3(b->moment[1], j), d, m),
+                          side_of(at3(b->edge[2], j), at3(b->moment[2], j), d, m),
+                          side_of(at3(b->edge[3], j), at3(b->moment[3], j), d, m), at3(b->normal, j), at3(b->corner, j),
+                          b->tolerance[j], o, d);
       height[j] = at.height, speed[j] = at.speed;
     }
     Crossing near = {k->height[i], k->speed[i]};
@@ -140,8 +151,7 @@ static void approach(const Block *k, const float sphere[4], int32_t *near) {
   uint32_t padded = VL_PAD(k->n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
-    vlVec3 w = vl_sub(c, vl_vec3(k->ox[i], k->oy[i], k->oz[i]));
+    vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]), w = vl_sub(c, vl_vec3(k->ox[i], k->oy[i], k->oz[i]));
     float away = vl_length2(w), radius2 = 1.002f * sphere[3] + 1e-10f * away;
     int meets = vl_length2(vl_cross(w, d)) <= radius2 * vl_length2(d);
     near[i] = meets & ((vl_dot(w, d) >= 0.0f) | (away <= radius2));
@@ -152,9 +162,8 @@ static void approach(const Block *k, const float sphere[4], int32_t *near) {
 static bool is_second(const Block *k, const vlBruteForce *b, uint32_t j, uint32_t i) {
   const float *e = b->diagonal_edge[j], *m = b->diagonal_moment[j];
   vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]);
-  float side = vl_dot(d, vl_vec3(m[0], m[1], m[2])) +
-               vl_dot(vl_vec3(k->mx[i], k->my[i], k->mz[i]), vl_vec3(e[0], e[1], e[2]));
-  float facing = vl_dot(d, vl_vec3(b->normal[0][j], b->normal[1][j], b->normal[2][j]));
+  float side = side_of(vl_vec3(e[0], e[1], e[2]), vl_vec3(m[0], m[1], m[2]), d, vl_vec3(k->mx[i], k->my[i], k->mz[i]));
+  float facing = vl_dot(at3(b->normal, j), d);
   return facing < 0.0f ? side < 0.0f : side > 0.0f;
 }
 

@@ -656,7 +656,7 @@ static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
 }
 
 void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
-                      uint32_t *prim, uint32_t *instance, float *t) {
+                       uint32_t *prim, uint32_t *instance, float *t) {
   if (coherent) {
     closest_packets(world, n, rays, shape, prim, instance, t);
     return;

@@ -1,4 +1,4 @@
-/* world/accel/accel.c: sends queries to brute force if the world has it, else to Embree. */
+/* world/accel/queries.c: sends queries to brute force if the world has it, else to Embree. */
 #include "world/accel/accel.h"
 
 #include "base/error.h"

@@ -35,22 +35,31 @@ static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 static const double BLUR = 0.002;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
 
+/* Rays are cheap in small worlds, and the rest of the work counts more. */
+typedef enum WorldSize {
+  MANY,
+  FEW,         /* fewer than FEW_FACES */
+  BRUTE_FORCE, /* few enough for world/accel/brute_force.h */
+  WORLD_SIZES
+} WorldSize;
+
 /* A tracer of the race. */
 typedef struct Row {
   vlTracer tracer;
   uint32_t divisor; /* pixels per light path; 0: no light paths */
-  double ray[2];    /* mean time of a ray, relative to a ray of VL_TRACER_VOLPATH, in worlds of more and of fewer than
-                       FEW_FACES: geometric means over 13 scenes (docs/performance.md). Rays are cheap in small worlds, and
-                       the rest of the work counts more. */
+  /* Mean time of a ray, relative to a ray of VL_TRACER_VOLPATH, by the size of the world: geometric means over 13
+   * scenes (docs/performance.md). */
+  double ray[WORLD_SIZES];
   double path; /* expected cost of a sample, relative to a sample of VL_TRACER_VOLPATH; for the length of the race */
 } Row;
 static const Row rows[VL_MOST_TRIALS] = {
-    {VL_TRACER_VOLPATH, 0, {1.0, 1.0}, 1.0},
-    {VL_TRACER_BIDIRECTIONAL, 1, {1.2, 1.4}, 3.0},
-    {VL_TRACER_BIDIRECTIONAL, QUARTER, {1.2, 1.4}, 2.0},
-    {VL_TRACER_MERGING, 1, {1.2, 1.4}, 4.0},
+    {VL_TRACER_VOLPATH, 0, {1.0, 1.0, 1.0}, 1.0},
+    {VL_TRACER_BIDIRECTIONAL, 1, {1.2, 1.4, 1.7}, 3.0},
+    {VL_TRACER_BIDIRECTIONAL, QUARTER, {1.2, 1.4, 1.7}, 2.0},
+    {VL_TRACER_MERGING, 1, {1.2, 1.4, 1.7}, 4.0},
 };
-static const double PHOTON = 0.015; /* time of one unit of vlTraceBatch.merge_work, relative to a ray */
+/* Time of one unit of vlTraceBatch.merge_work, relative to a ray. */
+static const double photon[WORLD_SIZES] = {0.015, 0.015, 0.022};
 
 typedef struct Race {
   const vlWorld *world;
@@ -59,7 +68,7 @@ typedef struct Race {
   vlRenderDef def;
   uint32_t factor; /* of the coarse images */
   uint32_t count;
-  bool small; /* the world has few faces */
+  WorldSize size;
   vlImage *images[VL_MOST_TRIALS][2];
   size_t pixels;
   double *base; /* by pixel and channel: what a relative error is relative to */
@@ -76,10 +85,11 @@ static bool has_smooth(const vlWorld *world) {
   return false;
 }
 
-static bool has_few_faces(const vlWorld *world) {
+static WorldSize size_of(const vlWorld *world) {
+  if (world->accel.brute_force) return BRUTE_FORCE;
   uint64_t faces = 0;
   for (size_t i = 0; i < world->shapes.count; i++) faces += world->shapes.items[i].faces;
-  return faces < FEW_FACES;
+  return faces < FEW_FACES ? FEW : MANY;
 }
 
 /* Chooses the number of samples and the size of the coarse images. False: the race would be too short. */
@@ -115,8 +125,8 @@ static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *t
   if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");
   result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, &stats, error);
   if (result == VL_OK) {
-    trial->cost += rows[i].ray[race->small] * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
-    trial->cost += PHOTON * (double)pilot.merge_work;
+    trial->cost += rows[i].ray[race->size] * (double)(stats.paths + stats.bounce_rays + stats.shadow_rays);
+    trial->cost += photon[race->size] * (double)pilot.merge_work;
     if (vl_film_develop(film, NULL, &race->images[i][half]) != VL_OK) result = vl_fail_memory(error);
   }
   vl_film_destroy(film);
@@ -294,7 +304,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   choice->light_paths = def->light_paths;
   Race race = {.world = world,
                .def = *def,
-               .small = has_few_faces(world),
+               .size = size_of(world),
                .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
   uint32_t spp = def->spp;
   if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;

@@ -276,10 +276,15 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
  * have the same material. */
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
 void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
-/* Chooses a light for each lane. Writes light->light and light->pmf. *rest: the position of u in the chosen light's
- * part of [0, 1), uniform again; unspecified for lanes without a light. */
+/* The lanes that have chosen a light. Lanes with the same light are adjacent as far as possible, so they can be sampled
+ * together. */
+typedef struct vlLanesByLight {
+  uint32_t count, lane[VL_ROW_SIZE];
+} vlLanesByLight;
+/* Chooses a light for each lane. Writes light->light and light->pmf (0: no light). *rest: the position of u in the
+ * chosen light's part of [0, 1), uniform again; unspecified for lanes without a light. */
 void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface *surface, const float *u,
-                           vlLightSamples *light, float *rest);
+                           vlLightSamples *light, float *rest, vlLanesByLight *by_light);
 /* Takes one light sample for each lane. u_choice chooses the light; its rest and v choose the point or direction. So
  * the points on each light are as well distributed as the pairs (u_choice, v): with a number of its own for the choice,
  * the lanes of one light would be a random part of the points. spare replaces the rest where the light's part is so

@@ -81,17 +81,17 @@ static void spheres(uint32_t padded, Block *restrict b) {
 
 /* ---- radiance ---------------------------------------------------------------------------------------------------- */
 
-/* Computes the radiance of all lanes from the same spectrum. */
-static void radiance_of(const vlSpectral *s, uint32_t padded, Block *restrict b) {
+/* Computes the radiance of lanes [first, last) from the same spectrum. */
+static void radiance_of(const vlSpectral *s, uint32_t first, uint32_t last, Block *restrict b) {
   for (int c = 0; c < 4; c++) {
     const float *lambda = b->lambda[c];
     float *out = b->radiance[c];
     if (s->kind == VL_SPECTRAL_DENSE) {
       /* must vectorise */
       VL_SIMD
-      for (uint32_t k = 0; k < padded; k++) out[k] = s->scale * vl_dense_at(s->dense, lambda[k]);
+      for (uint32_t k = first; k < last; k++) out[k] = s->scale * vl_dense_at(s->dense, lambda[k]);
     } else {
-      for (uint32_t k = 0; k < padded; k++) out[k] = vl_spectral_at(s, c, lambda[k]);
+      for (uint32_t k = first; k < last; k++) out[k] = vl_spectral_at(s, c, lambda[k]);
     }
   }
 }
@@ -101,16 +101,10 @@ static const vlEmitted *emitted_of(const vlWorld *world, const vlLightSamples *s
 }
 
 static void radiance(const vlWorld *world, const vlLightSamples *samples, uint32_t padded, Block *b) {
-  const vlEmitted *first = emitted_of(world, samples, b->lane[0]);
-  uint32_t same = 1;
-  while (same < padded && emitted_of(world, samples, b->lane[same]) == first) same++;
-  if (same == padded) {
-    radiance_of(&first->spectrum, padded, b);
-    return;
-  }
-  for (uint32_t k = 0; k < padded; k++) {
-    const vlEmitted *e = emitted_of(world, samples, b->lane[k]);
-    for (int c = 0; c < 4; c++) b->radiance[c][k] = vl_spectral_at(&e->spectrum, c, b->lambda[c][k]);
+  for (uint32_t first = 0, last; first < padded; first = last) {
+    const vlEmitted *e = emitted_of(world, samples, b->lane[first]);
+    for (last = first + 1; last < padded && emitted_of(world, samples, b->lane[last]) == e;) last++;
+    radiance_of(&e->spectrum, first, last, b);
   }
 }
 

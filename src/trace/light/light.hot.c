@@ -310,14 +310,17 @@ void vl_stage_lights(const vlWorld *world, uint32_t n, const vlPaths *paths, con
   static SampleGroup *const sample_group[] = {vl_sample_triangles, vl_sample_spheres};
   const float least_pmf = 1.0f / 256.0f; /* leaves 16 of the 24 bits */
   float u[VL_ROW_SIZE];
-  vl_stage_light_choice(&world->tree, n, f, u_choice, out, u);
+  vlLanesByLight chosen;
+  vl_stage_light_choice(&world->tree, n, f, u_choice, out, u, &chosen);
   for (uint32_t i = 0; i < n; i++) u[i] = out->pmf[i] < least_pmf ? spare[i] : u[i];
   uint32_t skies[VL_ROW_SIZE], sky_count = 0;
   Group groups[2] = {{.count = 0}, {.count = 0}}; /* triangles, spheres */
   for (uint32_t i = 0; i < n; i++) {
     out->pdf[i] = 0.0f;
     out->wx[i] = out->wy[i] = out->wz[i] = 0.0f;
-    if (out->light[i] == VL_INNER || !(out->pmf[i] > 0.0f)) continue;
+  }
+  for (uint32_t k = 0; k < chosen.count; k++) {
+    uint32_t i = chosen.lane[k];
     const vlWorldLight *light = &world->lights.items[out->light[i]];
     vlVec3 p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
     if (vl_light_is_environment(world, light)) {

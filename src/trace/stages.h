@@ -131,6 +131,9 @@ typedef struct vlVolumeScratch {
   /* by shadow ray: densities of the light sample and of the BSDF or phase function */
   VL_ROW float light_pdf[VL_ROW_SIZE], pdf[VL_ROW_SIZE], density[4][VL_ROW_SIZE];
   VL_ROW uint32_t shadow_medium[VL_ROW_SIZE], from[VL_ROW_SIZE];
+  /* by shadow ray: beta, u, l and odds of its flight (vlFlight) */
+  VL_ROW float shadow_beta[4][VL_ROW_SIZE], shadow_u[4][VL_ROW_SIZE], shadow_l[4][VL_ROW_SIZE],
+      shadow_odds[VL_ROW_SIZE];
   VL_ROW float shadow_passed[3][VL_ROW_SIZE]; /* vlTraceScratch.passed at the shadow ray's origin */
   VL_ROW uint32_t kept[VL_ROW_SIZE];          /* indices of the scattered paths that go on */
 } vlVolumeScratch;
@@ -270,6 +273,18 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth);
 /* Computes the surface points that the rays hit. Of the hits, it reads only the ids. */
 void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *corners,
                       vlSurface *surface);
+/* What media need of the surfaces that the rays of a block hit: distance, geometric normal and offset (vlSurface), with
+ * the same bits. shape, prim, instance, hit (vlHits.t): rows of the hits' ids. */
+enum { VL_CROSSINGS = 64 };
+typedef struct vlCrossings {
+  uint32_t *shape, *prim, *instance;
+  float *hit;
+  VL_ROW float t[VL_CROSSINGS], gx[VL_CROSSINGS], gy[VL_CROSSINGS], gz[VL_CROSSINGS], offset[VL_CROSSINGS];
+  VL_ROW float corner[3][3][VL_CROSSINGS], normal[3][3][VL_CROSSINGS], error[VL_CROSSINGS], flip[VL_CROSSINGS];
+} vlCrossings;
+/* Computes the crossings of `count` lanes of a block of n rays. */
+void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, const uint32_t *lanes, uint32_t count,
+                        vlCrossings *x);
 /* Computes the footprints' axes in uv. The surfaces must be computed already. */
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
 /* Evaluates textures, bump maps, normal maps, shading frames, wo and BSDF parameters for lanes [first, last), which
@@ -304,10 +319,13 @@ typedef struct vlPoint {
 
 /* Returns the start of a ray segment just past a surface point. The margin comes from the bound of the point's error.
  * The result is larger than t_min. */
-static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
-  float margin = 2.0f * at->offset / vl_max(vl_abs(vl_dot(at->g, d)), 0.01f) + 0x1p-22f * vl_abs(at->t);
-  return vl_max(at->t, t_min) +
+static inline float vl_past_crossing(float t, vlVec3 g, float offset, vlVec3 d, float t_min) {
+  float margin = 2.0f * offset / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + 0x1p-22f * vl_abs(t);
+  return vl_max(t, t_min) +
          vl_max(margin, VL_MIN_POSITIVE); /* the result is larger than t_min even if t_min and margin are 0 */
+}
+static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
+  return vl_past_crossing(at->t, at->g, at->offset, d, t_min);
 }
 /* The surface point that lane i's ray meets. */
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);

@@ -134,11 +134,11 @@ static void majorants_do_not_show(void **state) {
         vlFlight a = new_flight(2 * k), b = new_flight(2 * k + 1);
         float radiance[4] = {0}, t;
         a.hero = b.hero = (int)(k % 3);
-        if (vl_fly(&f.medium, o, d, t0, t1, false, &a, radiance, &t) == VL_FLIGHT_PASSED) {
+        if (vl_track(&f.medium, o, d, t0, t1, false, &a, radiance, &t) == VL_FLIGHT_PASSED) {
           double inv = 1 / (double)vl_flight_mean(a.u, 3);
           for (int c = 0; c < 3; c++) flown[c] += (double)a.beta[c] * inv, square[c] += pow((double)a.beta[c] * inv, 2);
         }
-        vl_attenuate(&f.medium, o, d, t0, t1, &b);
+        vl_track_through(&f.medium, o, d, t0, t1, &b);
         double inv = 1 / (double)vl_flight_mean(b.l, 3);
         for (int c = 0; c < 3; c++)
           passed[c] += (double)b.beta[c] * inv, ratio_square[c] += pow((double)b.beta[c] * inv, 2);

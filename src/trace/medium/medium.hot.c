@@ -1,243 +1,267 @@
-/* trace/medium/medium.hot.c: free flights and transmittance (trace/medium/medium.h). Homogeneous media have closed
- * forms. Other media use delta tracking for flights and ratio tracking for transmittance, with majorants (pbrt book
- * 11.2, 11.4, 14.2) and null scattering (Miller, Georgiev and Jarosz 2019). Absorption without scattering is
- * deterministic in homogeneous media and ends no path in other media. The code is scalar because flights diverge. */
+/* trace/medium/medium.hot.c: flights in media, for a block of lanes (trace/medium/medium.h). Uniform media have closed
+ * forms, which are computed for all lanes in the same medium at once; other media track their lanes one by one
+ * (delta_tracking.hot.c). Absorption without scattering is deterministic. */
 #include "trace/medium/medium.h"
 
-/* The largest number of collisions of a flight; a bound for media whose majorants are far too large. */
-enum { MOST_COLLISIONS = 1 << 16 };
+/* ---- absorption by channel --------------------------------------------------------------------------------------- */
+
+/* Applies absorption by channel of linear sRGB over a length to lane i. The transmittance of a wavelength over the
+ * whole path so far is T = sum_i share_i(lambda) passed_i. Each call multiplies by the ratio of the new T to the old T,
+ * so the product over parts of a path is the T of the whole. */
+static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlights *f, uint32_t i) {
+  float passed[3], left[3];
+  for (int k = 0; k < 3; k++) passed[k] = f->passed[k][i], left[k] = passed[k] * vl_exp(-m->sigma_rgb[k] * length);
+  for (int c = 0; c < 4; c++) {
+    float before = vl_channels_at(passed, f->lambda[c][i]), after = vl_channels_at(left, f->lambda[c][i]);
+    f->beta[c][i] *= before > 0.0f ? after / before : 0.0f;
+  }
+  for (int k = 0; k < 3; k++) f->passed[k][i] = left[k];
+}
+
+/* ---- uniform media ----------------------------------------------------------------------------------------------- */
+
+/* The lanes of a block that fly through one uniform medium. */
+typedef struct Segments {
+  const vlWorldMedium *medium;
+  uint32_t padded;                                 /* lanes */
+  VL_ROW uint32_t flies[VL_FLIGHTS];               /* 1: the lane flies through this medium */
+  VL_ROW float length[VL_FLIGHTS];                 /* of the segment */
+  VL_ROW float a[4][VL_FLIGHTS], s[4][VL_FLIGHTS]; /* coefficients */
+  VL_ROW float hero[VL_FLIGHTS];                   /* sum of the coefficients of the hero */
+  VL_ROW uint32_t scatters[VL_FLIGHTS];            /* 1: the flight scatters, */
+  VL_ROW float distance[VL_FLIGHTS];               /* at this distance; otherwise the length */
+} Segments;
+
+static void spectrum_row(const vlSpectral *s, int channel, uint32_t n, const float *lambda, float *value) {
+  if (s->kind == VL_SPECTRAL_SIGMOID) {
+    float scale = s->scale;
+    vlSigmoid sigmoid = s->sigmoid;
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < n; i++) {
+      value[i] = scale * vl_sigmoid(sigmoid, lambda[i]);
+    }
+  } else if (s->kind == VL_SPECTRAL_DENSE) {
+    for (uint32_t i = 0; i < n; i++) value[i] = s->scale * vl_dense_at(s->dense, lambda[i]);
+  } else {
+    float constant = vl_spectral_at(s, channel, 0.0f);
+    for (uint32_t i = 0; i < n; i++) value[i] = constant;
+  }
+}
+
+/* Takes the lanes in this medium. */
+static void find_segments(const vlWorld *world, uint32_t medium, vlFlights *f, Segments *k) {
+  uint32_t padded = k->padded = VL_PAD(f->n);
+  k->medium = &world->media.items[medium];
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    uint32_t here = f->medium[i] == medium;
+    k->flies[i] = here & (f->to[i] > f->from[i]);
+    k->length[i] = vl_min(f->to[i] - f->from[i], 1e30f);
+    f->medium[i] = here ? VL_NONE : f->medium[i];
+  }
+  for (int c = 0; c < 4; c++) {
+    spectrum_row(&k->medium->sigma_a, c, padded, f->lambda[c], k->a[c]);
+    spectrum_row(&k->medium->sigma_s, c, padded, f->lambda[c], k->s[c]);
+  }
+}
 
 static inline float exponential(float u) {
   return -vl_ln(1.0f - u);
 }
 
-/* exp(-(sigma_c - sigma_hero) length): transmittance relative to the hero. */
-static inline void shift(const float sigma[4], int hero, float length, float factor[4]) {
-  for (int c = 0; c < 4; c++) factor[c] = vl_exp(-(sigma[c] - sigma[hero]) * length);
+/* The sum of the coefficients of each lane's hero channel. */
+static void find_heroes(const vlTracing *t, const vlFlights *f, Segments *k) {
+  bool first = !vl_volume_rgb(t) && !t->from_light; /* the hero of every path is channel 0 */
+  for (uint32_t i = 0; i < k->padded; i++) {
+    int h = first || i >= f->n ? 0 : vl_volume_hero(t, f->paths, f->path[i]);
+    k->hero[i] = k->a[h][i] + k->s[h][i];
+  }
 }
 
-static inline float largest(const float v[4]) {
-  return vl_max(vl_max(v[0], v[1]), vl_max(v[2], v[3]));
-}
-
-/* Applies absorption by channel of linear sRGB over a length. The transmittance of a wavelength over the whole path so
- * far is T = sum_i share_i(lambda) passed_i. Each call multiplies by the ratio of the new T to the old T, so the
- * product over parts of a path is the T of the whole. */
-static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlight *f) {
-  float left[3];
-  if (!m->by_channel) return;
-  for (int i = 0; i < 3; i++) left[i] = f->passed[i] * vl_exp(-m->sigma_rgb[i] * length);
-  for (int c = 0; c < 4; c++) {
-    float before = vl_channels_at(f->passed, f->lambda[c]), after = vl_channels_at(left, f->lambda[c]);
-    f->beta[c] *= before > 0.0f ? after / before : 0.0f;
-  }
-  for (int i = 0; i < 3; i++) f->passed[i] = left[i];
-}
-
-/* ---- homogeneous ------------------------------------------------------------------------------------------------- */
-
-static vlFlightEnd fly_homogeneous(const vlWorldMedium *m, float t0, float t1, bool emission, vlFlight *f,
-                                   float radiance[4], float *t) {
-  vlMediumLight k = vl_medium_coefficients(m, f->lambda);
-  float sigma[4], length = vl_min(t1 - t0, 1e30f), passes[4], factor[4];
-  int h = f->hero;
-  for (int c = 0; c < 4; c++) sigma[c] = k.a[c] + k.s[c], passes[c] = vl_exp(-sigma[c] * length);
-  if (emission && m->emits) { /* emission of the whole segment, whether or not the flight scatters before its end */
-    float inv = 1.0f / vl_flight_mean(f->u, f->channels);
-    for (int c = 0; c < 4; c++)
-      if (sigma[c] > 0.0f) radiance[c] += f->beta[c] * k.le[c] * k.a[c] / sigma[c] * (1.0f - passes[c]) * inv;
-  }
-  if (!m->scatters) {
-    for (int c = 0; c < 4; c++) f->beta[c] *= passes[c];
-    absorb_by_channel(m, length, f);
-    return largest(f->beta) > 0.0f ? VL_FLIGHT_PASSED : VL_FLIGHT_ENDED;
-  }
-  float depth = exponential(vl_flight_random(f));
-  if (depth < sigma[h] * length) {
-    float distance = vl_min(depth / sigma[h], length);
-    shift(sigma, h, distance, factor);
-    *t = t0 + distance;
-    absorb_by_channel(m, distance, f);
-    f->odds *= vl_exp(-m->extinction * distance);
+/* Adds the emission of the whole segments, whether or not the flights scatter before their ends. */
+static void emit(const vlTracing *t, vlFlights *f, const Segments *k) {
+  const vlWorldMedium *m = k->medium;
+  for (uint32_t i = 0; i < f->n; i++) {
+    if (!k->flies[i]) continue;
+    const float u[4] = {f->u[0][i], f->u[1][i], f->u[2][i], f->u[3][i]};
+    float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
     for (int c = 0; c < 4; c++) {
-      f->beta[c] *= factor[c] * k.s[c] / sigma[h];
-      f->u[c] *= factor[c] * sigma[c] / sigma[h];
+      float sigma = k->a[c][i] + k->s[c][i], passes = vl_exp(-sigma * k->length[i]);
+      float le = vl_spectral_at(&m->emission, c, f->lambda[c][i]);
+      if (sigma > 0.0f) f->given[c][i] += f->beta[c][i] * le * k->a[c][i] / sigma * (1.0f - passes) * inv;
     }
-    return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
-  }
-  shift(sigma, h, length, factor);
-  absorb_by_channel(m, length, f);
-  f->odds *= vl_exp(-m->extinction * length);
-  for (int c = 0; c < 4; c++) {
-    f->beta[c] *= factor[c];
-    f->u[c] *= factor[c];
-    f->l[c] /= passes[h]; /* light sampling uses the expected transmittance */
-  }
-  return VL_FLIGHT_PASSED;
-}
-
-static void attenuate_homogeneous(const vlWorldMedium *m, float t0, float t1, vlFlight *f) {
-  vlMediumLight k = vl_medium_coefficients(m, f->lambda);
-  float length = vl_min(t1 - t0, 1e30f);
-  for (int c = 0; c < 4; c++) {
-    float passes = vl_exp(-(k.a[c] + k.s[c]) * length);
-    f->beta[c] *= passes;
-    f->u[c] *= m->scatters ? passes : 1.0f;
-  }
-  absorb_by_channel(m, length, f);
-  if (m->scatters) f->odds *= vl_exp(-m->extinction * length);
-}
-
-/* ---- heterogeneous ----------------------------------------------------------------------------------------------- */
-
-/* The state of tracking along the majorants. */
-typedef struct Tracking {
-  vlMajorantWalk walk;
-  float unit[4];       /* majorant coefficients for a majorant of 1 */
-  float t, end, depth; /* position, end of this cell, optical depth of the hero channel to the next collision */
-  float majorant[4];   /* majorants in this cell */
-  uint32_t collisions;
-} Tracking;
-
-static void pass(const vlWorldMedium *m, const float majorant[4], float length, vlFlight *f) {
-  if (m->grey) return;
-  float factor[4];
-  shift(majorant, f->hero, length, factor);
-  for (int c = 0; c < 4; c++) f->beta[c] *= factor[c], f->u[c] *= factor[c], f->l[c] *= factor[c];
-}
-
-/* Factor of the odds at a null collision. The null probability is the same for all channels except in RGB grids, where
- * it is left out of the odds. */
-static inline float null_odds(const vlWorldMedium *m, float none, float majorant) {
-  return m->own_sigma ? 1.0f : none / majorant;
-}
-
-static bool start_tracking(const vlWorldMedium *m, const vlMediumLight *whole, vlVec3 o, vlVec3 d, float t0, float t1,
-                           vlFlight *f, Tracking *k) {
-  if (!vl_majorant_start(m, o, d, t0, t1, &k->walk)) return false;
-  for (int c = 0; c < 4; c++) k->unit[c] = m->own_sigma ? 1.0f : whole->a[c] + whole->s[c];
-  k->t = k->end = t0;
-  k->collisions = 0;
-  k->depth = exponential(vl_flight_random(f));
-  return true;
-}
-
-/* Moves to the next collision. Returns false at the end of the segment. */
-static bool next_collision(const vlWorldMedium *m, vlFlight *f, Tracking *k) {
-  for (;;) {
-    float most = k->majorant[f->hero], length = k->end - k->t;
-    if (length > 0.0f) {
-      if (most * length > k->depth) {
-        float distance = vl_min(k->depth / most, length);
-        pass(m, k->majorant, distance, f);
-        k->t += distance;
-        k->depth = 0.0f;
-        k->collisions++;
-        return true;
-      }
-      pass(m, k->majorant, length, f);
-      k->depth -= most * length;
-    }
-    float majorant;
-    if (!vl_majorant_next(&k->walk, &k->t, &k->end, &majorant)) return false;
-    for (int c = 0; c < 4; c++) k->majorant[c] = majorant * k->unit[c];
   }
 }
 
-static vlFlightEnd sample_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission,
-                                        vlFlight *f, float radiance[4], float *t) {
-  vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
-  Tracking k = {0};
-  int h = f->hero;
-  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k)) return VL_FLIGHT_PASSED;
-  while (next_collision(m, f, &k)) {
-    if (k.collisions > MOST_COLLISIONS) return VL_FLIGHT_ENDED;
-    bool gives = emission && m->emits;
-    vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), gives);
-    if (gives) {
-      float density[4];
-      for (int c = 0; c < 4; c++) density[c] = f->u[c] * k.majorant[c];
-      float inv = 1.0f / vl_flight_mean(density, f->channels);
-      for (int c = 0; c < 4; c++) radiance[c] += f->beta[c] * at.a[c] * at.le[c] * inv;
+/* A random number for each lane that flies, as vl_flight_random gives it. */
+static void draw(const vlTracing *t, vlFlights *f, const Segments *k, float *random) {
+  for (uint32_t i = 0; i < f->n; i++) {
+    random[i] = f->first[i];
+    if (!k->flies[i]) continue;
+    if (f->first[i] < 0.0f) {
+      uint32_t key = vl_volume_key(t, f->paths, f->path[i], f->depth, f->purpose);
+      random[i] = vl_unit_float(vl_hash2(key, f->count[i]++));
     }
-    float none[4]; /* coefficients of null collisions */
-    for (int c = 0; c < 4; c++) none[c] = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]);
-    if (!m->scatters) {
-      for (int c = 0; c < 4; c++) {
-        f->beta[c] *= none[c] / k.majorant[h];
-        f->u[c] *= k.majorant[c] / k.majorant[h];
-        f->l[c] *= k.majorant[c] / k.majorant[h];
-      }
-      float carried = largest(f->beta) / vl_flight_mean(f->u, f->channels);
-      if (!(carried > 0.0f)) return VL_FLIGHT_ENDED;
-      if (carried < 0.05f) {
-        if (vl_flight_random(f) < 0.75f) return VL_FLIGHT_ENDED;
-        for (int c = 0; c < 4; c++) f->beta[c] *= 4.0f;
-      }
-      k.depth = exponential(vl_flight_random(f));
-      continue;
-    }
-    float real = at.a[h] + at.s[h];
-    if (vl_flight_random(f) * k.majorant[h] < real) {
-      for (int c = 0; c < 4; c++) {
-        f->beta[c] *= at.s[c] / real;
-        f->u[c] *= (at.a[c] + at.s[c]) / real;
-      }
-      *t = k.t;
-      return largest(f->beta) > 0.0f ? VL_FLIGHT_SCATTERED : VL_FLIGHT_ENDED;
-    }
-    if (!(none[h] > 0.0f)) return VL_FLIGHT_ENDED; /* happens only by rounding */
-    f->odds *= null_odds(m, none[h], k.majorant[h]);
-    for (int c = 0; c < 4; c++) {
-      f->beta[c] *= none[c] / none[h];
-      f->u[c] *= none[c] / none[h];
-      f->l[c] = vl_min(f->l[c] * (k.majorant[c] / none[h]), 1e30f);
-    }
-    k.depth = exponential(vl_flight_random(f));
+    f->first[i] = -1.0f;
   }
-  return VL_FLIGHT_PASSED;
 }
 
-static void attenuate_heterogeneous(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
-  vlMediumLight whole = vl_medium_coefficients(m, f->lambda);
-  Tracking k = {0};
-  int h = f->hero;
-  if (!start_tracking(m, &whole, o, d, t0, t1, f, &k)) return;
-  while (next_collision(m, f, &k)) {
-    vlMediumLight at = vl_medium_at(m, &whole, f->lambda, vl_add(o, vl_mul(d, k.t)), false);
-    float both[4];
-    if (m->scatters) f->odds *= null_odds(m, vl_max(0.0f, k.majorant[h] - at.a[h] - at.s[h]), k.majorant[h]);
-    for (int c = 0; c < 4; c++) {
-      float none = vl_max(0.0f, k.majorant[c] - at.a[c] - at.s[c]) / k.majorant[h];
-      float any = k.majorant[c] / k.majorant[h];
-      f->beta[c] *= none;
-      f->u[c] *= m->scatters ? none : any;
-      f->l[c] *= any;
-      both[c] = f->u[c] + f->l[c];
-    }
-    float carried = largest(f->beta) / vl_flight_mean(both, f->channels);
-    if (carried < 0.05f) {
-      bool ends = !(carried > 0.0f) || k.collisions > MOST_COLLISIONS || vl_flight_random(f) < 0.75f;
-      for (int c = 0; c < 4; c++) f->beta[c] *= ends ? 0.0f : 4.0f;
-      if (ends) return;
-    }
-    k.depth = exponential(vl_flight_random(f));
+/* Chooses the distances at which the flights scatter. */
+static void sample_distances(const vlTracing *t, vlFlights *f, Segments *k) {
+  VL_ROW float random[VL_FLIGHTS] = {0};
+  draw(t, f, k, random);
+  uint32_t padded = k->padded;
+  float extinction = k->medium->extinction;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    float depth = exponential(random[i]), hero = k->hero[i], length = k->length[i];
+    int scatters = depth < hero * length;
+    float distance = scatters ? vl_min(depth / hero, length) : length;
+    k->scatters[i] = scatters ? 1 : 0;
+    k->distance[i] = distance;
+    f->t[i] = k->flies[i] ? f->from[i] + distance : f->t[i];
+    f->odds[i] *= k->flies[i] ? vl_exp(-extinction * distance) : 1.0f;
+  }
+}
+
+/* Weighs channel c of the flights. exp(-(sigma - hero) distance) is the transmittance relative to the hero. */
+static void weigh_channel(vlFlights *f, const Segments *k, int c) {
+  float *beta = f->beta[c], *u = f->u[c], *l = f->l[c];
+  const float *a = k->a[c], *s = k->s[c];
+  uint32_t padded = k->padded;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    float hero = k->hero[i], sigma = a[i] + s[i];
+    float factor = vl_exp(-(sigma - hero) * k->distance[i]);
+    float seen = vl_exp(-hero * k->length[i]); /* light sampling uses the expected transmittance */
+    int flies = k->flies[i] != 0, scatters = k->scatters[i] != 0;
+    float of_beta = scatters ? factor * s[i] / hero : factor;
+    float of_u = scatters ? factor * sigma / hero : factor;
+    beta[i] = flies ? beta[i] * of_beta : beta[i];
+    u[i] = flies ? u[i] * of_u : u[i];
+    l[i] = flies & !scatters ? l[i] / seen : l[i];
+  }
+}
+
+/* Multiplies channel c by its transmittance. */
+static void attenuate_channel(vlFlights *f, const Segments *k, int c) {
+  float *beta = f->beta[c], *u = f->u[c];
+  const float *a = k->a[c], *s = k->s[c];
+  uint32_t padded = k->padded, chosen = k->medium->scatters; /* whether flights pass by chance */
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    float passes = vl_exp(-(a[i] + s[i]) * k->length[i]);
+    int flies = k->flies[i] != 0;
+    beta[i] = flies ? beta[i] * passes : beta[i];
+    u[i] = flies & (chosen != 0) ? u[i] * passes : u[i];
+  }
+}
+
+static void attenuate_uniform(vlFlights *f, Segments *k) {
+  const vlWorldMedium *m = k->medium;
+  for (int c = 0; c < 4; c++) attenuate_channel(f, k, c);
+  for (uint32_t i = 0; m->by_channel && i < f->n; i++)
+    if (k->flies[i]) absorb_by_channel(m, k->length[i], f, i);
+  if (!m->scatters) return;
+  float extinction = m->extinction;
+  uint32_t padded = k->padded;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    f->odds[i] *= k->flies[i] ? vl_exp(-extinction * k->length[i]) : 1.0f;
+  }
+}
+
+static void scatter_uniform(const vlTracing *t, vlFlights *f, Segments *k) {
+  const vlWorldMedium *m = k->medium;
+  find_heroes(t, f, k);
+  sample_distances(t, f, k);
+  for (uint32_t i = 0; m->by_channel && i < f->n; i++)
+    if (k->flies[i]) absorb_by_channel(m, k->distance[i], f, i);
+  for (int c = 0; c < 4; c++) weigh_channel(f, k, c);
+}
+
+static void fly_uniform(const vlTracing *t, uint32_t medium, vlFlights *f, bool emission) {
+  Segments k;
+  find_segments(t->world, medium, f, &k);
+  const vlWorldMedium *m = k.medium;
+  if (emission && m->emits) emit(t, f, &k);
+  if (m->scatters)
+    scatter_uniform(t, f, &k);
+  else
+    attenuate_uniform(f, &k);
+  for (uint32_t i = 0; i < f->n; i++) {
+    if (!k.flies[i]) continue;
+    float most = vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
+    uint32_t ends = m->scatters && k.scatters[i] ? VL_FLIGHT_SCATTERED : VL_FLIGHT_PASSED;
+    f->end[i] = (ends == VL_FLIGHT_SCATTERED || !m->scatters) && !(most > 0.0f) ? VL_FLIGHT_ENDED : ends;
   }
 }
 
 /* ---- any medium -------------------------------------------------------------------------------------------------- */
 
-vlFlightEnd vl_fly(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, bool emission, vlFlight *f,
-                   float radiance[4], float *t) {
-  if (!(t1 > t0)) return VL_FLIGHT_PASSED;
-  if (m->uniform) return fly_homogeneous(m, t0, t1, emission, f, radiance, t);
-  return sample_heterogeneous(m, o, d, t0, t1, emission, f, radiance, t);
+static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
+  vlFlight r = {.hero = vl_volume_hero(t, f->paths, f->path[i]),
+                .channels = vl_volume_rgb(t) ? 3 : 4,
+                .first = f->first[i],
+                .key = vl_volume_key(t, f->paths, f->path[i], f->depth, f->purpose),
+                .count = f->count[i],
+                .odds = f->odds[i]};
+  for (int c = 0; c < 4; c++) {
+    r.lambda[c] = f->lambda[c][i];
+    r.beta[c] = f->beta[c][i];
+    r.u[c] = f->u[c][i];
+    r.l[c] = f->l[c][i];
+  }
+  return r;
 }
 
-void vl_attenuate(const vlWorldMedium *m, vlVec3 o, vlVec3 d, float t0, float t1, vlFlight *f) {
-  if (!(t1 > t0)) return;
-  if (m->uniform)
-    attenuate_homogeneous(m, t0, t1, f);
-  else
-    attenuate_heterogeneous(m, o, d, t0, t1, f);
+static void put(vlFlights *f, uint32_t i, const vlFlight *r) {
+  f->first[i] = r->first, f->count[i] = r->count, f->odds[i] = r->odds;
+  for (int c = 0; c < 4; c++) f->beta[c][i] = r->beta[c], f->u[c][i] = r->u[c], f->l[c][i] = r->l[c];
+}
+
+static inline vlVec3 origin(const vlFlights *f, uint32_t i) {
+  return vl_lane3(f->rays.ox, f->rays.oy, f->rays.oz, i);
+}
+static inline vlVec3 direction(const vlFlights *f, uint32_t i) {
+  return vl_lane3(f->rays.dx, f->rays.dy, f->rays.dz, i);
+}
+
+void vl_fly(const vlTracing *t, vlFlights *f, bool emission) {
+  for (uint32_t i = 0; i < f->n; i++) f->end[i] = VL_FLIGHT_PASSED;
+  for (uint32_t i = 0; i < f->n; i++) {
+    uint32_t medium = f->medium[i];
+    if (medium == VL_NONE) continue;
+    const vlWorldMedium *m = &t->world->media.items[medium];
+    if (m->uniform) { /* with all other lanes in it */
+      fly_uniform(t, medium, f, emission);
+      continue;
+    }
+    f->medium[i] = VL_NONE;
+    if (!(f->to[i] > f->from[i])) continue;
+    vlFlight one = take(t, f, i);
+    float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
+    f->end[i] = vl_track(m, origin(f, i), direction(f, i), f->from[i], f->to[i], emission, &one, given, &f->t[i]);
+    for (int c = 0; c < 4; c++) f->given[c][i] = given[c];
+    put(f, i, &one);
+  }
+}
+
+void vl_attenuate(const vlTracing *t, vlFlights *f) {
+  for (uint32_t i = 0; i < f->n; i++) {
+    uint32_t medium = f->medium[i];
+    if (medium == VL_NONE) continue;
+    const vlWorldMedium *m = &t->world->media.items[medium];
+    if (m->uniform) {
+      Segments k;
+      find_segments(t->world, medium, f, &k);
+      attenuate_uniform(f, &k);
+      continue;
+    }
+    f->medium[i] = VL_NONE;
+    if (!(f->to[i] > f->from[i])) continue;
+    vlFlight one = take(t, f, i);
+    vl_track_through(m, origin(f, i), direction(f, i), f->from[i], f->to[i], &one);
+    put(f, i, &one);
+  }
 }

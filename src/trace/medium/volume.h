@@ -5,48 +5,11 @@
 #include "trace/medium/medium.h"
 #include "trace/stages.h"
 
-enum { VL_KEY_FLIGHT = 0, VL_KEY_SHADOW = 1, VL_KEY_HERO = 2, VL_KEY_PROBE = 3 };
 /* How a ray ends: values of vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
 /* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
-}
-
-static inline bool vl_volume_rgb(const vlTracing *t) {
-  return t->world->def.color == VL_COLOR_RGB;
-}
-
-/* Key of the random numbers that do not come from the sampler. */
-static inline uint32_t vl_volume_key(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t depth,
-                                     uint32_t purpose) {
-  uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
-  return vl_hash3(pixel, t->def->sampler->seed, 4 * depth + purpose);
-}
-
-/* The channel that samples flights. For camera paths it is the hero wavelength, which is random already. In RGB mode
- * and for light paths, a channel is chosen at random per path, because a light path and the camera path that it meets
- * must choose independently. */
-static inline int vl_volume_hero(const vlTracing *t, const vlPaths *p, uint32_t i) {
-  if (!vl_volume_rgb(t)) return t->from_light ? (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 4) : 0;
-  return (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 3);
-}
-
-static inline vlFlight vl_volume_flight(const vlTracing *t, const vlPaths *p, const vlVolumeRows *v, uint32_t i,
-                                        uint32_t depth, uint32_t purpose) {
-  vlFlight f = {.hero = vl_volume_hero(t, p, i),
-                .channels = vl_volume_rgb(t) ? 3 : 4,
-                .first = -1.0f,
-                .key = vl_volume_key(t, p, i, depth, purpose),
-                .odds = 1.0f};
-  for (int c = 0; c < 4; c++) {
-    f.lambda[c] = p->lambda[c][i];
-    f.beta[c] = p->beta[c][i];
-    f.u[c] = v->u[c][i];
-    f.l[c] = v->l[c][i];
-  }
-  for (int k = 0; k < 3; k++) f.passed[k] = t->s->passed[k][p->lane[i]];
-  return f;
 }
 
 /* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or surface lane i in a
@@ -76,6 +39,23 @@ static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
   return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
 }
 
+/* A block of rays on their way through media and interfaces: the n rays of rows from the block's first lane on. The
+ * lanes `open` have not arrived yet. */
+typedef struct vlTravel {
+  vlFlights f;
+  vlCrossings x; /* the next surface */
+  uint32_t open[VL_FLIGHTS], count;
+} vlTravel;
+static inline bool vl_meets_interface(const vlWorld *world, const vlCrossings *x, uint32_t i) {
+  return x->shape[i] != VL_NONE && vl_is_interface(world, x->shape[i]);
+}
+/* Clears what may be read of it before it is set. */
+void vl_travel_start(vlTravel *k);
+/* The surfaces that the open rays meet beyond f.from. */
+void vl_travel_closest(const vlTracing *t, vlTravel *k);
+/* Lane i passes the interface that it has met: f.from moves past it. Returns the medium that follows. */
+uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium);
+
 /* Traces the n rays of a through media and interfaces to their events. depth: number of the bounce; emission: add the
  * emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
@@ -98,15 +78,15 @@ void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Appends the paths order[k] of volume.scattered to the n paths of a. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
-/* The flight of shadow ray k. beta includes the transmittance; the path's densities are relative to the density of
- * light sampling. */
-vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth);
+/* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the transmittance; the
+ * path's densities are relative to the density of light sampling. */
+void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 /* Adds the light sample of lane i as shadow ray number `count`, which starts at o. value, pdf: of the BSDF or phase
  * function. Returns the new count. */
 uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t i, vlVec3 o,
                                const float value[4], float pdf, uint32_t medium, uint32_t count);
 /* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
-void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 
 /* The inverse of the mean density of path i of a over the techniques that could have made it. light_pdf: density of
  * light sampling; 0 if light sampling could not make this path. */
@@ -119,15 +99,17 @@ static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, fl
 
 /* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase sampling (pdf; 0: light
  * sampling alone). */
-static inline float vl_volume_shadow_density(const vlVolumeScratch *v, const vlFlight *f, uint32_t k, float pdf) {
+static inline float vl_volume_shadow_density(const vlTracing *t, uint32_t k, float pdf) {
+  const vlVolumeScratch *v = &t->s->volume;
   float density[4];
-  for (int c = 0; c < 4; c++) density[c] = v->density[c][k] * (f->l[c] * v->light_pdf[k] + f->u[c] * pdf);
-  return vl_flight_mean(density, f->channels);
+  for (int c = 0; c < 4; c++)
+    density[c] = v->density[c][k] * (v->shadow_l[c][k] * v->light_pdf[k] + v->shadow_u[c][k] * pdf);
+  return vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
 }
 
 /* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the n paths of a; and the
  * `count` shadow rays, after they were traced. */
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth);
-void vl_volume_record_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+void vl_volume_record_shadows(vlTracing *t, uint32_t count);
 
 #endif

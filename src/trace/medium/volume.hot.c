@@ -14,14 +14,6 @@
 
 /* ---- weights and densities --------------------------------------------------------------------------------------- */
 
-static void store_flight(vlPaths *p, vlVolumeRows *v, uint32_t i, const vlFlight *f) {
-  for (int c = 0; c < 4; c++) {
-    p->beta[c][i] = f->beta[c];
-    v->u[c][i] = f->u[c];
-    v->l[c][i] = f->l[c];
-  }
-}
-
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
@@ -57,46 +49,110 @@ static void end_lane(vlTracing *t, uint32_t i, uint32_t event, float odds, const
     h->shape[i] = VL_NONE;
 }
 
-/* Traces one lane of a through media and interfaces to its event. Its origin remains that of its last scattering, which
- * the densities of light sampling need. */
-static void travel_lane(vlTracing *t, uint32_t i, uint32_t depth, bool emission, const float *t_min_row,
-                        const float *t_max_row) {
-  const vlWorld *world = t->world;
-  vlPaths *p = &t->s->a;
-  vlHits *h = &t->s->hits_a;
-  vlVolumeScratch *v = &t->s->volume;
-  float t_min = t_min_row ? t_min_row[i] : 0.0f, given[4] = {0, 0, 0, 0};
-  uint32_t medium = v->a.medium[i], event = VL_AT_END;
-  if (medium == VL_NONE && (h->shape[i] == VL_NONE || !vl_is_interface(world, h->shape[i]))) {
-    end_lane(t, i, h->shape[i] == VL_NONE ? VL_IN_SKY : VL_ON_SURFACE, 1.0f, given); /* nothing changes the path */
-    return;
+/* Ends the lanes of a block that travel through vacuum to no interface: nothing changes their paths. The others are
+ * open. t_min: null: 0. */
+static void open_lanes(vlTracing *t, vlTravel *k, uint32_t first, const float *t_min) {
+  const float none[4] = {0, 0, 0, 0};
+  k->count = 0;
+  for (uint32_t i = 0; i < k->f.n; i++) {
+    bool through = t->s->volume.a.medium[first + i] != VL_NONE || vl_meets_interface(t->world, &k->x, i);
+    if (through)
+      k->open[k->count++] = i;
+    else
+      end_lane(t, first + i, k->x.shape[i] == VL_NONE ? VL_IN_SKY : VL_ON_SURFACE, 1.0f, none);
+    k->f.from[i] = t_min ? t_min[first + i] : 0.0f;
   }
-  vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i), d = vl_lane3(p->dx, p->dy, p->dz, i);
-  vlFlight f = vl_volume_flight(t, p, &v->a, i, depth, VL_KEY_FLIGHT);
-  f.first = t->s->shade.u0[i];
-  for (int step = 0; step < 1024; step++) { /* a bound; no ray crosses so many interfaces */
-    bool hit = h->shape[i] != VL_NONE;
-    bool passes = hit && vl_is_interface(world, h->shape[i]);
-    vlPoint at = {.t = t_max_row ? t_max_row[i] : VL_INFINITY};
-    if (hit && (passes || medium != VL_NONE)) at = vl_hit_point(world, p, h, i);
-    vlFlightEnd end = VL_FLIGHT_PASSED;
-    if (medium != VL_NONE) end = vl_fly(&world->media.items[medium], o, d, t_min, at.t, emission, &f, given, &v->t[i]);
-    if (end != VL_FLIGHT_PASSED) {
-      event = end == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END;
-      break;
-    }
-    if (!passes) {
-      event = hit ? VL_ON_SURFACE : VL_IN_SKY;
-      break;
-    }
-    medium = vl_medium_beyond(&world->shapes.items[h->shape[i]], at.g, d, medium);
-    t_min = vl_past_surface(&at, d, t_min);
-    vl_closest_beyond(t, p, h, i, t_min, t_max_row);
+}
+
+/* The block of rays from lane `first` on. */
+static void begin_block(vlTracing *t, vlTravel *k, uint32_t first, uint32_t n, const float *t_max) {
+  vlTraceScratch *s = t->s;
+  vlPaths *p = &s->a;
+  vlHits *h = &s->hits_a;
+  vlVolumeRows *v = &s->volume.a;
+  vlFlights *f = &k->f;
+  f->n = n;
+  f->rays = (vlRays){p->ox + first,
+                     p->oy + first,
+                     p->oz + first,
+                     p->dx + first,
+                     p->dy + first,
+                     p->dz + first,
+                     NULL,
+                     t_max ? t_max + first : NULL,
+                     p->time ? s->time + first : NULL};
+  for (int c = 0; c < 4; c++) {
+    f->beta[c] = p->beta[c] + first, f->lambda[c] = p->lambda[c] + first;
+    f->u[c] = v->u[c] + first, f->l[c] = v->l[c] + first;
   }
-  store_flight(p, &v->a, i, &f);
-  for (int c = 0; world->by_channel && c < 3; c++) t->s->passed[c][p->lane[i]] = f.passed[c];
-  v->a.medium[i] = medium;
-  end_lane(t, i, event, f.odds, given);
+  k->x.shape = h->shape + first, k->x.prim = h->prim + first, k->x.instance = h->instance + first;
+  k->x.hit = h->t + first;
+}
+
+/* Sets the state of the open lanes' flights. */
+static void begin_flights(const vlTracing *t, vlTravel *k, uint32_t first) {
+  const vlTraceScratch *s = t->s;
+  vlFlights *f = &k->f;
+  for (uint32_t i = 0; i < f->n; i++) {
+    f->path[i] = first + i;
+    f->first[i] = s->shade.u0[first + i];
+    f->count[i] = 0;
+    f->odds[i] = 1.0f;
+    for (int c = 0; c < 4; c++) f->given[c][i] = 0.0f;
+  }
+  for (int c = 0; t->world->by_channel && c < 3; c++)
+    for (uint32_t i = 0; i < f->n; i++) f->passed[c][i] = s->passed[c][s->a.lane[first + i]];
+}
+
+/* The next flights of the open lanes: each leads to the surface ahead or to the end of the ray. */
+static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
+  vlFlights *f = &k->f;
+  uint32_t lanes[VL_FLIGHTS], count = 0;
+  for (uint32_t j = 0; j < k->count; j++) {
+    uint32_t i = k->open[j];
+    if (k->x.shape[i] != VL_NONE && (medium[i] != VL_NONE || vl_is_interface(t->world, k->x.shape[i])))
+      lanes[count++] = i;
+    f->medium[i] = medium[i];
+    f->to[i] = f->rays.t_max ? f->rays.t_max[i] : VL_INFINITY;
+  }
+  if (count) vl_stage_crossings(t->world, f->n, &f->rays, lanes, count, &k->x);
+  for (uint32_t j = 0; j < count; j++) f->to[lanes[j]] = k->x.t[lanes[j]];
+}
+
+/* Ends lane i of a block and stores what its flights have changed besides the rows of the paths. */
+static void arrive(vlTracing *t, const vlTravel *k, uint32_t first, uint32_t i, uint32_t event) {
+  const vlFlights *f = &k->f;
+  const float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
+  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->passed[c][t->s->a.lane[first + i]] = f->passed[c][i];
+  t->s->volume.t[first + i] = f->t[i];
+  end_lane(t, first + i, event, f->odds[i], given);
+}
+
+/* Traces the lanes of a block through media and interfaces to their events. Their origins remain those of their last
+ * scattering, which the densities of light sampling need. */
+static void travel_block(vlTracing *t, vlTravel *k, uint32_t first, bool emission) {
+  uint32_t *medium = t->s->volume.a.medium + first;
+  begin_flights(t, k, first);
+  for (int step = 0; step < 1024 && k->count > 0; step++) { /* a bound; no ray crosses so many interfaces */
+    uint32_t on = 0;
+    aim_flights(t, k, medium);
+    vl_fly(t, &k->f, emission);
+    for (uint32_t j = 0; j < k->count; j++) {
+      uint32_t i = k->open[j];
+      if (k->f.end[i] != VL_FLIGHT_PASSED) {
+        arrive(t, k, first, i, k->f.end[i] == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END);
+      } else if (!vl_meets_interface(t->world, &k->x, i)) {
+        arrive(t, k, first, i, k->x.shape[i] != VL_NONE ? VL_ON_SURFACE : VL_IN_SKY);
+      } else {
+        medium[i] = vl_travel_pass(t, k, i, medium[i]);
+        k->open[on++] = i;
+      }
+    }
+    k->count = on;
+    vl_travel_closest(t, k);
+    t->batch->bounce_rays += on;
+  }
+  for (uint32_t j = 0; j < k->count; j++) arrive(t, k, first, k->open[j], VL_AT_END);
 }
 
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
@@ -108,7 +164,15 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
                      s->shade.u0);
-  for (uint32_t i = 0; i < n; i++) travel_lane(t, i, depth, emission, t_min, t_max);
+  VL_ROW float odds[VL_FLIGHTS];
+  vlTravel k;
+  vl_travel_start(&k);
+  k.f.paths = p, k.f.depth = depth, k.f.purpose = VL_KEY_FLIGHT, k.f.odds = odds;
+  for (uint32_t first = 0; first < n; first += VL_FLIGHTS) {
+    begin_block(t, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max);
+    open_lanes(t, &k, first, t_min);
+    if (k.count) travel_block(t, &k, first, emission);
+  }
   for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == VL_IN_SKY ? 0.0f : 1.0f;
 }
 
@@ -170,7 +234,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     count =
         vl_volume_push_shadow(t, p, &v->c, i, vl_lane3(p->ox, p->oy, p->oz, i), value, phase, v->c.medium[i], count);
   }
-  vl_volume_shadows(t, p, &v->c, count, depth);
+  vl_volume_shadows(t, p, count, depth);
 }
 
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
@@ -268,7 +332,7 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
                                   vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
     vl_shadow_from_surface(t, k, i, sh->wi[2][i]);
   }
-  vl_volume_shadows(t, p, &s->volume.b, count, depth);
+  vl_volume_shadows(t, p, count, depth);
 }
 
 void vl_volume_sorted(vlTracing *t, uint32_t n) {

@@ -60,8 +60,7 @@ void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
   if (depth >= t->def->max_depth) vl_record_depth(t, n);
 }
 
-void vl_volume_record_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count,
-                              uint32_t depth) {
+void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
   const vlShadowRays *q = &t->s->shadow;
   const vlVolumeScratch *v = &t->s->volume;
   const vlLightSamples *l = &t->s->light;
@@ -75,11 +74,9 @@ void vl_volume_record_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows
     vl_record_name_light(t->world, l->light[i], &c);
     c.distant = l->distant[i];
     if (c.distant) c.target[0] = l->wx[i], c.target[1] = l->wy[i], c.target[2] = l->wz[i];
-    vlFlight f = {.channels = vl_volume_rgb(t) ? 3 : 4, .u = {1, 1, 1, 1}, .l = {1, 1, 1, 1}};
-    if (!q->occluded[k]) f = vl_volume_shadow_flight(t, p, rows, k, depth);
-    float inv = 1.0f / vl_volume_shadow_density(v, &f, k, v->pdf[k]);
-    c.weight = vl_volume_shadow_density(v, &f, k, 0.0f) * inv;
-    for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * f.beta[m] * inv;
+    float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
+    c.weight = vl_volume_shadow_density(t, k, 0.0f) * inv;
+    for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * v->shadow_beta[m][k] * inv;
     vl_record_light(t, q->lane[k], &c);
   }
 }

@@ -31,56 +31,105 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
   return count + 1;
 }
 
-/* Multiplies f->beta by the transmittance of shadow ray k through media and interfaces, and updates its densities. */
-static void pass_media(vlTracing *t, uint32_t k, vlFlight *f) {
-  const vlWorld *world = t->world;
+/* The block of `n` shadow rays from `first` on. Those that are not occluded and do not leave the world through vacuum
+ * are open. */
+static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t first, uint32_t n, float *lambda[4]) {
   const vlShadowRays *q = &t->s->shadow;
-  vlVec3 o = vl_lane3(q->ox, q->oy, q->oz, k), d = vl_lane3(q->dx, q->dy, q->dz, k);
-  uint32_t medium = t->s->volume.shadow_medium[k];
-  float t_min = 0.0f;
-  for (int step = 0; step < 1024; step++) {
-    uint32_t shape = VL_NONE, prim = 0, instance = VL_NONE;
-    float t_hit = 0.0f;
-    vlRays ray = {q->ox + k, q->oy + k,    q->oz + k,
-                  q->dx + k, q->dy + k,    q->dz + k,
-                  &t_min,    q->t_max + k, t->s->a.time ? q->time + k : NULL};
-    if (world->has_interfaces) {
-      vl_accel_closest(world, 1, &ray, false, &shape, &prim, &instance, &t_hit);
-      t->batch->shadow_rays++;
-    }
-    if (shape != VL_NONE && !vl_is_interface(world, shape)) break; /* cannot happen: the ray is not occluded */
-    vlPoint at = {.t = q->t_max[k]};
-    if (shape != VL_NONE) at = vl_point_at_time(world, q->time[k], o, d, shape, prim, instance, t_hit);
-    if (medium != VL_NONE) vl_attenuate(&world->media.items[medium], o, d, t_min, at.t, f);
-    if (shape == VL_NONE || !(vl_max(vl_max(f->beta[0], f->beta[1]), vl_max(f->beta[2], f->beta[3])) > 0.0f)) return;
-    medium = vl_medium_beyond(&world->shapes.items[shape], at.g, d, medium);
-    t_min = vl_past_surface(&at, d, t_min);
+  vlVolumeScratch *v = &t->s->volume;
+  vlFlights *f = &k->f;
+  f->n = n;
+  f->rays = (vlRays){q->ox + first, q->oy + first,    q->oz + first,
+                     q->dx + first, q->dy + first,    q->dz + first,
+                     NULL,          q->t_max + first, t->s->a.time ? q->time + first : NULL};
+  f->odds = v->shadow_odds + first;
+  for (int c = 0; c < 4; c++) {
+    f->beta[c] = v->shadow_beta[c] + first, f->lambda[c] = lambda[c];
+    f->u[c] = v->shadow_u[c] + first, f->l[c] = v->shadow_l[c] + first;
+    for (uint32_t i = 0; i < n; i++) f->beta[c][i] = f->u[c][i] = f->l[c][i] = 1.0f;
   }
-  for (int c = 0; c < 4; c++) f->beta[c] = 0.0f;
+  k->count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    f->odds[i] = 1.0f;
+    if (q->occluded[first + i] || (v->shadow_medium[first + i] == VL_NONE && !t->world->has_interfaces)) continue;
+    k->open[k->count++] = i;
+    uint32_t path = f->path[i] = v->from[first + i];
+    for (int c = 0; c < 4; c++) lambda[c][i] = p->lambda[c][path];
+    for (int c = 0; t->world->by_channel && c < 3; c++) f->passed[c][i] = v->shadow_passed[c][first + i];
+    f->from[i] = 0.0f;
+    f->first[i] = -1.0f;
+    f->count[i] = 0;
+  }
 }
 
-vlFlight vl_volume_shadow_flight(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t k, uint32_t depth) {
-  bool vacuum = t->s->volume.shadow_medium[k] == VL_NONE && !t->world->has_interfaces;
-  vlFlight f = vacuum ? (vlFlight){.channels = vl_volume_rgb(t) ? 3 : 4, .odds = 1.0f}
-                      : vl_volume_flight(t, p, rows, t->s->volume.from[k], depth, VL_KEY_SHADOW);
-  for (int c = 0; c < 4; c++) f.beta[c] = f.u[c] = f.l[c] = 1.0f;
-  for (int c = 0; t->world->by_channel && c < 3; c++) f.passed[c] = t->s->volume.shadow_passed[c][k];
-  if (!vacuum) pass_media(t, k, &f);
-  f.odds = vl_some_odds(f.odds);
-  return f;
+/* The next flights of the open rays: each leads to the interface ahead or to the light. */
+static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium) {
+  vlFlights *f = &k->f;
+  uint32_t lanes[VL_FLIGHTS], count = 0;
+  for (uint32_t j = 0; j < k->count; j++) {
+    uint32_t i = k->open[j];
+    f->medium[i] = medium[i];
+    f->to[i] = f->rays.t_max[i];
+    if (k->x.shape[i] != VL_NONE) lanes[count++] = i;
+  }
+  if (count) vl_stage_crossings(t->world, f->n, &f->rays, lanes, count, &k->x);
+  for (uint32_t j = 0; j < count; j++) f->to[lanes[j]] = k->x.t[lanes[j]];
 }
 
-void vl_volume_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
+static void pass_block(vlTracing *t, vlTravel *k, uint32_t *medium) {
+  vlFlights *f = &k->f;
+  for (int step = 0; step < 1024 && k->count > 0; step++) {
+    uint32_t on = 0;
+    if (t->world->has_interfaces) {
+      vl_travel_closest(t, k);
+      t->batch->shadow_rays += k->count;
+    }
+    aim_flights(t, k, medium);
+    vl_attenuate(t, f);
+    for (uint32_t j = 0; j < k->count; j++) {
+      uint32_t i = k->open[j];
+      float most = vl_max(vl_max(f->beta[0][i], f->beta[1][i]), vl_max(f->beta[2][i], f->beta[3][i]));
+      if (k->x.shape[i] == VL_NONE || !(most > 0.0f)) continue;
+      if (vl_meets_interface(t->world, &k->x, i)) {
+        medium[i] = vl_travel_pass(t, k, i, medium[i]);
+        k->open[on++] = i;
+      } else { /* cannot happen: the ray is not occluded */
+        for (int c = 0; c < 4; c++) f->beta[c][i] = 0.0f;
+      }
+    }
+    k->count = on;
+  }
+  for (uint32_t j = 0; j < k->count; j++)
+    for (int c = 0; c < 4; c++) f->beta[c][k->open[j]] = 0.0f;
+}
+
+void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
+  VL_ROW float lambda[4][VL_FLIGHTS] = {{0}};
+  VL_ROW uint32_t ids[3][VL_FLIGHTS];
+  VL_ROW float hit[VL_FLIGHTS];
+  float *rows[4] = {lambda[0], lambda[1], lambda[2], lambda[3]};
+  vlTravel k;
+  vl_travel_start(&k);
+  k.f.paths = p, k.f.depth = depth, k.f.purpose = VL_KEY_SHADOW;
+  k.x.shape = ids[0], k.x.prim = ids[1], k.x.instance = ids[2], k.x.hit = hit;
+  for (uint32_t i = 0; i < VL_FLIGHTS; i++) ids[0][i] = VL_NONE;
+  for (uint32_t first = 0; first < count; first += VL_FLIGHTS) {
+    begin_block(t, p, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS, rows);
+    pass_block(t, &k, t->s->volume.shadow_medium + first);
+  }
+  for (uint32_t i = 0; i < count; i++) t->s->volume.shadow_odds[i] = vl_some_odds(t->s->volume.shadow_odds[i]);
+}
+
+void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   const vlVolumeScratch *v = &t->s->volume;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
-  if (t->batch->recorder) vl_volume_record_shadows(t, p, rows, count, depth);
+  vl_volume_pass_media(t, p, count, depth);
+  if (t->batch->recorder) vl_volume_record_shadows(t, count);
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k]) continue;
-    vlFlight f = vl_volume_shadow_flight(t, p, rows, k, depth);
-    float inv = 1.0f / vl_volume_shadow_density(v, &f, k, v->pdf[k]);
-    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * f.beta[c] * inv;
+    float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
+    for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * v->shadow_beta[c][k] * inv;
   }
 }

@@ -276,7 +276,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     count = vl_volume_push_shadow(t, p, rows, i, o, value, cosine * VL_INV_PI,
                                   vl_medium_beyond(shape, g, w, rows->medium[i]), count);
   }
-  vl_volume_shadows(t, p, rows, count, depth);
+  vl_volume_shadows(t, p, count, depth);
 }
 
 /* Samples the exits' next rays, and moves them to their paths' places. */

@@ -385,49 +385,117 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
   }
 }
 
+/* Corners of one triangle of a world at a time; normals are zero if it has none. */
+typedef struct OneTriangle {
+  vlVec3 p[3], n[3];
+  TriangleUv uv;
+  float error, flip;
+} OneTriangle;
+
+static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_t shape, uint32_t prim,
+                                       uint32_t instance) {
+  static const float unit[6] = {0, 0, 1, 0, 1, 1};
+  const vlWorldShape *s = &world->shapes.items[shape];
+  const uint32_t *f = s->indices + 3 * (size_t)prim;
+  const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
+  OneTriangle r;
+  float uv[6];
+  r.error = 0;
+  for (int k = 0; k < 3; k++) {
+    const float *x = s->positions + 3 * (size_t)f[k];
+    r.p[k] = vl_vec3(x[0], x[1], x[2]);
+    r.n[k] = vl_vec3(0, 0, 0);
+    if (q) {
+      Corner moved = move_corner(q->from_group, x);
+      r.p[k] = moved.p;
+      r.error = vl_max(r.error, moved.error);
+    }
+    if (s->normals) {
+      const float *y = s->normals + 3 * (size_t)f[k];
+      r.n[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
+    }
+    for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
+  }
+  if (world->moves && triangle_moves(world, shape, instance)) {
+    MovedTriangle moving = move_triangle(s, q, prim, time);
+    for (int k = 0; k < 3; k++) r.p[k] = moving.p[k], r.n[k] = moving.n[k];
+    r.error = moving.error;
+  }
+  r.uv = (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]};
+  r.flip = s->flip != (q && q->mirrored) ? -1.0f : 1.0f;
+  return r;
+}
+
+static vlPoint point_of(const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
+  vlPoint r;
+  r.p = vl_vec3((float)q->p[0], (float)q->p[1], (float)q->p[2]);
+  r.g = vl_vec3((float)q->n[0], (float)q->n[1], (float)q->n[2]);
+  r.n = vl_vec3((float)q->ns[0], (float)q->ns[1], (float)q->ns[2]);
+  r.u = q->uv[0], r.v = q->uv[1];
+  r.t = vl_dot(vl_sub(r.p, o), d);
+  r.offset = 2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z)) + point_error(q);
+  return r;
+}
+
 vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
                          uint32_t instance, float t_hit) {
-  const vlWorldShape *s = &world->shapes.items[shape];
-  vlPoint r;
-  if (s->kind == VL_SHAPE_TRIANGLES) {
-    static const float unit[6] = {0, 0, 1, 0, 1, 1};
-    const uint32_t *f = s->indices + 3 * (size_t)prim;
-    const vlWorldInstance *q = instance == VL_NONE ? NULL : &world->instances.items[instance];
-    vlVec3 p[3], nn[3];
-    float uv[6];
-    float error = 0;
-    for (int k = 0; k < 3; k++) {
-      const float *x = s->positions + 3 * (size_t)f[k];
-      p[k] = vl_vec3(x[0], x[1], x[2]);
-      nn[k] = vl_vec3(0, 0, 0);
-      if (q) {
-        Corner moved = move_corner(q->from_group, x);
-        p[k] = moved.p;
-        error = vl_max(error, moved.error);
-      }
-      if (s->normals) {
-        const float *y = s->normals + 3 * (size_t)f[k];
-        nn[k] = q ? move_normal(q->to_group, y) : vl_vec3(y[0], y[1], y[2]);
-      }
-      for (int j = 0; j < 2; j++) uv[2 * k + j] = s->uvs ? s->uvs[2 * (size_t)f[k] + j] : unit[2 * k + j];
-    }
-    if (triangle_moves(world, shape, instance)) {
-      MovedTriangle moving = move_triangle(s, q, prim, time);
-      for (int k = 0; k < 3; k++) p[k] = moving.p[k], nn[k] = moving.n[k];
-      error = moving.error;
-    }
-    Triangle t = triangle_point(o, d, p[0], p[1], p[2], nn[0], nn[1], nn[2],
-                                (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]}, error,
-                                s->flip != (q && q->mirrored) ? -1.0f : 1.0f);
+  if (world->shapes.items[shape].kind == VL_SHAPE_TRIANGLES) {
+    OneTriangle c = one_triangle(world, time, shape, prim, instance);
+    Triangle t = triangle_point(o, d, c.p[0], c.p[1], c.p[2], c.n[0], c.n[1], c.n[2], c.uv, c.error, c.flip);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }
   vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, t_hit);
-  r.p = vl_vec3((float)q.p[0], (float)q.p[1], (float)q.p[2]);
-  r.g = vl_vec3((float)q.n[0], (float)q.n[1], (float)q.n[2]);
-  r.n = vl_vec3((float)q.ns[0], (float)q.ns[1], (float)q.ns[2]);
-  r.u = q.uv[0], r.v = q.uv[1];
-  r.t = vl_dot(vl_sub(r.p, o), d);
-  r.offset =
-      2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z)) + point_error(&q);
-  return r;
+  return point_of(&q, o, d);
+}
+
+/* Gathers the corners of triangles; the points of other shapes are complete. Returns the number of triangles. */
+static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays, const uint32_t *lanes, uint32_t count,
+                                 vlCrossings *x) {
+  uint32_t triangles = 0;
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t i = lanes[k];
+    float time = rays->time ? rays->time[i] : 0.0f;
+    if (world->shapes.items[x->shape[i]].kind != VL_SHAPE_TRIANGLES) continue;
+    triangles++;
+    OneTriangle c = one_triangle(world, time, x->shape[i], x->prim[i], x->instance[i]);
+    for (int j = 0; j < 3; j++) {
+      x->corner[j][0][i] = c.p[j].x, x->corner[j][1][i] = c.p[j].y, x->corner[j][2][i] = c.p[j].z;
+      x->normal[j][0][i] = c.n[j].x, x->normal[j][1][i] = c.n[j].y, x->normal[j][2][i] = c.n[j].z;
+    }
+    x->error[i] = c.error, x->flip[i] = c.flip;
+  }
+  return triangles;
+}
+
+void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, const uint32_t *lanes, uint32_t count,
+                        vlCrossings *x) {
+  uint32_t padded = VL_PAD(n), triangles = gather_crossings(world, rays, lanes, count, x);
+  const TriangleUv no_uv = {0, 0, 1, 0, 1, 1};
+  if (triangles) {
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+      vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]), d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+      Triangle r = triangle_point(o, d, vl_vec3(x->corner[0][0][i], x->corner[0][1][i], x->corner[0][2][i]),
+                                  vl_vec3(x->corner[1][0][i], x->corner[1][1][i], x->corner[1][2][i]),
+                                  vl_vec3(x->corner[2][0][i], x->corner[2][1][i], x->corner[2][2][i]),
+                                  vl_vec3(x->normal[0][0][i], x->normal[0][1][i], x->normal[0][2][i]),
+                                  vl_vec3(x->normal[1][0][i], x->normal[1][1][i], x->normal[1][2][i]),
+                                  vl_vec3(x->normal[2][0][i], x->normal[2][1][i], x->normal[2][2][i]), no_uv,
+                                  x->error[i], x->flip[i]);
+      x->t[i] = r.dist;
+      x->gx[i] = r.g.x, x->gy[i] = r.g.y, x->gz[i] = r.g.z;
+      x->offset[i] = r.offset;
+    }
+  }
+  for (uint32_t k = 0; triangles < count && k < count; k++) {
+    uint32_t i = lanes[k];
+    if (world->shapes.items[x->shape[i]].kind == VL_SHAPE_TRIANGLES) continue;
+    vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]), d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+    vlSurfacePoint q =
+        other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i], x->prim[i], x->instance[i], x->hit[i]);
+    vlPoint at = point_of(&q, o, d);
+    x->t[i] = at.t;
+    x->gx[i] = at.g.x, x->gy[i] = at.g.y, x->gz[i] = at.g.z;
+    x->offset[i] = at.offset;
+  }
 }

@@ -154,7 +154,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
     uint32_t i = lane_of[k];
     r->others[k] = pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * light_ways[k];
   }
-  vl_two_way_shadows(t, p, &s->volume.b, count, depth);
+  vl_two_way_shadows(t, p, count, depth);
 }
 
 static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {

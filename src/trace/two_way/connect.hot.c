@@ -236,5 +236,5 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     else
       push(t, i, x, factor[i], forth[i], count++);
   }
-  vl_two_way_shadows(t, &s->b, &s->volume.b, count, depth + VL_CONNECTION_KEY);
+  vl_two_way_shadows(t, &s->b, count, depth + VL_CONNECTION_KEY);
 }

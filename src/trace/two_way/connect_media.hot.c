@@ -129,5 +129,5 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
                       .medium = medium};
     vl_push_connection(t, p, &v->c, &c, x, count++);
   }
-  vl_two_way_shadows(t, p, &v->c, count, depth + VL_CONNECTION_KEY);
+  vl_two_way_shadows(t, p, count, depth + VL_CONNECTION_KEY);
 }

@@ -27,36 +27,36 @@ vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, floa
   return r;
 }
 
-bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
-                        uint32_t depth, float passes[4], float *scale) {
+bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, float passes[4], float *scale) {
   vlTraceScratch *s = t->s;
   float odds = 1.0f, mean = 1.0f;
   for (int c = 0; c < 4; c++) passes[c] = 1.0f;
   if (s->shadow.occluded[k]) return false;
   if (vl_has_media(t)) {
-    vlFlight f = vl_volume_shadow_flight(t, p, rows, k, depth);
+    const vlVolumeScratch *v = &s->volume;
     float density[4];
-    for (int c = 0; c < 4; c++) passes[c] = f.beta[c], density[c] = s->volume.density[c][k] * f.l[c];
-    odds = f.odds, mean = vl_flight_mean(density, f.channels);
+    for (int c = 0; c < 4; c++) passes[c] = v->shadow_beta[c][k], density[c] = v->density[c][k] * v->shadow_l[c][k];
+    odds = v->shadow_odds[k], mean = vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
     if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) return false;
   }
   *scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
   return true;
 }
 
-void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
-                       uint32_t count, uint32_t depth) {
+void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, uint32_t count,
+                       uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlShadowRays *q = &s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   b->shadow_rays += count;
+  if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   float *value[4], *lambda[4], *inv_pdf[4];
   for (int c = 0; c < 4; c++) value[c] = r->rows[c], lambda[c] = s->rows[c], inv_pdf[c] = s->rows[4 + c];
   uint32_t visible = 0;
   for (uint32_t k = 0; k < count; k++) {
     float passes[4], scale;
-    if (!vl_two_way_arrives(t, p, rows, r, k, depth, passes, &scale)) continue;
+    if (!vl_two_way_arrives(t, r, k, passes, &scale)) continue;
     uint32_t lane = q->lane[k], m = visible++;
     r->x[m] = r->x[k], r->y[m] = r->y[k];
     for (int c = 0; c < 4; c++) {
@@ -132,5 +132,5 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     r->x[count] = r->x[i], r->y[count] = r->y[i];
     count++;
   }
-  vl_two_way_splats(t, r, b, p, &s->volume.b, count, depth);
+  vl_two_way_splats(t, r, b, p, count, depth);
 }

@@ -100,14 +100,14 @@ uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
                            uint32_t dimension, bool last);
 /* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with weight own / (own + odds *
  * others). */
-void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth);
+void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 /* Connects the n shaded lanes to the camera. Visible vertices become splats. */
 void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                           uint32_t dimension);
 /* Traces the shadow rays towards the camera. Those that arrive become splats with weight own / (own + odds *
  * others). */
-void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, const vlVolumeRows *rows,
-                       uint32_t count, uint32_t depth);
+void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, uint32_t count,
+                       uint32_t depth);
 /* Density with which next-event estimation would have sampled the light that this lane's path came from. */
 float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
@@ -204,10 +204,9 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
   return h & (buckets - 1);
 }
 
-/* Computes the transmittance along shadow ray k, which hits no opaque surface. passes: one factor per wavelength;
+/* What of shadow ray k arrives, after vl_volume_pass_media if there are media. passes: one factor per wavelength;
  * scale: a common factor, which includes the MIS weight. Returns false if nothing arrives. */
-bool vl_two_way_arrives(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlTwoWayRows *r, uint32_t k,
-                        uint32_t depth, float passes[4], float *scale);
+bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, float passes[4], float *scale);
 
 /* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
  * counts as 1, and 2 bits give its index. The other two are stored as -512 ln(ratio) in 15 bits each, which is exact

@@ -3,14 +3,15 @@
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
 
-void vl_two_way_shadows(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, uint32_t count, uint32_t depth) {
+void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, q->occluded);
   t->batch->shadow_rays += count;
+  if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   for (uint32_t k = 0; k < count; k++) {
     float passes[4], scale;
-    if (!vl_two_way_arrives(t, p, rows, t->batch->two_way, k, depth, passes, &scale)) continue;
+    if (!vl_two_way_arrives(t, t->batch->two_way, k, passes, &scale)) continue;
     for (int c = 0; c < 4; c++) t->batch->radiance[c][q->lane[k]] += q->radiance[c][k] * passes[c] * scale;
   }
 }
@@ -71,7 +72,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
         (l->delta[i] ? 0.0f : phase) + (way->merged_volume + r->a[i] * phase + r->b[i]) * density * r->cosine[i];
     count = vl_volume_push_shadow(t, p, &v->c, i, at, value, phase, v->c.medium[i], count);
   }
-  vl_two_way_shadows(t, p, &v->c, count, depth);
+  vl_two_way_shadows(t, p, count, depth);
 }
 
 /* Samples new directions and updates the carried densities. */
@@ -204,7 +205,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     r->x[count] = view.x, r->y[count] = view.y;
     count++;
   }
-  vl_two_way_splats(t, r, b, p, &v->c, count, depth);
+  vl_two_way_splats(t, r, b, p, count, depth);
 }
 
 uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,

@@ -56,9 +56,9 @@ static inline int is_between(Crossing at, float low, Crossing near) {
   return (at.height > low * at.speed) & (at.height * near.speed < near.height * at.speed);
 }
 
-/* A block of rays. The rows are padded with copies of the last ray. */
+/* A block of rays. Unless they are few, the rows are padded with copies of the last ray. */
 typedef struct Block {
-  uint32_t n;
+  uint32_t n, padded;
   _Alignas(64) float ox[BLOCK], oy[BLOCK], oz[BLOCK], dx[BLOCK], dy[BLOCK], dz[BLOCK];
   _Alignas(64) float mx[BLOCK], my[BLOCK], mz[BLOCK]; /* moments */
   _Alignas(64) float low[BLOCK];                      /* start of the ray */
@@ -70,7 +70,7 @@ typedef struct Block {
 static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t first, uint32_t n) {
   k->n = n;
   vlVec3 center = vl_vec3(b->center[0], b->center[1], b->center[2]);
-  uint32_t padded = VL_PAD(n);
+  uint32_t padded = k->padded = n <= FEW_RAYS ? n : VL_PAD(n);
   for (uint32_t i = 0; i < padded; i++) {
     uint32_t at = first + (i < n ? i : n - 1);
     k->ox[i] = r->ox[at], k->oy[i] = r->oy[at], k->oz[i] = r->oz[at];
@@ -90,7 +90,7 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
 /* The nearest crossing of each ray with face j, if it is nearer than that so far. */
 static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
   Face q = face_at(b, j);
-  uint32_t padded = VL_PAD(k->n);
+  uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
@@ -106,7 +106,7 @@ static void cross_closest(Block *k, const vlBruteForce *b, uint32_t j) {
 /* Marks the rays that face j blocks: id 0. */
 static void cross_any(Block *k, const vlBruteForce *b, uint32_t j) {
   Face q = face_at(b, j);
-  uint32_t padded = VL_PAD(k->n);
+  uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     Crossing at = cross_face(q, vl_vec3(k->ox[i], k->oy[i], k->oz[i]), vl_vec3(k->dx[i], k->dy[i], k->dz[i]),
@@ -148,7 +148,7 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
  * with the distance. */
 static void approach(const Block *k, const float sphere[4], int32_t *near) {
   vlVec3 c = vl_vec3(sphere[0], sphere[1], sphere[2]);
-  uint32_t padded = VL_PAD(k->n);
+  uint32_t padded = k->padded;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     vlVec3 d = vl_vec3(k->dx[i], k->dy[i], k->dz[i]), w = vl_sub(c, vl_vec3(k->ox[i], k->oy[i], k->oz[i]));

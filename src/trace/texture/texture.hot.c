@@ -30,13 +30,24 @@ static void bilerp_weights(const vlTextureRun *r, const vlTextureNode *node, flo
 typedef struct Lookups {
   uint32_t count;
   vlImageLookup at[VL_LANES];
+  const vlTexelSquare *squares[VL_LANES]; /* null: not computed */
+  vlTexelSquare memory[VL_LANES * VL_LOOKUP_SQUARES];
 } Lookups;
 
+static vlTexel value_of(const vlTextureNode *node, const vlMipmap *mip, const Lookups *l, uint32_t k) {
+  return l->squares[k] ? vl_image_value(node, mip, &l->at[k], l->squares[k])
+                       : vl_image_value(node, mip, &l->at[k], NULL);
+}
+
 static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first, Lookups *l) {
+  vlTexelSquare *next = l->memory;
   l->count = r->last - first < VL_LANES ? r->last - first : VL_LANES;
   for (uint32_t k = 0; k < l->count; k++) {
     l->at[k] = vl_image_lookup(node, mip, vl_texture_point_of(r, node, first + k));
-    vl_prefetch_texels(node, mip, &l->at[k]); /* must prefetch */
+    uint32_t count = vl_lookup_squares(node, mip, &l->at[k], next);
+    vl_prefetch_squares(mip, &l->at[k], next, count); /* must prefetch */
+    l->squares[k] = count ? next : NULL;
+    next += count;
   }
 }
 
@@ -108,7 +119,7 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
   Lookups l;
   for (uint32_t first = r->first; first < r->last; first += l.count) {
     look_up(r, node, mip, first, &l);
-    for (uint32_t k = 0; k < l.count; k++) out[first + k] = vl_plain_float(mip, vl_image_value(node, mip, &l.at[k]));
+    for (uint32_t k = 0; k < l.count; k++) out[first + k] = vl_plain_float(mip, value_of(node, mip, &l, k));
   }
 }
 
@@ -233,8 +244,7 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
     look_up(r, node, mip, first, &l);
     for (uint32_t k = 0; k < VL_LANES; k++) {
       uint32_t j = k < l.count ? k : l.count - 1;
-      vlVec3 c =
-          j == k ? vl_plain_rgb(mip, vl_image_value(node, mip, &l.at[k])) : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
+      vlVec3 c = j == k ? vl_plain_rgb(mip, value_of(node, mip, &l, k)) : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
       rgb[0][k] = c.x, rgb[1][k] = c.y, rgb[2][k] = c.z;
     }
     upsample_lanes(r, &up, l.count, rgb, first, out);

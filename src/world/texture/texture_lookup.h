@@ -131,50 +131,63 @@ static inline int32_t vl_to_index(float x) { /* floor(x), defined for any float 
   return f == f ? (int32_t)f : 0;
 }
 
-/* The weights of the four texels around a point, and where these texels start in the level. */
+/* The weights of the four texels around a point, and where these texels start in the level: texel 2 j + i at
+ * row[j] + column[i]. */
 typedef struct vlTexelSquare {
   float w[4];
-  size_t at[4];
+  size_t row[2];
+  uint32_t column[2];
 } vlTexelSquare;
-static inline vlTexel vl_blend_texels(const vlMipmap *mip, const vlMipLevel *l, const vlTexelSquare *q) {
+static inline __attribute__((always_inline)) vlTexel vl_blend_channels(const vlMipmap *mip, const vlMipLevel *l,
+                                                                       const vlTexelSquare *q, uint32_t channels) {
   vlTexel r = {{0, 0, 0, 0}};
   if (mip->is_bytes) {
-    const uint8_t *a = l->bytes + q->at[0], *b = l->bytes + q->at[1], *c = l->bytes + q->at[2],
-                  *d = l->bytes + q->at[3];
-    for (uint32_t i = 0; i < mip->channels; i++) {
+    const uint8_t *top = l->bytes + q->row[0], *below = l->bytes + q->row[1];
+    const uint8_t *a = top + q->column[0], *b = top + q->column[1], *c = below + q->column[0],
+                  *d = below + q->column[1];
+    for (uint32_t i = 0; i < channels; i++) {
       const float *value = mip->decode[i];
       r.c[i] = q->w[0] * value[a[i]] + q->w[1] * value[b[i]] + q->w[2] * value[c[i]] + q->w[3] * value[d[i]];
     }
     return r;
   }
-  const float *a = l->floats + q->at[0], *b = l->floats + q->at[1], *c = l->floats + q->at[2],
-              *d = l->floats + q->at[3];
-  for (uint32_t i = 0; i < mip->channels; i++)
-    r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
+  const float *top = l->floats + q->row[0], *below = l->floats + q->row[1];
+  const float *a = top + q->column[0], *b = top + q->column[1], *c = below + q->column[0], *d = below + q->column[1];
+  for (uint32_t i = 0; i < channels; i++) r.c[i] = q->w[0] * a[i] + q->w[1] * b[i] + q->w[2] * c[i] + q->w[3] * d[i];
   return r;
+}
+static inline __attribute__((always_inline)) vlTexel vl_blend_texels(const vlMipmap *mip, const vlMipLevel *l,
+                                                                     const vlTexelSquare *q) {
+  return mip->channels == 3 ? vl_blend_channels(mip, l, q, 3) : vl_blend_channels(mip, l, q, mip->channels);
+}
+/* The square of a bilinear lookup. *x, *y: indices of the first texel. Returns false, with only the weights set, if a
+ * texel is outside of the image or if the edges fold. */
+static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t,
+                                   vlTexelSquare *q, int32_t *x, int32_t *y) {
+  const vlMipLevel *l = &mip->levels[level];
+  float fx = s * (float)l->width - 0.5f, fy = t * (float)l->height - 0.5f;
+  int32_t xi = vl_to_index(fx), yi = vl_to_index(fy);
+  float dx = fx - (float)xi, dy = fy - (float)yi;
+  q->w[0] = (1 - dx) * (1 - dy), q->w[1] = dx * (1 - dy), q->w[2] = (1 - dx) * dy, q->w[3] = dx * dy;
+  *x = xi, *y = yi;
+  if (!(wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f)) return false;
+  int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_index(xi + 1, (int32_t)l->width, wrap);
+  int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_index(yi + 1, (int32_t)l->height, wrap_t);
+  if ((x0 | x1 | y0 | y1) < 0) return false;
+  uint32_t n = mip->channels;
+  size_t pitch = (size_t)l->width * n;
+  q->row[0] = (size_t)y0 * pitch, q->row[1] = (size_t)y1 * pitch;
+  q->column[0] = (uint32_t)x0 * n, q->column[1] = (uint32_t)x1 * n;
+  return true;
 }
 /* Bilinear lookup in one level. (s, t) = (0, 0) is the top left corner of the image. */
 static inline vlTexel vl_bilinear_2(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap, vlWrap wrap_t) {
-  const vlMipLevel *l = &mip->levels[level];
-  float x = s * (float)l->width - 0.5f, y = t * (float)l->height - 0.5f;
-  int32_t xi = vl_to_index(x), yi = vl_to_index(y);
-  float dx = x - (float)xi, dy = y - (float)yi;
-  const float w[4] = {(1 - dx) * (1 - dy), dx * (1 - dy), (1 - dx) * dy, dx * dy};
-  if (wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f) {
-    int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_index(xi + 1, (int32_t)l->width, wrap);
-    int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_index(yi + 1, (int32_t)l->height, wrap_t);
-    if ((x0 | x1 | y0 | y1) >= 0) { /* no texel is outside */
-      size_t n = mip->channels, row0 = (size_t)y0 * l->width, row1 = (size_t)y1 * l->width;
-      vlTexelSquare q = {
-          {w[0], w[1], w[2], w[3]},
-          {(row0 + (size_t)x0) * n, (row0 + (size_t)x1) * n, (row1 + (size_t)x0) * n, (row1 + (size_t)x1) * n}};
-      return vl_blend_texels(mip, l, &q);
-    }
-  }
-  vlTexel a = vl_texel_2(mip, level, xi, yi, wrap, wrap_t), b = vl_texel_2(mip, level, xi + 1, yi, wrap, wrap_t);
-  vlTexel c = vl_texel_2(mip, level, xi, yi + 1, wrap, wrap_t),
-          d = vl_texel_2(mip, level, xi + 1, yi + 1, wrap, wrap_t), r;
-  for (int i = 0; i < 4; i++) r.c[i] = w[0] * a.c[i] + w[1] * b.c[i] + w[2] * c.c[i] + w[3] * d.c[i];
+  vlTexelSquare q;
+  int32_t x, y;
+  if (vl_texel_square(mip, level, s, t, wrap, wrap_t, &q, &x, &y)) return vl_blend_texels(mip, &mip->levels[level], &q);
+  vlTexel a = vl_texel_2(mip, level, x, y, wrap, wrap_t), b = vl_texel_2(mip, level, x + 1, y, wrap, wrap_t);
+  vlTexel c = vl_texel_2(mip, level, x, y + 1, wrap, wrap_t), d = vl_texel_2(mip, level, x + 1, y + 1, wrap, wrap_t), r;
+  for (int i = 0; i < 4; i++) r.c[i] = q.w[0] * a.c[i] + q.w[1] * b.c[i] + q.w[2] * c.c[i] + q.w[3] * d.c[i];
   return r;
 }
 static inline vlTexel vl_bilinear(const vlMipmap *mip, uint32_t level, float s, float t, vlWrap wrap) {
@@ -221,18 +234,6 @@ static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[
   return plan;
 }
 
-/* One tap at a fractional level. A trilinear filter blends two levels. */
-static inline vlTexel vl_filter_tap(const vlTextureNode *node, const vlMipmap *mip, float level, bool both, float s,
-                                    float t) {
-  uint32_t l = (uint32_t)level;
-  float f = level - (float)l;
-  vlTexel a = vl_bilinear_2(mip, l, s, t, node->wrap, node->wrap_t);
-  if (!both || !(f > 0.0f)) return a;
-  vlTexel b = vl_bilinear_2(mip, l + 1, s, t, node->wrap, node->wrap_t);
-  for (int i = 0; i < 4; i++) a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
-  return a;
-}
-
 /* A lookup in an image texture: where the image is read (t is measured from the top) and how it is filtered. */
 typedef struct vlImageLookup {
   float s, t;
@@ -243,46 +244,75 @@ static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlM
   return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan(mip, at.axes)};
 }
 
-/* Prefetches the texels of a lookup, as far as they lie within the image: two rows for each tap and level. A function
- * without any effect but prefetches must be always_inline: gcc 12 may take it for one without effects and delete its
- * calls. */
-static inline __attribute__((always_inline)) void vl_prefetch_texels(const vlTextureNode *node, const vlMipmap *mip,
-                                                                     const vlImageLookup *at) {
-  float inv = 1.0f / (float)at->plan.taps, ds = at->plan.s * inv, dt = -at->plan.t * inv;
-  float before = 0.5f * (float)(at->plan.taps - 1), s = at->s - before * ds, t = at->t - before * dt;
-  uint32_t first = (uint32_t)at->plan.level;
-  bool both = node->filter >= VL_FILTER_TRILINEAR && at->plan.level > (float)first;
-  for (uint32_t k = 0; k < at->plan.taps; k++, s += ds, t += dt) {
-    float fs = s - __builtin_floorf(s), ft = t - __builtin_floorf(t); /* as if the image repeats */
-    for (uint32_t level = first; level <= first + both; level++) {
-      const vlMipLevel *l = &mip->levels[level];
-      float x = fs * (float)l->width - 0.5f, y = ft * (float)l->height - 0.5f;
-      uint32_t i = x > 0.0f ? (uint32_t)(int32_t)x : 0, j = y > 0.0f ? (uint32_t)(int32_t)y : 0;
-      if (!(i < l->width && j < l->height)) continue;
-      size_t index = ((size_t)j * l->width + i) * mip->channels, row = (size_t)l->width * mip->channels;
-      size_t below = index + (j + 1 < l->height ? row : 0);
+/* A trilinear filter blends two levels. */
+static inline bool vl_two_levels(const vlTextureNode *node, float level) {
+  return node->filter != VL_FILTER_BILINEAR && level - (float)(uint32_t)level > 0.0f;
+}
+/* Where tap k is, in lengths of the footprint from its middle. */
+static inline float vl_tap_place(float inv_taps, uint32_t k) {
+  return 0.5f * inv_taps - 0.5f + (float)k * inv_taps;
+}
+
+/* The squares of all taps and levels of a lookup, in this order. Returns their number; 0 if the filter reads one texel
+ * only, or if some square is not plain (vl_texel_square). */
+enum { VL_LOOKUP_SQUARES = 2 * VL_FILTER_TAPS };
+static inline uint32_t vl_lookup_squares(const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at,
+                                         vlTexelSquare *out) {
+  if (node->filter == VL_FILTER_POINT) return 0;
+  uint32_t levels = vl_two_levels(node, at->plan.level) ? 2 : 1, count = 0;
+  float inv = 1.0f / (float)at->plan.taps;
+  for (uint32_t k = 0; k < at->plan.taps; k++) {
+    float place = vl_tap_place(inv, k), s = at->s + place * at->plan.s, t = at->t - place * at->plan.t;
+    for (uint32_t level = 0; level < levels; level++) {
+      int32_t x, y;
+      if (!vl_texel_square(mip, (uint32_t)at->plan.level + level, s, t, node->wrap, node->wrap_t, out + count++, &x,
+                           &y))
+        return 0;
+    }
+  }
+  return count;
+}
+
+/* Prefetches the texels of some squares. A function without any effect but prefetches must be always_inline: gcc 12 may
+ * take it for one without effects and delete its calls. */
+static inline __attribute__((always_inline)) void vl_prefetch_squares(const vlMipmap *mip, const vlImageLookup *at,
+                                                                      const vlTexelSquare *q, uint32_t count) {
+  const vlMipLevel *first = &mip->levels[(uint32_t)at->plan.level];
+  bool both = count > at->plan.taps;
+  for (uint32_t k = 0; k < count; k++, q++) {
+    const vlMipLevel *l = first + (both & k);
+    for (int j = 0; j < 2; j++) {
+      size_t index = q->row[j] + q->column[0];
       __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + index) : (const void *)(l->floats + index), 0, 3);
-      __builtin_prefetch(mip->is_bytes ? (const void *)(l->bytes + below) : (const void *)(l->floats + below), 0, 3);
     }
   }
 }
 
 /* A point filter reads one texel of the finer level. A bilinear filter interpolates on that level. A trilinear filter,
- * which also serves for EWA, blends two levels. Bilinear and trilinear filters take several taps. */
-static inline vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip, const vlImageLookup *at) {
+ * which also serves for EWA, blends two levels. Bilinear and trilinear filters take several taps. squares: those of
+ * vl_lookup_squares; null: they are computed here. */
+static inline __attribute__((always_inline)) vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *mip,
+                                                                    const vlImageLookup *at,
+                                                                    const vlTexelSquare *squares) {
   float s = at->s, t = at->t;
   vlFilterPlan plan = at->plan;
-  vlTexel r;
+  uint32_t level = (uint32_t)plan.level;
+  vlTexel r = {{0, 0, 0, 0}};
   if (node->filter == VL_FILTER_POINT) {
-    r = vl_nearest_2(mip, (uint32_t)plan.level, s, t, node->wrap, node->wrap_t);
+    r = vl_nearest_2(mip, level, s, t, node->wrap, node->wrap_t);
   } else {
-    bool both = node->filter != VL_FILTER_BILINEAR;
-    float inv = 1.0f / (float)plan.taps, first = 0.5f * inv - 0.5f;
-    r = vl_filter_tap(node, mip, plan.level, both, s + first * plan.s, t - first * plan.t);
-    for (uint32_t k = 1; k < plan.taps; k++) {
-      float x = first + (float)k * inv;
-      vlTexel more = vl_filter_tap(node, mip, plan.level, both, s + x * plan.s, t - x * plan.t);
-      for (int i = 0; i < 4; i++) r.c[i] += more.c[i];
+    bool both = vl_two_levels(node, plan.level);
+    float inv = 1.0f / (float)plan.taps, f = plan.level - (float)level;
+    for (uint32_t k = 0; k < plan.taps; k++) {
+      float place = vl_tap_place(inv, k), x = s + place * plan.s, y = t - place * plan.t;
+      vlTexel a = squares ? vl_blend_texels(mip, &mip->levels[level], squares++)
+                          : vl_bilinear_2(mip, level, x, y, node->wrap, node->wrap_t);
+      if (both) {
+        vlTexel b = squares ? vl_blend_texels(mip, &mip->levels[level + 1], squares++)
+                            : vl_bilinear_2(mip, level + 1, x, y, node->wrap, node->wrap_t);
+        for (int i = 0; i < 4; i++) a.c[i] = (1 - f) * a.c[i] + f * b.c[i];
+      }
+      for (int i = 0; i < 4; i++) r.c[i] = k ? r.c[i] + a.c[i] : a.c[i];
     }
     for (int i = 0; plan.taps > 1 && i < 4; i++) r.c[i] *= inv;
   }
@@ -296,7 +326,7 @@ static inline vlTexel vl_image_value(const vlTextureNode *node, const vlMipmap *
 
 static inline vlTexel vl_texture_image(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlImageLookup lookup = vl_image_lookup(node, mip, at);
-  return vl_image_value(node, mip, &lookup);
+  return vl_image_value(node, mip, &lookup, NULL);
 }
 
 /* Returns all four channels, multiplied by the tint. A grey value is copied to red, green and blue; coverage is 1 if

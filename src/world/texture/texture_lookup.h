@@ -93,6 +93,12 @@ static inline int32_t vl_wrap_index(int32_t i, int32_t n, vlWrap wrap) {
   return m < 0 ? m + n : m;
 }
 
+/* vl_wrap_index of i + 1, if that of i is `wrapped`: without a second division where the image repeats. */
+static inline int32_t vl_wrap_next(int32_t i, int32_t wrapped, int32_t n, vlWrap wrap) {
+  if (wrap == VL_WRAP_REPEAT) return wrapped + 1 < n ? wrapped + 1 : 0;
+  return vl_wrap_index(i + 1, n, wrap);
+}
+
 typedef struct vlTexel {
   float c[4];
 } vlTexel;
@@ -171,8 +177,8 @@ static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s,
   q->w[0] = (1 - dx) * (1 - dy), q->w[1] = dx * (1 - dy), q->w[2] = (1 - dx) * dy, q->w[3] = dx * dy;
   *x = xi, *y = yi;
   if (!(wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f)) return false;
-  int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_index(xi + 1, (int32_t)l->width, wrap);
-  int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_index(yi + 1, (int32_t)l->height, wrap_t);
+  int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_next(xi, x0, (int32_t)l->width, wrap);
+  int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_next(yi, y0, (int32_t)l->height, wrap_t);
   if ((x0 | x1 | y0 | y1) < 0) return false;
   uint32_t n = mip->channels;
   size_t pitch = (size_t)l->width * n;

@@ -1,11 +1,35 @@
 /* trace/tracer/shade.hot.c: sorts hits by material and shades each run of lanes that have the same material. */
+#include <stddef.h>
+#include <string.h>
+
 #include "trace/texture/texture_run.h"
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 
-/* Copies path by path, because a gather instruction per row takes longer than single moves. */
+enum { BLOCK = 8, PATH_ROWS = offsetof(vlPaths, time) / sizeof(float[VL_ROW_SIZE]) };
+_Static_assert(PATH_ROWS * sizeof(float[VL_ROW_SIZE]) == offsetof(vlPaths, time), "rows of 4 bytes without gaps");
+
+/* Whether a block of the order is a block of neighbours, as most blocks of the first bounces are. */
+static inline bool neighbours(const uint32_t *order) {
+  uint32_t different = 0;
+  for (uint32_t j = 1; j < BLOCK; j++) different |= order[j] ^ (order[0] + j);
+  return !different;
+}
+
+/* Copies blocks of neighbours row by row. Copies others path by path, because a gather instruction per row takes longer
+ * than single moves. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n) {
-  for (uint32_t k = 0; k < n; k++) vl_path_copy(a, order[k], b, k);
+  uint32_t k = 0;
+  while (k < n) {
+    if (n - k >= BLOCK && neighbours(order + k)) {
+      for (size_t row = 0; row < PATH_ROWS; row++)
+        memcpy((char *)b + row * sizeof b->ox + k * sizeof(float),
+               (const char *)a + row * sizeof a->ox + order[k] * sizeof(float), BLOCK * sizeof(float));
+      k += BLOCK;
+    } else {
+      for (uint32_t last = n - k < BLOCK ? n : k + BLOCK; k < last; k++) vl_path_copy(a, order[k], b, k);
+    }
+  }
 }
 static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) {

@@ -122,6 +122,13 @@ static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t 
   }
 }
 
+/* Whether a channel needs the ray through the film point of each pixel. */
+static bool wants_points(const vlChannelPass *p) {
+  const uint32_t others = VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM | VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES |
+                          VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
+  return vl_channel_wanted(p, ~others);
+}
+
 void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   const vlChannelPass *p = pass;
   vlChannelWorker *w = &p->workers[worker];
@@ -130,7 +137,7 @@ void vl_channel_tile(void *pass, uint32_t tile, uint32_t worker) {
   unsigned state = vl_accel_enter();
   if (w->tallies) vl_channel_count(p, w, tile);
   if (vl_channel_wanted(p, VL_CHANNEL_FEATURES)) vl_channel_features(p, w, tile);
-  uint32_t n = list_pixels(p, w, tile);
+  uint32_t n = wants_points(p) ? list_pixels(p, w, tile) : 0;
   vlGroundTruthBatch *b = w->batch;
   if (n) {
     vlChannelEnds ends = {&p->compiled, w->x, w->y, w->lane_x, w->lane_y};

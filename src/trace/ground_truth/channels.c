@@ -22,19 +22,21 @@ static void plan_rgb(vlColorSpace space, vlGroundTruthDef *def) {
                                  : to[3 * k] * from[c] + to[3 * k + 1] * from[3 + c] + to[3 * k + 2] * from[6 + c];
 }
 
-/* Quadrature by def->sets over the visible wavelengths under the white of the colour space, normalised so that
- * reflectance 1 is (1, 1, 1) (pbrt book 4.6.3: the colour of a reflectance under an illuminant). */
+/* Quadrature by def->sets over the visible wavelengths, or the coarse one over 400 to 700 nm only, under the white of
+ * the colour space, normalised so that reflectance 1 is (1, 1, 1) (pbrt book 4.6.3: the colour of a reflectance under
+ * an illuminant). */
 static void plan_spectral(vlColorSpace space, vlGroundTruthDef *def) {
   float m[9];
   vl_rgb_from_xyz(space, m);
   const float *white = vl_space_illuminant(space), *cie[3] = {vl_cie_x(), vl_cie_y(), vl_cie_z()};
   double sum[3] = {0, 0, 0}, weight[VL_GROUND_TRUTH_SETS][4][3];
   const int sets = (int)def->sets;
-  const double step = (VL_LAMBDA_MAX - VL_LAMBDA_MIN) / (4.0 * sets);
+  const double low = def->coarse ? 400.0 : VL_LAMBDA_MIN, high = def->coarse ? 700.0 : VL_LAMBDA_MAX;
+  const double step = (high - low) / (4.0 * sets);
   for (int k = 0; k < sets; k++)
     for (int c = 0; c < 4; c++) {
       double xyz[3];
-      def->lambda[k][c] = (float)(VL_LAMBDA_MIN + (c * sets + k + 0.5) * step);
+      def->lambda[k][c] = (float)(low + (c * sets + k + 0.5) * step);
       for (int i = 0; i < 3; i++)
         xyz[i] = (double)vl_dense_at(cie[i], def->lambda[k][c]) * vl_dense_at(white, def->lambda[k][c]);
       for (int i = 0; i < 3; i++) {

@@ -7,9 +7,9 @@
 #include "trace/trace.h"
 
 /* Albedo: the sum over `sets` of 4 channels of reflectance times weight[set][channel][rgb]. Spectral mode has 64
- * wavelengths in 16 sets, or 12 in 3 sets if `coarse` is set. RGB mode has one set, with the matrix of the colour
+ * wavelengths in 16 sets, or 8 in 2 sets if `coarse` is set. RGB mode has one set, with the matrix of the colour
  * space as its weights. */
-enum { VL_GROUND_TRUTH_SETS = 16, VL_GROUND_TRUTH_COARSE_SETS = 3 };
+enum { VL_GROUND_TRUTH_SETS = 16, VL_GROUND_TRUTH_COARSE_SETS = 2 };
 typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;

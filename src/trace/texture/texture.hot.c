@@ -39,11 +39,37 @@ static vlTexel value_of(const vlTextureNode *node, const vlMipmap *mip, const Lo
                        : vl_image_value(node, mip, &l->at[k], NULL);
 }
 
+/* Where the lookups are, and how they are filtered: vl_image_lookup for many lanes. */
+static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first,
+                         Lookups *restrict l) {
+  VL_ROW float s[VL_LANES], t[VL_LANES], axes[4][VL_LANES], level[VL_LANES], ds[VL_LANES], dt[VL_LANES];
+  VL_ROW uint32_t taps[VL_LANES];
+  for (uint32_t k = 0; k < l->count; k++) {
+    vlTexturePoint at = vl_texture_point_of(r, node, first + k);
+    vlVec2 st = vl_texture_st(node, at);
+    s[k] = st.x, t[k] = st.y;
+    for (int c = 0; c < 4; c++) axes[c][k] = at.axes[c];
+  }
+  for (uint32_t k = l->count; k < VL_LANES; k++)
+    for (int c = 0; c < 4; c++) axes[c][k] = 0.0f;
+  float width = (float)mip->levels[0].width, height = (float)mip->levels[0].height;
+  float last = (float)(mip->level_count - 1);
+  /* must vectorise */
+  VL_SIMD
+  for (uint32_t k = 0; k < VL_LANES; k++) {
+    vlVec2 a = {axes[0][k], axes[1][k]}, b = {axes[2][k], axes[3][k]};
+    vlFilterPlan plan = vl_filter_plan(width, height, last, a, b);
+    level[k] = plan.level, taps[k] = plan.taps, ds[k] = plan.s, dt[k] = plan.t;
+  }
+  for (uint32_t k = 0; k < l->count; k++)
+    l->at[k] = (vlImageLookup){s[k], 1.0f - t[k], {level[k], taps[k], ds[k], dt[k]}};
+}
+
 static void look_up(const vlTextureRun *r, const vlTextureNode *node, const vlMipmap *mip, uint32_t first, Lookups *l) {
   vlTexelSquare *next = l->memory;
   l->count = r->last - first < VL_LANES ? r->last - first : VL_LANES;
+  plan_lookups(r, node, mip, first, l);
   for (uint32_t k = 0; k < l->count; k++) {
-    l->at[k] = vl_image_lookup(node, mip, vl_texture_point_of(r, node, first + k));
     uint32_t count = vl_lookup_squares(node, mip, &l->at[k], next);
     vl_prefetch_squares(mip, &l->at[k], next, count); /* must prefetch */
     l->squares[k] = count ? next : NULL;

@@ -221,23 +221,29 @@ typedef struct vlFilterPlan {
   uint32_t taps;
   float s, t; /* from the first tap to the last */
 } vlFilterPlan;
-static inline vlFilterPlan vl_filter_plan(const vlMipmap *mip, const float axes[4]) {
-  float w = (float)mip->levels[0].width, h = (float)mip->levels[0].height;
-  float as = axes[0] * w, at = axes[1] * h, bs = axes[2] * w, bt = axes[3] * h; /* axes in texels */
+/* a, b: the footprint's axes; width, height: of the finest level; last: index of the coarsest. Without branches, for
+ * vector loops. */
+static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float width, float height, float last,
+                                                                         vlVec2 a, vlVec2 b) {
+  float as = a.x * width, at = a.y * height, bs = b.x * width, bt = b.y * height; /* axes in texels */
   float a2 = as * as + at * at, b2 = bs * bs + bt * bt;
-  bool first = a2 > b2;
+  int32_t first = a2 > b2;
   float long2 = first ? a2 : b2;
-  vlFilterPlan plan = {0.0f, 1, 0.0f, 0.0f};
-  if (!(long2 > 1.0f && long2 < 1e30f)) { /* magnification: no texel is skipped */
-    plan.level = long2 >= 1e30f ? (float)(mip->level_count - 1) : 0.0f;
-    return plan;
-  }
-  float longer = __builtin_sqrtf(long2), shorter = vl_abs(as * bt - at * bs) / longer; /* ellipse of equal area */
-  shorter = vl_max(shorter, 1.0f);
-  plan.level = vl_min(vl_log2_rough(shorter), (float)(mip->level_count - 1));
-  plan.taps = (uint32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
-  plan.s = first ? axes[0] : axes[2], plan.t = first ? axes[1] : axes[3];
+  int32_t reduces = (long2 > 1.0f) & (long2 < 1e30f); /* else magnification: no texel is skipped */
+  float longer = __builtin_sqrtf(reduces ? long2 : 1.0f);
+  float shorter = vl_max(vl_abs(as * bt - at * bs) / longer, 1.0f); /* ellipse of equal area */
+  float level = vl_min(vl_log2_rough(shorter), last), whole = long2 >= 1e30f ? last : 0.0f;
+  uint32_t taps = (uint32_t)(int32_t)vl_min(longer / shorter * 0.99999f, (float)(VL_FILTER_TAPS - 1)) + 1;
+  vlFilterPlan plan;
+  plan.level = reduces ? level : whole;
+  plan.taps = reduces ? taps : 1;
+  float s = first ? a.x : b.x, t = first ? a.y : b.y;
+  plan.s = reduces ? s : 0.0f, plan.t = reduces ? t : 0.0f;
   return plan;
+}
+static inline vlFilterPlan vl_filter_plan_of(const vlMipmap *mip, const float axes[4]) {
+  return vl_filter_plan((float)mip->levels[0].width, (float)mip->levels[0].height, (float)(mip->level_count - 1),
+                        (vlVec2){axes[0], axes[1]}, (vlVec2){axes[2], axes[3]});
 }
 
 /* A lookup in an image texture: where the image is read (t is measured from the top) and how it is filtered. */
@@ -247,7 +253,7 @@ typedef struct vlImageLookup {
 } vlImageLookup;
 static inline vlImageLookup vl_image_lookup(const vlTextureNode *node, const vlMipmap *mip, vlTexturePoint at) {
   vlVec2 st = vl_texture_st(node, at); /* t is measured from the bottom */
-  return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan(mip, at.axes)};
+  return (vlImageLookup){st.x, 1.0f - st.y, vl_filter_plan_of(mip, at.axes)};
 }
 
 /* A trilinear filter blends two levels. */

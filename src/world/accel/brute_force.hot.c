@@ -5,7 +5,7 @@
 #include "math/vec.h"
 #include "world/shape/surface_point.h"
 
-enum { BLOCK = 64, FEW_RAYS = 4, NO_HIT = -1 };
+enum { BLOCK = 128, FEW_RAYS = 4, NO_HIT = -1 };
 
 static inline vlVec3 at3(const float rows[3][VL_BRUTE_FACES], uint32_t j) {
   return vl_vec3(rows[0][j], rows[1][j], rows[2][j]);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "world/shape/double3.h"
 #include "world/world.h"
 
 /* Within these limits no product of the kernels overflows or underflows. */
@@ -26,22 +27,12 @@ static bool is_eligible(const vlWorld *world) {
   return true;
 }
 
-/* a x b for axis i */
-static double cross_at(const double a[3], const double b[3], int i) {
-  int j = (i + 1) % 3, k = (i + 2) % 3;
-  return a[j] * b[k] - a[k] * b[j];
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* (q - p) x (r - q) . n: positive if the corner q of a polygon with the normal n is convex. */
 static double turn(const double p[3], const double q[3], const double r[3], const double n[3]) {
-  double in[3], out[3], sum = 0;
+  double in[3], out[3], across[3];
   for (int i = 0; i < 3; i++) in[i] = q[i] - p[i], out[i] = r[i] - q[i];
-  for (int i = 0; i < 3; i++) sum += cross_at(in, out, i) * n[i];
-  return sum;
+  vl_cross3(in, out, across);
+  return vl_dot3(across, n);
 }
 
 /* A triangle or a quadrilateral while it is made. */
@@ -64,9 +55,8 @@ static Face triangle_face(const vlWorldShape *s, uint32_t prim) {
   corners_of(s, prim, f.corner);
   double one[3], two[3];
   for (int i = 0; i < 3; i++) one[i] = f.corner[1][i] - f.corner[0][i], two[i] = f.corner[2][i] - f.corner[0][i];
-  for (int i = 0; i < 3; i++) f.normal[i] = cross_at(one, two, i);
-  double length = sqrt(dot(f.normal, f.normal));
-  for (int i = 0; i < 3; i++) f.normal[i] = length > 0 ? f.normal[i] / length : 0;
+  vl_cross3(one, two, f.normal);
+  vl_normalize3(f.normal);
   return f;
 }
 
@@ -80,7 +70,7 @@ static bool is_good_quadrilateral(const Face *f) {
   for (int k = 0; k < 4; k++) {
     double from[3];
     for (int i = 0; i < 3; i++) from[i] = f->corner[k][i] - f->corner[0][i];
-    height = fmax(height, fabs(dot(from, f->normal)));
+    height = fmax(height, fabs(vl_dot3(from, f->normal)));
     for (int i = 0; i < 3; i++) size = fmax(size, fabs(f->corner[k][i]));
     if (!(turn(f->corner[k], f->corner[(k + 1) % 4], f->corner[(k + 2) % 4], f->normal) > 0)) return false;
   }
@@ -111,9 +101,10 @@ static void extend(Face *f, const vlWorldShape *s, uint32_t prim) {
 
 /* Swapping the ends changes nothing but signs: differences and products of doubles are rounded alike. */
 static void make_edge(const vlBruteForce *b, const double from[3], const double to[3], float edge[3], float moment[3]) {
-  double p[3], q[3];
+  double p[3], q[3], across[3];
   for (int i = 0; i < 3; i++) p[i] = from[i] - (double)b->center[i], q[i] = to[i] - (double)b->center[i];
-  for (int i = 0; i < 3; i++) edge[i] = (float)(q[i] - p[i]), moment[i] = (float)cross_at(p, q, i);
+  vl_cross3(p, q, across);
+  for (int i = 0; i < 3; i++) edge[i] = (float)(q[i] - p[i]), moment[i] = (float)across[i];
 }
 
 /* extent: radius of the world. */

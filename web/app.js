@@ -137,8 +137,10 @@ function showStatus(s) {
   app.spp = s.spp;
   const error = s.error === null ? "" : `  ·  error ${(100 * s.error).toPrecision(2)} %`;
   const speed = s.paths_per_second ? `  ·  ${metric(s.paths_per_second)}paths/s` : "";
-  const end = s.spp >= s.target ? "  ·  done" : s.paused ? "  ·  paused" : speed;
-  byId("status").textContent = `${s.spp} of ${s.target} spp${end}${error}`;
+  const tracer = s.racing ? "  ·  comparing tracers" : s.next_tracer ? `  ·  auto: ${s.next_tracer} is next` : s.raced ? `  ·  auto: ${s.tracer}` : "";
+  const busy = s.racing || s.next_tracer;
+  const end = s.spp >= s.target && !busy ? "  ·  done" : s.paused ? "  ·  paused" : speed;
+  byId("status").textContent = `${s.spp} of ${s.target} spp${tracer}${end}${error}`;
   byId("progress").firstElementChild.style.width = `${100 * s.spp / s.target}%`;
 }
 

@@ -112,7 +112,8 @@ expect_code 2 continue_auto render --continue a.film --tracer auto
 expect_line continue_auto_says 'own tracer'
 expect_code 2 light_paths_auto render named.pbrt --tracer auto --light-paths 5 -o x.exr
 expect_line light_paths_auto_says 'light-paths'
-expect_code 2 view_auto "$VELO" view named.pbrt --tracer auto
+expect_code 2 light_paths_view_auto "$VELO" view named.pbrt --tracer auto --light-paths 5 --no-open
+expect_line light_paths_view_auto_says 'light-paths'
 check small render named.pbrt --tracer auto --spp 1 --resolution 16x16 -o small.exr
 expect_text small_says 'no race'
 

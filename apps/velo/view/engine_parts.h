@@ -11,6 +11,12 @@ enum { MOST_TASKS = 32, HISTORY = 256 };
 /* Values of Wanted.channel that are not plain ground truth: the standard error needs the film, flow needs a camera. */
 enum { CHANNEL_ERROR = 15, CHANNEL_FLOW = 16 };
 
+/* What makes the samples of a film, as in vlRenderDef. */
+typedef struct ViewTracer {
+  vlTracer tracer;
+  uint32_t light_paths;
+} ViewTracer;
+
 /* What the pages ask for. A new generation makes the image begin anew. */
 typedef struct Wanted {
   ViewCamera camera;
@@ -64,18 +70,26 @@ struct Engine {
   uint32_t task_count, question_count;
   Task traces[MOST_TASKS];            /* pixels whose paths are to be traced: at most one of each page */
   uint32_t trace_count, trace_client; /* trace_client: the page whose paths are being traced; 0: none */
+  ViewTracer shown;                   /* of `film`; without one, of the next film */
   /* the watcher's own */
   FileList files; /* of which the scene was made */
   /* the render thread's own; the model is replaced under the lock */
   Model model;
   Wanted now; /* what is being rendered */
   vlFilm *film;
-  bool failed;            /* the image cannot be rendered */
-  uint32_t serial;        /* of the last frame */
-  double pixel_seconds;   /* time of one sample of one pixel of the whole image; 0: not known */
-  double coarse_seconds;  /* the same of coarse images */
-  double publish_seconds; /* time to make a frame */
-  double frame_seconds;   /* processor time of this thread for all frames */
+  ViewTracer best; /* of new films */
+  bool raced;      /* the race for this scene is done */
+  bool racing;     /* it goes on */
+  bool by_race;    /* `best` is its result */
+  /* the image by the tracer that won the race; it replaces `film` when it has less noise. Null: none */
+  vlFilm *successor;
+  uint32_t successor_enough; /* samples per pixel at which it does */
+  bool failed;               /* the image cannot be rendered */
+  uint32_t serial;           /* of the last frame */
+  double pixel_seconds;      /* time of one sample of one pixel of the whole image; 0: not known */
+  double coarse_seconds;     /* the same of coarse images */
+  double publish_seconds;    /* time to make a frame */
+  double frame_seconds;      /* processor time of this thread for all frames */
   double begun, published, reported,
       looked;      /* times of this image: begin, last frame, last status, last error estimate */
   double rendered; /* seconds that this image has rendered */
@@ -83,6 +97,22 @@ struct Engine {
   double noise;    /* estimated standard error of the display values; NaN: not known */
   double pass_start;
 };
+
+/* The race of --tracer auto (engine_race.c); on the render thread. Forgets the last scene's result. */
+void engine_race_forget(Engine *engine);
+/* Whether the race is due, if `spp` samples per pixel are wanted. */
+bool engine_race_due(const Engine *engine, uint32_t spp);
+/* Runs it, tells its result, and begins the successor if another tracer won. False: interrupted. */
+bool engine_race(Engine *engine);
+/* Shows the successor in place of the film if it has enough samples. Returns whether it did. */
+bool engine_succeed(Engine *engine);
+void engine_drop_successor(Engine *engine);
+/* A film for the present image; null after reporting why not. */
+vlFilm *engine_make_film(Engine *engine);
+/* Sets the tracer and the number of light paths of a render. */
+void engine_set_tracer(vlRenderDef *render, ViewTracer tracer);
+/* The tracer of the image that is shown; takes the lock. */
+ViewTracer engine_shown(Engine *engine);
 
 double engine_clock(void);
 /* Seconds of processor time of the calling thread; of the whole program. */

@@ -47,6 +47,7 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
   vlRenderDef render = e->model.job.defs->render;
   vlError error = {0};
   TracedPaths traced = {.paths = NULL};
+  engine_set_tracer(&render, engine_shown(e));
   if (!(m->x >= 0 && m->y >= 0 && m->x < c->width && m->y < c->height)) {
     engine_refuse(e, task, "the point is outside the image");
     return;

@@ -164,6 +164,7 @@ bool engine_swap_model(Engine *e) {
   pthread_rwlock_unlock(&e->model_lock);
   vl_film_destroy(e->film);
   e->film = NULL;
+  engine_drop_successor(e);
   e->pixel_seconds = e->coarse_seconds = 0;
   model_free(&old);
   free(next);

@@ -177,22 +177,29 @@ static bool render_channel(Engine *e) {
 
 /* ---- the whole image --------------------------------------------------------------------------------------------- */
 
-static void make_film(Engine *e) {
+vlFilm *engine_make_film(Engine *e) {
   vlFilmDef def = e->model.job.defs->film;
+  vlFilm *film = NULL;
   def.errors = true;
   memcpy(def.crop, e->now.crop, sizeof def.crop);
-  vl_film_destroy(e->film);
-  e->film = NULL;
-  vlResult result = vl_film_create(e->def.context, &def, &e->film);
+  vlResult result = vl_film_create(e->def.context, &def, &film);
   if (result != VL_OK) report_reason(result, e->def.path, "no film for the image");
+  return film;
 }
 
-/* The number of samples of the next pass. */
-static uint32_t pass_samples(const Engine *e) {
+static void begin_film(Engine *e) {
+  e->film = engine_make_film(e);
+  pthread_mutex_lock(&e->lock);
+  e->shown = e->best;
+  pthread_mutex_unlock(&e->lock);
+}
+
+/* The number of samples of the next pass of a film that shall have `most`. */
+static uint32_t pass_samples(const Engine *e, const vlFilm *film, uint32_t most) {
   double pixels = (double)(e->now.crop[2] - e->now.crop[0]) * (e->now.crop[3] - e->now.crop[1]);
   double seconds = fmin(longest_pass, pass_seconds + 0.25 * e->rendered),
          n = seconds / (e->pixel_seconds * pixels + 1e-9);
-  uint32_t done = vl_film_spp(e->film), left = e->now.spp - done;
+  uint32_t done = vl_film_spp(film), left = most - done;
   n = n < 1 ? 1 : n > 256 ? 256 : floor(n);
   if (done == 0) n = 1;
   return n < left ? (uint32_t)n : left;
@@ -224,30 +231,47 @@ static void tell_end(Engine *e) {
   tell_if_due(e, !changed);
 }
 
-/* Adds samples until the image is done or something else is asked for. */
-static void render_film(Engine *e) {
+/* Whether samples are missing, or the race, or the image of the tracer that won it. spp: the samples per pixel that are
+ * wanted. */
+static bool is_unfinished(const Engine *e, uint32_t spp) {
+  return !e->failed && (!e->film || vl_film_spp(e->film) < spp || e->successor || engine_race_due(e, spp));
+}
+
+/* Adds samples to the film, or to its successor. False: interrupted, or it failed. */
+static bool render_pass(Engine *e) {
+  vlFilm *film = e->successor ? e->successor : e->film;
   vlRenderDef render = e->model.job.defs->render;
+  vlError error = {0};
+  vlRenderStats stats = {0};
+  engine_set_tracer(&render, e->best);
   render.cancel = e->stop;
   render.first_sample = 0, render.time_limit = 0;
-  if (!e->film) make_film(e);
-  while (e->film && vl_film_spp(e->film) < e->now.spp && !engine_interrupted(e)) {
-    vlError error = {0};
-    vlRenderStats stats = {0};
-    render.spp = vl_film_spp(e->film) + pass_samples(e);
-    double start = engine_clock();
-    vlResult result = vl_render(e->model.world, &e->now.camera.made, e->film, &render, &stats, &error);
-    double seconds = engine_clock() - start;
-    if (result == VL_CANCELLED) return;
-    if (result != VL_OK) {
-      status_error(e, &error, result);
-      e->failed = true; /* until the next change */
-      return;
-    }
-    e->rendered += seconds;
-    e->paths += stats.paths;
-    note_speed(&e->pixel_seconds, &stats, seconds);
-    publish_if_due(e);
-    tell_if_due(e, vl_film_spp(e->film) >= e->now.spp);
+  render.spp = vl_film_spp(film) + pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
+  double start = engine_clock();
+  vlResult result = vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);
+  double seconds = engine_clock() - start;
+  if (result == VL_CANCELLED) return false;
+  if (result != VL_OK) {
+    status_error(e, &error, result);
+    e->failed = true; /* until the next change */
+    return false;
+  }
+  e->rendered += seconds;
+  e->paths += stats.paths;
+  note_speed(&e->pixel_seconds, &stats, seconds);
+  return true;
+}
+
+/* Adds samples until the image is done or something else is asked for. */
+static void render_film(Engine *e) {
+  if (!e->film) begin_film(e);
+  while (e->film && is_unfinished(e, e->now.spp) && !engine_interrupted(e)) {
+    bool race = !e->successor && engine_race_due(e, e->now.spp);
+    if (race ? !engine_race(e) : !render_pass(e)) return;
+    if (race) continue;
+    if (engine_succeed(e)) e->published = 0;
+    if (!e->successor) publish_if_due(e);
+    tell_if_due(e, !is_unfinished(e, e->now.spp));
   }
 }
 
@@ -266,6 +290,7 @@ static bool take_wanted(Engine *e) {
   e->failed = false;
   vl_film_destroy(e->film);
   e->film = NULL;
+  engine_drop_successor(e);
   e->paths = 0;
   e->rendered = 0;
   e->noise = NAN;
@@ -281,7 +306,7 @@ static bool wait_for_work(Engine *e) {
   e->interrupted = 0;
   for (;;) {
     bool samples = e->wanted.channel == 0 || e->wanted.channel == CHANNEL_ERROR;
-    bool unfinished = samples && !e->failed && (!e->film || vl_film_spp(e->film) < e->wanted.spp);
+    bool unfinished = samples && is_unfinished(e, e->wanted.spp);
     bool changed = e->wanted.channel != e->now.channel || e->wanted.spp != e->now.spp;
     if (must_stop(e) || (e->clients && !e->wanted.paused && (unfinished || changed))) break;
     if (e->clients && e->wanted.channel != e->now.channel) break;
@@ -338,6 +363,7 @@ int engine_take_model(Engine *e) {
   memcpy(w->crop, defs->film.crop, sizeof w->crop);
   w->spp = defs->render.spp;
   w->generation++;
+  engine_race_forget(e);
   e->history.cameras[0] = w->camera;
   e->history.count = 1;
   e->history.at = 0;
@@ -404,6 +430,7 @@ int engine_stop(Engine *engine) {
 void engine_destroy(Engine *engine) {
   if (!engine) return;
   vl_film_destroy(engine->film);
+  vl_film_destroy(engine->successor);
   model_free(&engine->model);
   if (engine->next) model_free(engine->next);
   free(engine->next);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "camera/camera.h"
+#include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/attributes.h"
 #include "render/outputs.h"
@@ -75,6 +76,7 @@ static Job present_job(const Engine *e, vlSceneDefs *defs) {
   defs->camera = e->now.camera.def;
   memcpy(defs->film.crop, e->now.crop, sizeof e->now.crop);
   defs->render.spp = vl_film_spp(e->film);
+  engine_set_tracer(&defs->render, e->shown);
   job.defs = defs;
   job.camera = e->now.camera.made;
   job.receipt = NULL;
@@ -136,7 +138,8 @@ static bool option_is_replaced(int id) {
       VIEW_PORT,       VIEW_LISTEN,        VIEW_NO_OPEN,       RENDER_SPP,      RENDER_FILM,     RENDER_RESOLUTION,
       RENDER_CROP,     RENDER_CAMERA,      RENDER_FRAME,       RENDER_SIZE,     RENDER_SEQUENCE, RENDER_VIEW,
       RENDER_EXPOSURE, RENDER_FOCUS_PIXEL, RENDER_LENS_RADIUS, RENDER_F_NUMBER, RENDER_THREADS,  RENDER_FOCUS_DISTANCE,
-      RENDER_QUIET,    RENDER_MAX_MEMORY,  RENDER_ISO,         RENDER_SECONDS,  RENDER_TURN,     RENDER_TRAJECTORY};
+      RENDER_QUIET,    RENDER_MAX_MEMORY,  RENDER_ISO,         RENDER_SECONDS,  RENDER_TURN,     RENDER_TRAJECTORY,
+      RENDER_TRACER,   RENDER_LIGHT_PATHS};
   for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
     if (replaced[i] == id) return true;
   return false;
@@ -189,6 +192,9 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   if (c[0] || c[1] || c[2] < made->width || c[3] < made->height)
     fprintf(out, " --crop %u,%u,%u,%u", c[0], c[1], c[2], c[3]);
   put_options(out, e);
+  /* the tracer of the image, so that there is no race */
+  fprintf(out, " --tracer %s", kind_name("tracers", (int)e->shown.tracer));
+  if (e->shown.light_paths != VL_AS_MANY_AS_PIXELS) fprintf(out, " --light-paths %u", e->shown.light_paths);
   format_number(number, sizeof number, m->exposure);
   fprintf(out, " --spp %u --sequence %u --view %s --exposure %s --no-receipt -o", vl_film_spp(e->film),
           render->sequence ? render->sequence : 65536,

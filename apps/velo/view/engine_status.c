@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cli/kinds.h"
 #include "render/job.h"
 
 void json_text_post(JsonText *json, Server *server, uint32_t client) {
@@ -67,6 +68,10 @@ void status_tell(Engine *e, bool estimate) {
   json_number(&json.json, "frame_seconds", e->frame_seconds + server_seconds(e->server));
   if (stop > 0) json_number(&json.json, "stop_seconds", stop);
   json_bool(&json.json, "paused", paused);
+  json_text(&json.json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
+  json_bool(&json.json, "racing", e->racing);
+  json_bool(&json.json, "raced", e->by_race);
+  if (e->successor) json_text(&json.json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
   char *text = json_text_end(&json);
   if (!text) return;
   server_post(e->server, 0, text);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "render/race_rules.h"
 #include "view/serve.h"
 
 /* The options that go with --lecture: its scenes have all the rest. */
@@ -19,6 +20,8 @@ static bool goes_with_lecture(int option) {
 /* Returns -1, or the exit code after reporting the error. */
 static int check_usage(const Command *command, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
+  int status = race_check_options(arguments);
+  if (status >= 0) return status;
   if (!v[VIEW_LECTURE].given) {
     if (v[VIEW_LANGUAGE].given) return report_usage("--language goes with --lecture");
     if (arguments->operand_count) return -1;
@@ -55,8 +58,8 @@ void serve_stop(Serve *serve) {
 #endif
 
 /* Families of velo/schema.h. */
-static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}}, samplers[] = {{"samplers", 0}, {NULL, 0}},
-                    filters[] = {{"filters", 0}, {NULL, 0}};
+static const Choice tracers[] = {{"tracers", 0}, {"auto", TRACER_AUTO}, {NULL, 0}},
+                    samplers[] = {{"samplers", 0}, {NULL, 0}}, filters[] = {{"filters", 0}, {NULL, 0}};
 
 static const Choice languages[] = {{"en", LANGUAGE_ENGLISH}, {"it", LANGUAGE_ITALIAN}, {NULL, 0}};
 
@@ -103,7 +106,11 @@ const Option view_options[] = {
     {RENDER_WALLS, 0, "walls", OPTION_CHOICE, "NAME",
      "closed models: hide the walls before the camera, or keep them:", 0, 0, walls_choices},
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0, up_choices},
-    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "light transport algorithm:", 0, 0, tracers},
+    {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
+     "light transport algorithm; auto: chosen by a short race when the image has 32 samples, the default where the "
+     "scene "
+     "names none:",
+     0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R", "merging, sppm: radius of the first pass", 1e-30, 1e30,
      NULL},

@@ -62,6 +62,7 @@ struct Engine {
   ViewCamera scene_camera; /* as the scene and the command line give it */
   History history;
   char *last_status; /* the last state of the render, for pages that come; null: none */
+  uint32_t loads;    /* how often the scene was loaded again, or failed to */
   Model *next;       /* the scene after a change of its files; null: none */
   /* of the lecture: the scene that a page has chosen and that is not loaded yet, null: none; the scene of `next` */
   const char *chosen, *next_path;
@@ -145,6 +146,10 @@ void *engine_answer_questions(void *engine);
 void engine_save(Engine *engine, const Task *task);
 /* Writes the camera and posts the command that renders the present image. */
 void engine_command(Engine *engine, const Task *task);
+/* The settings of the present image; its crop, its samples and its tracer are those of the film. */
+vlSceneDefs engine_present_defs(const Engine *engine);
+/* Writes the film of --film; when the threads have ended. Returns the exit code. */
+int engine_write_film(Engine *engine);
 /* Posts vanishing points, horizon and, if asked for, the boxes of objects and the curves of engine_put_curves. */
 void engine_overlay(Engine *engine, const Task *task);
 /* Posts the lines that draw the camera from outside; a small image of the scene from outside. */

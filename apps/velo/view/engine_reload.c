@@ -30,6 +30,9 @@ static bool load_again(Engine *e, Watch *watch) {
   Model *model = calloc(1, sizeof *model);
   if (!model) return false;
   post(e, "loading");
+  pthread_mutex_lock(&e->lock);
+  uint32_t load = ++e->loads;
+  pthread_mutex_unlock(&e->lock);
   report_listen(on_report, e);
   pthread_rwlock_rdlock(&e->model_lock); /* the previous world stays */
   int status = model_load(e->def.context, e->def.path, e->def.arguments, e->model.world, e->end, model, &e->files);
@@ -40,6 +43,7 @@ static bool load_again(Engine *e, Watch *watch) {
     free(model);
     return false;
   }
+  model->load = load;
   post(e, "loaded");
   pthread_mutex_lock(&e->lock);
   Model *unused = e->next;

@@ -419,12 +419,7 @@ int engine_stop(Engine *engine) {
   if (engine->answering) pthread_join(engine->answerer, NULL);
   if (engine->tracing) pthread_join(engine->tracer, NULL);
   engine->started = false;
-  if (!engine->def.film_path) return STATUS_OK;
-  if (!engine->film || !vl_film_spp(engine->film))
-    return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", engine->def.film_path);
-  vlError error = {0};
-  vlResult result = vl_film_write(engine->film, NULL, engine->def.film_path, &error);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, engine->def.film_path);
+  return engine->def.film_path ? engine_write_film(engine) : STATUS_OK;
 }
 
 void engine_destroy(Engine *engine) {

@@ -69,14 +69,19 @@ static void save_camera(Engine *e, const Task *task, const char *wanted, const c
     engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
 }
 
+vlSceneDefs engine_present_defs(const Engine *e) {
+  vlSceneDefs defs = *e->model.job.defs;
+  defs.camera = e->now.camera.def;
+  memcpy(defs.film.crop, e->now.crop, sizeof e->now.crop);
+  defs.render.spp = vl_film_spp(e->film);
+  engine_set_tracer(&defs.render, e->shown);
+  return defs;
+}
+
 /* The job as `velo render` would have it for the present image. */
 static Job present_job(const Engine *e, vlSceneDefs *defs) {
   Job job = e->model.job;
-  *defs = *e->model.job.defs;
-  defs->camera = e->now.camera.def;
-  memcpy(defs->film.crop, e->now.crop, sizeof e->now.crop);
-  defs->render.spp = vl_film_spp(e->film);
-  engine_set_tracer(&defs->render, e->shown);
+  *defs = engine_present_defs(e);
   job.defs = defs;
   job.camera = e->now.camera.made;
   job.receipt = NULL;

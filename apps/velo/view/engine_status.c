@@ -69,7 +69,7 @@ void status_tell(Engine *e, bool estimate) {
   if (stop > 0) json_number(&json.json, "stop_seconds", stop);
   json_bool(&json.json, "paused", paused);
   json_text(&json.json, "tracer", kind_name("tracers", (int)engine_shown(e).tracer));
-  json_bool(&json.json, "racing", e->racing);
+  json_bool(&json.json, "racing", e->racing || engine_race_due(e, e->now.spp));
   json_bool(&json.json, "raced", e->by_race);
   if (e->successor) json_text(&json.json, "next_tracer", kind_name("tracers", (int)e->best.tracer));
   char *text = json_text_end(&json);

@@ -16,6 +16,7 @@ typedef struct Model {
   float exposure;    /* EV of the first view */
   vlCamera *cameras; /* of --trajectory; null: none */
   uint32_t camera_count;
+  uint32_t load; /* Engine.loads at this load */
 } Model;
 
 /* Loads, completes and builds. path: a file; with --lecture, a scene of the lecture. Adds the paths of the files that

@@ -78,10 +78,10 @@ struct Engine {
   Model model;
   Wanted now; /* what is being rendered */
   vlFilm *film;
-  ViewTracer best; /* of new films */
-  bool raced;      /* the race for this scene is done */
-  bool racing;     /* it goes on */
-  bool by_race;    /* `best` is its result */
+  ViewTracer best;    /* of new films */
+  uint32_t raced_for; /* samples per pixel for which a race was planned last; UINT32_MAX: the choice is made */
+  bool racing;        /* it goes on */
+  bool by_race;       /* `best` is its result */
   /* the image by the tracer that won the race; it replaces `film` when it has less noise. Null: none */
   vlFilm *successor;
   uint32_t successor_enough; /* samples per pixel at which it does */

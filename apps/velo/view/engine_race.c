@@ -38,7 +38,8 @@ static ViewTracer tracer_of(const Engine *e, vlTracer tracer, uint32_t light_pat
 void engine_race_forget(Engine *e) {
   const vlRenderDef *render = &e->model.job.defs->render;
   e->best = e->shown = tracer_of(e, render->tracer, render->light_paths);
-  e->raced = e->racing = e->by_race = false;
+  e->raced_for = 0;
+  e->racing = e->by_race = false;
 }
 
 void engine_drop_successor(Engine *e) {
@@ -57,8 +58,8 @@ static RaceKind plan(const Engine *e, uint32_t spp, vlSceneDefs *defs) {
 bool engine_race_due(const Engine *e, uint32_t spp) {
   vlSceneDefs defs;
   uint32_t least = spp < RACE_LEAST_SAMPLES ? spp : RACE_LEAST_SAMPLES;
-  if (e->raced || !e->film || vl_film_spp(e->film) < least) return false;
-  return plan(e, spp, &defs) != RACE_NONE;
+  if (e->raced_for == UINT32_MAX || !e->film || vl_film_spp(e->film) < least) return false;
+  return plan(e, spp, &defs) != RACE_NONE && race_samples(&defs) > e->raced_for;
 }
 
 /* ---- the successor ----------------------------------------------------------------------------------------------- */
@@ -156,7 +157,7 @@ bool engine_race(Engine *e) {
   e->rendered += engine_clock() - start;
   e->racing = false;
   if (result == VL_CANCELLED) return false;
-  e->raced = true;
+  e->raced_for = result != VL_OK || choice.count ? UINT32_MAX : def.spp; /* more samples may allow a race */
   if (result != VL_OK) {
     report_warning("no race of the tracers: %s", error.message[0] ? error.message : vl_result_name(result));
     return true;

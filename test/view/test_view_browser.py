@@ -14,6 +14,7 @@ import zlib
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from browser import Browser  # noqa: E402
+from lamp import SCENE as LAMP  # noqa: E402
 from live import View  # noqa: E402
 import results  # noqa: E402
 from results import check  # noqa: E402
@@ -313,6 +314,38 @@ def test_layout(view):
             b.end(kill=name == "dark")  # a browser that is killed in the middle
 
 
+def test_race(folder):
+    """The line of the image says which tracer won the race, and a copied command names it."""
+    open(os.path.join(folder, "lamp.pbrt"), "w").write(LAMP % "")
+    view = View(VELO, os.path.join(folder, "lamp.pbrt"), "--max-depth", "4", "--tracer", "auto", cwd=folder)
+    b = Browser()
+    try:
+        b.open(view.address)
+        b.wait("velo.connection")
+        b.run("""new Promise(done => { window.lines = []; const line = document.getElementById("status");
+              new MutationObserver(() => lines.push(line.textContent)).observe(line, {childList: true}); done(); })""")
+        b.wait("velo.frames > 0 && velo.state")
+        wait_done(b)
+        lines = b.run("lines")
+        check("race_compares", any("comparing tracers" in line for line in lines), lines)
+        check("race_next", any("auto: bidirectional is next" in line for line in lines), lines)
+        check("race_done_is_last", not [line for line in lines if "done" in line and "auto: bidirectional" not in line], lines)
+        check("race_chosen", "64 of 64 spp" in lines[-1] and "auto: bidirectional  ·  done" in lines[-1], lines)
+        notice = b.run("document.getElementById('notice').textContent")
+        check("race_line", notice.startswith("auto: bidirectional") and "error x rays" in notice, notice)
+        b.click_on("#save summary")
+        b.click_on("#copy-command")
+        b.wait("!document.querySelector('.command').hidden")
+        command = b.run("document.querySelector('.command').textContent")
+        check("race_command", "--tracer bidirectional" in command and "auto" not in command.split(), command)
+        check("race_no_errors", not b.problems(), b.problems())
+        shot(b, "race")
+    finally:
+        b.end()
+    code, errors = view.end()
+    check("race_ends", code == 0, errors)
+
+
 def main():
     if not any(shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")):
         print("skip view_browser: there is no chromium")
@@ -346,6 +379,7 @@ def main():
     finally:
         code, errors = view.end()
     check("ends", code == 0, errors)
+    test_race(folder)
     shutil.rmtree(folder)
 
 

@@ -9,32 +9,13 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from lamp import SCENE  # noqa: E402
 from live import Frame, Page, View  # noqa: E402
 import results  # noqa: E402
 from results import check  # noqa: E402
 
 ROOT = os.environ.get("VELO_SOURCE_DIR") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 VELO = os.path.abspath(os.environ.get("VELO") or os.path.join(ROOT, "build/release/bin/velo"))
-# A lamp in a tube that is open above: light from the lamps finds the room.
-SCENE = '''LookAt 0 1 3.5 0 0.8 0 0 1 0
-Camera "perspective" "float fov" [60]
-Film "rgb" "integer xresolution" [128] "integer yresolution" [96]
-Sampler "zsobol" "integer pixelsamples" [64]
-%sWorldBegin
-Material "diffuse" "rgb reflectance" [0.7 0.6 0.5]
-Shape "bilinearmesh" "point3 P" [-4 0 -4  4 0 -4  -4 0 4  4 0 4]
-Shape "bilinearmesh" "point3 P" [-4 3 -4  4 3 -4  -4 3 4  4 3 4]
-Shape "bilinearmesh" "point3 P" [-4 0 -2  4 0 -2  -4 3 -2  4 3 -2]
-AttributeBegin
-  Rotate -90 1 0 0
-  Shape "cylinder" "float radius" [0.4] "float zmin" [0.3] "float zmax" [1.2]
-AttributeEnd
-AttributeBegin
-  Translate 0 0.8 0
-  AreaLightSource "diffuse" "rgb L" [60 60 50]
-  Shape "sphere" "float radius" [0.15]
-AttributeEnd
-'''
 INTEGRATOR = 'Integrator "%s" "integer maxdepth" [4]\n'
 # All light is seen from all points: paths from the camera alone are the best.
 OPEN = SCENE.split("Attribute")[0] % "" + 'LightSource "distant" "point3 from" [0 2 5] "point3 to" [0 0 0]\n'

@@ -269,7 +269,7 @@ static void render_film(Engine *e) {
     bool race = !e->successor && engine_race_due(e, e->now.spp);
     if (race ? !engine_race(e) : !render_pass(e)) return;
     if (race) continue;
-    if (engine_succeed(e)) e->published = 0;
+    if (engine_succeed(e)) e->published = e->reported = 0; /* both are due */
     if (!e->successor) publish_if_due(e);
     tell_if_due(e, !is_unfinished(e, e->now.spp));
   }

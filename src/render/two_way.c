@@ -59,6 +59,7 @@ struct vlTwoWayRun {
   vlPhoton *photons, *sorted;
   uint32_t *start, capacity, buckets;
   vlLightVertex *vertices, *sorted_vertices; /* the pass's vertices, in any order and sorted */
+  uint32_t *passed, *sorted_passed; /* the same of vlLightVertices.passed; null without attenuation by channel */
   uint32_t *counts, vertex_capacity, inner_paths;
   atomic_uint_least64_t left;
   atomic_uint_least64_t stored;
@@ -125,11 +126,13 @@ static void store(void *user, uint32_t n, const vlPhoton *photons) {
   if (at + n <= run->capacity) memcpy(run->photons + at, photons, n * sizeof *photons);
 }
 
-static void leave(void *user, uint32_t n, const vlLightVertex *vertices) {
+static void leave(void *user, uint32_t n, const vlLightVertex *vertices, const uint32_t *passed) {
   Worker *w = user;
   vlTwoWayRun *run = w->run;
   uint64_t at = atomic_fetch_add_explicit(&run->left, n, memory_order_relaxed);
-  if (at + n <= run->vertex_capacity) memcpy(run->vertices + at, vertices, n * sizeof *vertices);
+  if (at + n > run->vertex_capacity) return;
+  memcpy(run->vertices + at, vertices, n * sizeof *vertices);
+  if (run->passed) memcpy(run->passed + at, passed, n * sizeof *passed);
 }
 
 /* Sorts the pass's vertices by group, path and bounce. A counting sort by path; the few vertices of a path are then
@@ -143,16 +146,26 @@ static void sort_vertices(vlTwoWayRun *run, uint32_t count) {
   for (uint32_t i = 0; i < count; i++) start[PLACE(&run->vertices[i]) + 1]++;
   for (uint32_t i = 0; i < paths; i++) start[i + 1] += start[i];
   for (uint32_t g = 0; g <= groups; g++) inner->start[g] = start[g * each];
-  for (uint32_t i = 0; i < count; i++) sorted[start[PLACE(&run->vertices[i])]++] = run->vertices[i];
+  uint32_t *passed = run->passed ? run->sorted_passed : NULL;
+  for (uint32_t i = 0; i < count; i++) {
+    uint32_t at = start[PLACE(&run->vertices[i])]++;
+    sorted[at] = run->vertices[i];
+    if (passed) passed[at] = run->passed[i];
+  }
 #undef PLACE
   for (uint32_t k = 1; k < count; k++) {
     vlLightVertex moving = sorted[k];
-    uint32_t at = k;
-    for (; at > 0 && sorted[at - 1].path == moving.path && sorted[at - 1].bounce > moving.bounce; at--)
+    uint32_t at = k, with = passed ? passed[k] : 0;
+    for (; at > 0 && sorted[at - 1].path == moving.path && sorted[at - 1].bounce > moving.bounce; at--) {
       sorted[at] = sorted[at - 1];
-    if (at != k) sorted[at] = moving;
+      if (passed) passed[at] = passed[at - 1];
+    }
+    if (at == k) continue;
+    sorted[at] = moving;
+    if (passed) passed[at] = with;
   }
   inner->vertices = sorted;
+  inner->passed = passed;
 }
 
 /* Keeps fewer paths' vertices in this pass. Returns false if that is not possible. */
@@ -171,6 +184,13 @@ static vlResult grow_vertices(vlTwoWayRun *run, uint64_t wanted, vlError *error)
   run->vertices = vl_alloc_array(run->context, capacity, sizeof *run->vertices);
   run->sorted_vertices = vl_alloc_array(run->context, capacity, sizeof *run->sorted_vertices);
   bool good = run->vertices && run->sorted_vertices;
+  if (run->world->by_channel) {
+    vl_free(run->context, run->passed);
+    vl_free(run->context, run->sorted_passed);
+    run->passed = vl_alloc_array(run->context, capacity, sizeof *run->passed);
+    run->sorted_passed = vl_alloc_array(run->context, capacity, sizeof *run->sorted_passed);
+    good = good && run->passed && run->sorted_passed;
+  }
   run->vertex_capacity = good ? (uint32_t)capacity : 0;
   return good ? VL_OK : vl_fail_memory(error);
 }
@@ -349,11 +369,11 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
-/* Prepares connections of inner vertices. There are none in worlds with motion or attenuation by channel. */
+/* Prepares connections of inner vertices. There are none in worlds with motion. */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;
-  if (world->by_channel || world->moves || run->trace.max_depth < 2) return VL_OK;
+  if (world->moves || run->trace.max_depth < 2) return VL_OK;
   uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER, groups = paths / GROUP_PATHS;
   groups = groups < 1 || world->def.color == VL_COLOR_RGB ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
   inner->groups = groups;
@@ -438,7 +458,7 @@ uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vl
   uint64_t bytes = window * sizeof(*((vlSplats *)0)->pixels);
   if (def->tracer == VL_TRACER_BIDIRECTIONAL)
     bytes += (paths < MOST_INNER ? paths : MOST_INNER) *
-             (VERTICES * (sizeof(vlLightVertex) + sizeof(uint32_t)) + sizeof(uint32_t));
+             (VERTICES * (sizeof(vlLightVertex) + (world->by_channel ? 3 : 1) * sizeof(uint32_t)) + sizeof(uint32_t));
   if (def->tracer == VL_TRACER_MERGING || def->tracer == VL_TRACER_SPPM) bytes += photons * 2 * sizeof(vlPhoton);
   return bytes + vl_context_threads(world->context) * vl_two_way_rows_size();
 }
@@ -457,6 +477,8 @@ void vl_two_way_destroy(vlTwoWayRun *run) {
   vl_free(context, run->start);
   vl_free(context, run->vertices);
   vl_free(context, run->sorted_vertices);
+  vl_free(context, run->passed);
+  vl_free(context, run->sorted_passed);
   vl_free(context, run->counts);
   vl_free(context, run);
 }

@@ -151,6 +151,23 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
   }
 }
 
+void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count) {
+  float far[3];
+  vl_unpack_passed(light, far);
+  for (int k = 0; k < 3; k++) t->s->volume.shadow_passed[k][count] = far[k] * eye[k];
+  for (int c = 0; c < 4; c++) t->s->shadow.radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
+}
+
+/* The same for surface lane i. The surface may attenuate light that crosses it towards the vertex. */
+static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float wi_z, uint32_t count) {
+  const vlTraceScratch *s = t->s;
+  uint32_t lane = s->b.lane[i];
+  if (!t->world->by_channel) return;
+  float eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
+  vl_passed_on(s, i, wi_z, eye);
+  vl_join_channels(t, &s->b, i, eye, t->def->two_way->inner.passed[vertex], count);
+}
+
 /* Adds lane i's connection to x as shadow ray `count`. */
 static void push(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth, uint32_t count) {
   vlTraceScratch *s = t->s;
@@ -177,7 +194,7 @@ static void push(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor,
 }
 
 /* The same in worlds with media. */
-static void push_in_media(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth, uint32_t count) {
+static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float forth, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
@@ -194,7 +211,7 @@ static void push_in_media(vlTracing *t, uint32_t i, const vlLightVertex *x, floa
                     .cosine = vl_abs(vl_dot(g, w)),
                     .factor = factor,
                     .medium = vl_medium_beyond(shape, g, w, s->volume.b.medium[i])};
-  vl_push_connection(t, &s->b, &s->volume.b, &c, x, count);
+  vl_push_connection(t, &s->b, &s->volume.b, &c, vertex, count);
 }
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
@@ -232,9 +249,10 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     if (!(sum > 0.0f) && sum == sum) continue;
     const vlLightVertex *x = &inner->vertices[r->first[i]];
     if (vl_has_media(t))
-      push_in_media(t, i, x, factor[i], forth[i], count++);
+      push_in_media(t, i, r->first[i], factor[i], forth[i], count);
     else
-      push(t, i, x, factor[i], forth[i], count++);
+      push(t, i, x, factor[i], forth[i], count);
+    join_from_surface(t, i, r->first[i], wi[2][i], count++);
   }
   vl_two_way_shadows(t, &s->b, count, depth + VL_CONNECTION_KEY);
 }

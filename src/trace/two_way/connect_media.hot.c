@@ -65,7 +65,8 @@ float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected) 
 }
 
 void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
-                        const vlLightVertex *x, uint32_t count) {
+                        uint32_t vertex, uint32_t count) {
+  const vlLightVertex *x = &t->def->two_way->inner.vertices[vertex];
   vlVolumeScratch *v = &t->s->volume;
   vlTwoWayRows *r = t->batch->two_way;
   vlShadowRays *q = &t->s->shadow;
@@ -127,7 +128,13 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
                       .cosine = r->cosine[i],
                       .factor = factor[i],
                       .medium = medium};
-    vl_push_connection(t, p, &v->c, &c, x, count++);
+    vl_push_connection(t, p, &v->c, &c, chosen[i], count);
+    if (t->world->by_channel) {
+      const vlTraceScratch *s = t->s;
+      const float eye[3] = {s->passed[0][p->lane[i]], s->passed[1][p->lane[i]], s->passed[2][p->lane[i]]};
+      vl_join_channels(t, p, i, eye, way->inner.passed[chosen[i]], count);
+    }
+    count++;
   }
   vl_two_way_shadows(t, p, count, depth + VL_CONNECTION_KEY);
 }

@@ -176,9 +176,10 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
     x->path = path & 0x3ffffu, x->bounce = (depth + 1) & 255u;
     x->alone = vl_hero_only(p, i), x->inside = 0;
     x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume.b.medium[i]) & 15u : 0;
+    r->first[count] = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
-  if (count) b->leave(b->user, count, r->vertices);
+  if (count) b->leave(b->user, count, r->vertices, r->first);
 }
 
 /* ---- the next vertex --------------------------------------------------------------------------------------------- */

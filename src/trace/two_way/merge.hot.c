@@ -74,14 +74,10 @@ static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   const vlTraceScratch *s = t->s;
   const vlPaths *p = x->medium ? &s->volume.scattered : &s->b;
   uint32_t lane = p->lane[i];
-  float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]}, both[3];
+  float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
   if (!x->medium) vl_passed_on(s, i, wi_z, eye);
   vl_unpack_passed(x->passed, light);
-  for (int k = 0; k < 3; k++) both[k] = light[k] * eye[k];
-  for (int c = 0; c < 4; c++) {
-    float lambda = p->lambda[c][i], apart = vl_channels_at(light, lambda) * vl_channels_at(eye, lambda);
-    power[c] *= apart > 0.0f ? vl_channels_at(both, lambda) / apart : 0.0f;
-  }
+  for (int c = 0; c < 4; c++) power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
 }
 
 static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {

@@ -89,7 +89,11 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
 float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
 /* Adds the connection to x as shadow ray `count`. */
 void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
-                        const vlLightVertex *x, uint32_t count);
+                        uint32_t vertex, uint32_t count);
+/* With attenuation by RGB channel, multiplies shadow ray `count` of camera path i so that the transmittance is that of
+ * the whole path. eye: vlTraceScratch.passed up to the connection; light: that of the light path, packed. Starts the
+ * ray's own passed. */
+void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
@@ -226,6 +230,13 @@ static inline void vl_unpack_passed(uint32_t packed, float p[3]) {
   p[largest] = 1.0f;
   for (uint32_t k = 1; k < 3; k++)
     p[(largest + k) % 3] = vl_exp((float)(packed >> (2 + 15 * (k - 1)) & 32767u) * (-1.0f / 512.0f));
+}
+/* The factor on two joined paths that attenuate by RGB channel, a and b as vlTraceScratch.passed: the transmittance at
+ * a wavelength of the whole path over the product of those of its parts. */
+static inline float vl_joined_factor(const float a[3], const float b[3], float lambda) {
+  float both[3] = {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
+  float apart = vl_channels_at(a, lambda) * vl_channels_at(b, lambda);
+  return apart > 0.0f ? vl_channels_at(both, lambda) / apart : 0.0f;
 }
 
 /* Whether path i has only its hero wavelength left. material.hot.c marks such paths by equal wavelengths. */

@@ -82,6 +82,7 @@ _Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
 enum { VL_MOST_GROUPS = 16 };
 typedef struct vlLightVertices {
   const vlLightVertex *vertices;
+  const uint32_t *passed;             /* by vertex: vlPhoton.passed; null without vlWorld.by_channel */
   uint32_t start[VL_MOST_GROUPS + 1]; /* by group: its vertices */
   uint32_t groups, paths;
 } vlLightVertices;
@@ -139,7 +140,8 @@ typedef struct vlLightBatch {
   void (*splat)(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
                 float *const inv_pdf[4]);
   void (*store)(void *user, uint32_t n, const vlPhoton *photons);
-  void (*leave)(void *user, uint32_t n, const vlLightVertex *vertices);
+  /* passed: vlPhoton.passed of each vertex, undefined without vlWorld.by_channel */
+  void (*leave)(void *user, uint32_t n, const vlLightVertex *vertices, const uint32_t *passed);
   uint64_t bounce_rays, shadow_rays; /* the kernel adds its numbers of rays */
 } vlLightBatch;
 

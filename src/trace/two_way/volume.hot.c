@@ -167,9 +167,10 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
     x->path = path & 0x3ffffu, x->bounce = (depth + 1) & 255u;
     x->alone = vl_hero_only(p, i), x->inside = 1;
     x->air = vl_air(t->world, medium) & 15u;
+    r->first[count] = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
-  if (count) b->leave(b->user, count, r->vertices);
+  if (count) b->leave(b->user, count, r->vertices, r->first);
 }
 
 static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {

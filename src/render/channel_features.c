@@ -84,14 +84,16 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
 
 /* Adds n hits, of the pixels at (u, v) from n pixels of a row, to these. at: grid point of the first hit. */
 static void add_hits(const vlFeatureGrid *g, uint32_t n, uint32_t u, uint32_t v, size_t at, float *const sums[COUNT],
-                     float *total) {
+                     float *restrict total) {
   const float *x = g->x[u] + at, *y = g->y[v] + at;
+  float weight[VL_CHANNEL_TILE];
+  VL_SIMD for (uint32_t i = 0; i < n; i++) weight[i] = x[i] * y[i];
   for (int k = 0; k < COUNT; k++) {
     const float *value = g->value[k] + at;
-    float *sum = sums[k];
-    VL_SIMD for (uint32_t i = 0; i < n; i++) sum[i] += x[i] * y[i] * value[i];
+    float *restrict sum = sums[k];
+    VL_SIMD for (uint32_t i = 0; i < n; i++) sum[i] += weight[i] * value[i];
   }
-  VL_SIMD for (uint32_t i = 0; i < n; i++) total[i] += x[i] * y[i];
+  VL_SIMD for (uint32_t i = 0; i < n; i++) total[i] += weight[i];
 }
 
 /* Adds the hits of one sample of each pixel to the region's pixels. */

@@ -196,7 +196,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   const vlSurface *f = &s->surface;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->b.lane[i];
-    batch->distance[lane] = exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
+    batch->distance[lane] = def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
     batch->n_shading[0][lane] = f->nx[i], batch->n_shading[1][lane] = f->ny[i], batch->n_shading[2][lane] = f->nz[i];
     batch->n_geometric[0][lane] = f->gx[i], batch->n_geometric[1][lane] = f->gy[i];
     batch->n_geometric[2][lane] = f->gz[i];

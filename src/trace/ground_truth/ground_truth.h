@@ -14,7 +14,7 @@ typedef struct vlGroundTruthDef {
   float pixel_spread, pixel_width; /* as in vlTraceDef */
   vlIsa isa;
   bool shading, albedo; /* what to compute: shading normals (with bump maps), albedo */
-  bool coarse;          /* compute albedo from fewer wavelengths */
+  bool coarse;          /* compute albedo from fewer wavelengths, and distances from the rays in float */
   uint32_t sets;
   float lambda[VL_GROUND_TRUTH_SETS][4];
   float weight[VL_GROUND_TRUTH_SETS][4][3];

@@ -1,6 +1,8 @@
 /* render/film_rays.c: see film_rays.h. */
 #include "render/film_rays.h"
 
+#include <math.h>
+
 #include "trace/trace.h"
 
 static float *row(float *rows, int i) {
@@ -45,6 +47,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->lens = camera->lens_radius > 0;
   f->middle = f->moves = f->centred = f->uniform = false;
   f->shared = -1.0f;
+  f->groups = 0, f->turn = 0.0f;
   f->spread = 1.0f;
 }
 
@@ -69,13 +72,28 @@ void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r
   for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
 }
 
+/* Multiples of the golden ratio, modulo 1, are evenly distributed for any number of groups. */
+float vl_film_rays_group_time(const vlFilmRays *f, uint32_t group) {
+  float u = (float)group * 0.61803399f + f->turn;
+  return fminf(u - floorf(u), VL_ONE_MINUS_EPSILON);
+}
+
+static void sample_times(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
+  const vlSamplerKernels *k = f->sampler_kernels;
+  bool same = f->middle || f->centred || f->shared >= 0.0f;
+  if (!same) k->get_1d(&f->sampler, n, r->px, r->py, r->index, f->groups ? VL_DIM_WAVELENGTH : VL_DIM_TIME, r->time);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    if (same)
+      r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
+    else if (f->groups)
+      r->time[i] = vl_film_rays_group_time(f, (uint32_t)(r->time[i] * (float)f->groups));
+  }
+}
+
 void vl_film_rays_make(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
   vl_film_rays_points(f, n, r);
-  if (f->middle || f->centred || f->shared >= 0.0f)
-    for (uint32_t i = 0; i < VL_PAD(n); i++) r->time[i] = f->middle || f->centred ? 0.5f : f->shared;
-  else
-    k->get_1d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_TIME, r->time);
+  sample_times(f, n, r);
   if (f->lens && !f->centred)
     k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_LENS, r->lens_u, r->lens_v);
   else

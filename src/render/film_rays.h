@@ -15,9 +15,12 @@ typedef struct vlFilmRays {
   const vlCameraKernels *camera_kernels;
   const vlSamplerKernels *sampler_kernels;
   const vlFilterKernels *filter_kernels;
-  bool lens;    /* lens points are sampled; false: all are the centre of the lens */
-  bool centred; /* centre of the pixel and of the lens, middle of the shutter's time */
-  float shared; /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
+  bool lens;       /* lens points are sampled; false: all are the centre of the lens */
+  bool centred;    /* centre of the pixel and of the lens, middle of the shutter's time */
+  float shared;    /* at least 0: the number that samples the time of all rays; below 0: each ray has its own */
+  uint32_t groups; /* at least 1: the rays have the times of so many groups of light paths (trace/two_way/two_way.h); 0:
+                      each ray has its own */
+  float turn;      /* with groups: random number in [0, 1) of the pass, for the times of all groups */
   float spread; /* film samples are drawn from this part of the pixel's filter around its centre; 1: from all of it */
   bool uniform; /* film points are uniform in the pixel (reconstruct.h), not drawn from its filter */
   bool middle;  /* all times are the middle of the shutter's time */
@@ -54,6 +57,9 @@ vlFilmRayRows vl_film_ray_rows(float *rows);
 
 void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTable *filter, const vlSampler *sampler,
                        vlIsa isa);
+/* The number in [0, 1) that samples the time of a group. For random turns it is uniform and independent of the group.
+ */
+float vl_film_rays_group_time(const vlFilmRays *f, uint32_t group);
 /* Makes rays have world times (0 to 1) if the world has moving shapes. */
 void vl_film_rays_clock(vlFilmRays *f, const struct vlWorld *world);
 /* The film points alone: film_x, film_y and the weights. n: at least 1. */

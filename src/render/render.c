@@ -251,7 +251,7 @@ static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
   if (vl_film_begin_pass(r->film) != VL_OK) return vl_fail_memory(error);
   vlResult result = VL_OK;
   vl_render_choose_blocks(r);
-  if (r->two_way) r->film_rays.shared = vl_two_way_time(r->two_way, r->first_sample);
+  if (r->two_way) vl_two_way_times(r->two_way, r->first_sample, &r->film_rays);
   atomic_store(&r->blocks_done, 0);
   if (r->two_way) result = vl_two_way_light(r->two_way, r->first_sample, &r->stop, error);
   if (result == VL_OK) vl_parallel_for_at(r->world->context, &r->loop, vl_render_block_count(r), vl_render_block, r);

@@ -207,11 +207,17 @@ static float shared_number(uint32_t seed, uint32_t index) {
 }
 
 /* The same in base 3: with base 2, wavelength and time would be correlated. */
-float vl_two_way_time(const vlTwoWayRun *run, uint32_t index) {
-  if (!run->way.merge) return -1.0f;
+static float shared_time(const vlTwoWayRun *run, uint32_t index) {
   double turn = vl_hash2(run->pass_seed, time_seed) * 0x1p-32, place = 1;
   for (uint32_t x = index; x > 0; x /= 3) turn += (x % 3) * (place /= 3);
   return fminf((float)(turn - floor(turn)), VL_ONE_MINUS_EPSILON);
+}
+
+void vl_two_way_times(const vlTwoWayRun *run, uint32_t index, vlFilmRays *rays) {
+  const vlTwoWay *way = &run->way;
+  rays->shared = way->merge ? shared_time(run, index) : -1.0f;
+  rays->groups = way->connect > 0.0f && run->world->moves ? way->inner.groups : 0;
+  rays->turn = rays->groups ? shared_time(run, index) : 0.0f;
 }
 
 const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, uint32_t n, const float *u,
@@ -231,9 +237,13 @@ const vlCameraView *vl_two_way_cameras(const vlTwoWayRun *run, uint32_t worker, 
   return eyes;
 }
 
-/* Samples the numbers (w->u) from which the times of the n light paths follow. */
-static void draw_times(const vlTwoWayRun *run, uint32_t n, Worker *w) {
+/* Samples the numbers (w->u) from which the times of the n light paths from `first` on follow. */
+static void draw_times(const vlTwoWayRun *run, uint32_t first, uint32_t n, Worker *w) {
   const vlFilmRays *rays = run->rays;
+  if (!rays->centred && rays->groups) {
+    for (uint32_t i = 0; i < VL_PAD(n); i++) w->u[i] = vl_film_rays_group_time(rays, (first + i) % rays->groups);
+    return;
+  }
   if (!rays->centred && rays->shared < 0.0f) {
     rays->sampler_kernels->get_1d(&run->way.sampler, n, w->px, w->py, w->index, VL_DIM_BOUNCE + VL_DIM_LIGHT, w->u);
     return;
@@ -262,7 +272,7 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
                         .store = store,
                         .leave = leave};
   if (run->rays->moves || run->eyes) {
-    draw_times(run, n, w);
+    draw_times(run, first, n, w);
     batch.eyes = vl_two_way_cameras(run, worker, n, w->u, w->time);
     batch.time = run->rays->moves ? w->time : NULL;
   }
@@ -369,13 +379,15 @@ static vlResult make_eyes(vlTwoWayRun *run, vlError *error) {
   return VL_OK;
 }
 
-/* Prepares connections of inner vertices. There are none in worlds with motion. */
+/* Prepares connections of inner vertices. Groups differ by their wavelengths and, if the world moves, by their times.
+ */
 static vlResult make_inner(vlTwoWayRun *run, vlError *error) {
   const vlWorld *world = run->world;
   vlLightVertices *inner = &run->way.inner;
-  if (world->moves || run->trace.max_depth < 2) return VL_OK;
+  if ((world->moves && run->trace.same_wavelengths) || run->trace.max_depth < 2) return VL_OK;
   uint32_t paths = run->most_paths < MOST_INNER ? run->most_paths : MOST_INNER, groups = paths / GROUP_PATHS;
-  groups = groups < 1 || world->def.color == VL_COLOR_RGB ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
+  bool alike = world->def.color == VL_COLOR_RGB && !world->moves;
+  groups = groups < 1 || alike ? 1 : groups < VL_MOST_GROUPS ? groups : VL_MOST_GROUPS;
   inner->groups = groups;
   inner->paths = run->inner_paths = paths / groups * groups;
   run->way.connect = CONNECTIONS;

@@ -33,9 +33,9 @@ void vl_two_way_share(vlTwoWayRun *run, uint32_t seed);
 /* Makes a worker use this scratch memory. */
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch);
 
-/* The number in [0, 1) that determines the common time of all paths of sample `index`, if the tracer merges paths.
- * Otherwise a number below 0: each path has its own time. */
-float vl_two_way_time(const vlTwoWayRun *run, uint32_t index);
+/* Sets what determines the times of the camera paths of sample `index`: if the tracer merges paths, all have the same
+ * time; if it connects inner vertices and the world moves, each has the time of its group. */
+void vl_two_way_times(const vlTwoWayRun *run, uint32_t index, vlFilmRays *rays);
 /* The camera's views at the n times that are sampled by the numbers u. `time` (VL_PAD(n) elements, may be null)
  * receives these times in world time, 0 to 1. The result is memory of the worker. It is null if the camera does not
  * move or light paths do not connect to it. */

@@ -6,19 +6,24 @@
 static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
   vlPaths *p = &t->s->a;
+  const vlTwoWay *way = t->def->two_way;
+  bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
   t->s->a.time = t->s->b.time = t->s->volume.scattered.time = b->time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
-    float shared = t->def->two_way ? t->def->two_way->shared : -1.0f;
+    float shared = way ? way->shared : -1.0f;
     if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
     for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
-    if (t->def->two_way && t->def->two_way->connect > 0.0f) vl_stage_groups(t, padded, t->s->shade.u0);
+    if (connects) vl_stage_groups(t, padded, t->s->shade.u0);
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)
       color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
     else
       color->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+  } else if (connects && way->inner.groups > 1) {
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
+    vl_stage_groups(t, padded, t->s->shade.u0);
   }
   for (uint32_t i = 0; i < padded; i++) {
     p->ox[i] = b->ox[i], p->oy[i] = b->oy[i], p->oz[i] = b->oz[i];

@@ -16,7 +16,7 @@ typedef struct vlTwoWayRows {
   VL_ROW float flux[4][VL_ROW_SIZE]; /* initial flux of a light path; its beta starts from 1 */
   VL_ROW float
       link[VL_ROW_SIZE]; /* C / fwd of the previous vertex, or 0 if the edge from there cannot be a connection */
-  VL_ROW uint32_t group[VL_ROW_SIZE];  /* of a camera path: group of its wavelengths; vlLightVertices */
+  VL_ROW uint32_t group[VL_ROW_SIZE];  /* of a camera path: its group; vlLightVertices */
   VL_ROW uint32_t smooth[VL_ROW_SIZE]; /* vertices not counted as bounces: vlTwoWay.apart */
   VL_ROW float density[VL_ROW_SIZE];   /* vl_emission_density of a light path's first ray; its light is in `light` */
   VL_ROW uint32_t light[VL_ROW_SIZE];

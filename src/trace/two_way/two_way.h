@@ -78,7 +78,8 @@ typedef struct vlLightVertex {
 _Static_assert(sizeof(vlLightVertex) == 64, "a vertex is one cache line");
 
 /* The vertices of the light paths numbered below `paths`. The paths are dealt to groups in turn; all paths of a group
- * have the same wavelengths. The vertices are sorted by group, path and bounce. */
+ * have the same wavelengths and, if the world moves, the same time. The vertices are sorted by group, path and bounce.
+ */
 enum { VL_MOST_GROUPS = 16 };
 typedef struct vlLightVertices {
   const vlLightVertex *vertices;

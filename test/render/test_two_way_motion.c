@@ -139,7 +139,7 @@ static Stage lamp_room(const void *user, vlTracer tracer) {
   if (what->camera) move_camera(&s.camera);
   s.build.color = what->spectral ? VL_COLOR_SPECTRAL : VL_COLOR_RGB;
   s.render.max_depth = 5;
-  s.render.spp = tracer == VL_TRACER_VOLPATH ? 256 : 48;
+  s.render.spp = tracer == VL_TRACER_VOLPATH ? 128 : 24;
   s.render.light_paths = 2048; /* several groups */
   vlMaterialId white = add_diffuse(&s, 0.7f, 0.7f, 0.7f);
   const vlMaterialId walls[3] = {add_diffuse(&s, 0.8f, 0.4f, 0.3f), add_diffuse(&s, 0.3f, 0.5f, 0.8f), white};
@@ -177,7 +177,7 @@ static void grey_blur(void **state) {
   Stage s = stage_open_in(NULL, SIZE, SIZE);
   s.build.color = VL_COLOR_SPECTRAL;
   s.render.tracer = VL_TRACER_BIDIRECTIONAL;
-  s.render.spp = 512, s.render.max_depth = 2, s.render.light_paths = 2048;
+  s.render.spp = 256, s.render.max_depth = 2, s.render.light_paths = 2048;
   s.camera.shutter_open = 0, s.camera.shutter_close = 1;
   add_point(&s, 0, 0, 0, 10);
   vlGroupId group = vl_scene_add_group(s.scene, "board");

@@ -108,8 +108,7 @@ const Option view_options[] = {
     {RENDER_UP, 0, "up", OPTION_CHOICE, "AXIS", "axis of the model that points up:", 0, 0, up_choices},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME",
      "light transport algorithm; auto: chosen by a short race when the image has 32 samples, the default where the "
-     "scene "
-     "names none:",
+     "scene names none:",
      0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R", "merging, sppm: radius of the first pass", 1e-30, 1e30,

@@ -161,17 +161,17 @@ void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float ey
 /* The same for surface lane i. The surface may attenuate light that crosses it towards the vertex. */
 static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float wi_z, uint32_t count) {
   const vlTraceScratch *s = t->s;
-  uint32_t lane = s->b.lane[i];
+  float eye[3];
   if (!t->world->by_channel) return;
-  float eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
   vl_passed_on(s, i, wi_z, eye);
   vl_join_channels(t, &s->b, i, eye, t->def->two_way->inner.passed[vertex], count);
 }
 
-/* Adds lane i's connection to x as shadow ray `count`. */
-static void push(vlTracing *t, uint32_t i, const vlLightVertex *x, float factor, float forth, uint32_t count) {
+/* Adds lane i's connection to a vertex as shadow ray `count`. */
+static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float forth, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWay *way = t->def->two_way;
+  const vlLightVertex *x = &way->inner.vertices[vertex];
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
   vlShadowRays *q = &s->shadow;
@@ -247,11 +247,10 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     if (r->first[i] == VL_NONE) continue;
     float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(sum > 0.0f) && sum == sum) continue;
-    const vlLightVertex *x = &inner->vertices[r->first[i]];
     if (vl_has_media(t))
       push_in_media(t, i, r->first[i], factor[i], forth[i], count);
     else
-      push(t, i, x, factor[i], forth[i], count);
+      push(t, i, r->first[i], factor[i], forth[i], count);
     join_from_surface(t, i, r->first[i], wi[2][i], count++);
   }
   vl_two_way_shadows(t, &s->b, count, depth + VL_CONNECTION_KEY);

@@ -87,7 +87,7 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
                         float worth[VL_CANDIDATES]);
 /* The probability that the path of a lane traces a connection that is expected to contribute this much. */
 float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected);
-/* Adds the connection to x as shadow ray `count`. */
+/* Adds the connection to a vertex as shadow ray `count`. */
 void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
                         uint32_t vertex, uint32_t count);
 /* With attenuation by RGB channel, multiplies shadow ray `count` of camera path i so that the transmittance is that of

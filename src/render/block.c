@@ -289,27 +289,43 @@ static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBloc
   add_to_film(r, w, n);
 }
 
-static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid) {
+/* Adds `count` samples of each pixel of the block. A few rows at a time get all of them, while their sums are in the
+ * cache. */
+static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t count) {
   uint32_t rows = VL_BATCH / VL_SHARED_SIDE;
   for (uint32_t y = 0; y < b->height; y += rows)
-    add_rows(r, w, b, grid, y, b->height - y < rows ? b->height : y + rows);
+    for (uint32_t k = 0; k < count; k++)
+      add_rows(r, w, b, &w->grids[k], y, b->height - y < rows ? b->height : y + rows);
 }
 
 uint32_t vl_render_block_count(const vlRenderRun *r) {
   return ((r->tiles_x + r->span_x - 1) / r->span_x) * ((r->tiles_y + r->span_y - 1) / r->span_y);
 }
 
-void vl_render_choose_blocks(vlRenderRun *r) {
-  uint32_t least = (r->shares ? 4 : 2) * vl_context_threads(r->world->context);
-  r->span_x = r->pass_samples <= 2 ? 2 : 1;
-  r->span_y = r->pass_samples <= 1 ? 2 : 1;
-  if (r->shares) /* the larger a block, the fewer samples its border has in comparison; adaptive blocks are 32 x 32 */
-    r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
-  while (r->span_y > 1 && vl_render_block_count(r) < least) {
-    r->span_y /= 2;
-    if (vl_render_block_count(r) < least) r->span_x = r->span_x > 1 ? r->span_x / 2 : 1;
+/* Halves blocks until there are `least`, but no side below `side` tiles. */
+static void divide_blocks(vlRenderRun *r, uint32_t least, uint32_t side) {
+  while (vl_render_block_count(r) < least && (r->span_x > side || r->span_y > side)) {
+    if (r->span_y > side && r->span_y >= r->span_x)
+      r->span_y /= 2;
+    else
+      r->span_x /= 2;
   }
-  if (vl_render_block_count(r) < least) r->span_x = 1;
+}
+
+void vl_render_choose_blocks(vlRenderRun *r) {
+  uint32_t threads = vl_context_threads(r->world->context);
+  if (!r->shares) {
+    r->span_x = r->pass_samples <= 2 ? 2 : 1;
+    r->span_y = r->pass_samples <= 1 ? 2 : 1;
+    divide_blocks(r, 2 * threads, 1);
+    return;
+  }
+  /* The larger a block, the fewer samples its border has in comparison. Adaptive blocks are 32 x 32. */
+  r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
+  if (threads > 1) {
+    divide_blocks(r, 16 * threads, 4);
+    divide_blocks(r, 4 * threads, 1);
+  }
 }
 
 void vl_render_block(void *user, uint32_t block, uint32_t worker) {
@@ -327,8 +343,7 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
       uint32_t n = list_samples(r, w, block, s, count);
       if (n) vl_render_batch(r, w, n);
     } else if (some) {
-      bool whole = trace_shared(r, w, &b, s, count, &state);
-      for (uint32_t k = 0; k < count && whole; k++) add_shared(r, w, &b, &w->grids[k]);
+      if (trace_shared(r, w, &b, s, count, &state)) add_shared(r, w, &b, count);
     }
     s += count;
     ask_between(r, &state);

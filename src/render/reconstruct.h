@@ -11,7 +11,7 @@
 #include "film/filter.h"
 #include "velo/render.h"
 
-enum { VL_SHARED_SIDE = 64, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };
+enum { VL_SHARED_SIDE = 128, VL_SHARED_BORDER = 2, VL_SHARED_SAMPLES = 2 };
 /* Most samples of a block with its border, for one sample index. */
 enum { VL_SHARED_GRID = (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) * (VL_SHARED_SIDE + 2 * VL_SHARED_BORDER) };
 

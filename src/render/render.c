@@ -107,6 +107,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   for (uint32_t i = 0; i < threads; i++) {
     char *own = block + head + i * (scratch + rows + grids);
     r->workers[i].scratch = (vlTraceScratch *)(void *)own;
+    vl_trace_scratch_begin(r->workers[i].scratch);
     r->workers[i].rows = (float *)(void *)(own + scratch);
     if (grids) r->workers[i].grids = (vlSharedGrid *)(void *)(own + scratch + rows);
   }

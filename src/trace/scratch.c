@@ -6,3 +6,7 @@
 size_t vl_trace_scratch_size(void) {
   return sizeof(struct vlTraceScratch);
 }
+
+void vl_trace_scratch_begin(vlTraceScratch *scratch) {
+  scratch->occluders.world = NULL;
+}

@@ -11,6 +11,7 @@
 #include "color/kernels.h"
 #include "trace/bsdf/bsdf.h"
 #include "trace/trace.h"
+#include "world/accel/occluders.h"
 
 #define VL_ROW __attribute__((aligned(64)))
 
@@ -165,6 +166,7 @@ struct vlTraceScratch {
   vlShade shade;
   vlLightSamples light;
   vlShadowRays shadow;
+  vlOccluders occluders;                           /* of the shadow rays so far */
   VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* stack of rows for nested textures */
   VL_ROW float time[VL_ROW_SIZE]; /* the world's time of the rays of `a`; only set if something moves */
   VL_ROW uint32_t order[VL_ROW_SIZE];

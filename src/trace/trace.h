@@ -87,7 +87,9 @@ typedef struct vlTraceBatch {
 
 typedef struct vlTraceScratch vlTraceScratch;
 size_t vl_trace_scratch_size(void); /* allocate 64-byte aligned, zeroed */
-size_t vl_two_way_rows_size(void);  /* allocate 64-byte aligned, zeroed */
+/* Before a render with memory that was used before: forgets what it has learned about the last world. */
+void vl_trace_scratch_begin(vlTraceScratch *scratch);
+size_t vl_two_way_rows_size(void); /* allocate 64-byte aligned, zeroed */
 
 typedef struct vlTraceKernels {
   void (*trace)(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch);

@@ -135,8 +135,9 @@ static void equal_to_embree(float shift, int allowed) {
   vlRays rays = rays_at(0, false), short_rays = rays_at(0, true);
   vl_accel_closest(m.world, RAYS, &rays, false, shape_[0], prim_[0], instance_[0], t_[0]);
   vl_embree_closest(m.world, RAYS, &rays, false, shape_[1], prim_[1], instance_[1], t_[1]);
-  vl_accel_occluded(m.world, RAYS, &short_rays, blocked_[0]);
-  vl_embree_occluded(m.world, RAYS, &short_rays, blocked_[1]);
+  vl_accel_occluded(m.world, RAYS, &short_rays, NULL, blocked_[0]);
+  memset(blocked_[1], 0, RAYS);
+  vl_embree_occluded(m.world, RAYS, &short_rays, NULL, blocked_[1]);
   vl_accel_leave(state);
   int hits = 0, blocked = 0, other_hits = 0, other_shadows = 0, kinds[2] = {0};
   for (uint32_t k = 0; k < RAYS; k++) {
@@ -186,7 +187,7 @@ static void no_ray_passes_between_faces(void **state) {
   }
   vlRays rays = rays_at(0, false);
   vl_accel_closest(m.world, RAYS, &rays, false, shape_[0], prim_[0], instance_[0], t_[0]);
-  vl_accel_occluded(m.world, RAYS, &rays, blocked_[0]);
+  vl_accel_occluded(m.world, RAYS, &rays, NULL, blocked_[0]);
   for (uint32_t k = 0; k < RAYS; k++)
     if (shape_[0][k] != 0 || !blocked_[0][k]) fail_msg("ray %u leaves the room", k);
   close_scene(&m);
@@ -197,7 +198,7 @@ static void trace_all(const Made *m, uint32_t step, int to) {
     uint32_t n = RAYS - k < step ? RAYS - k : step;
     vlRays rays = rays_at(k, k & 64);
     vl_accel_closest(m->world, n, &rays, false, shape_[to] + k, prim_[to] + k, instance_[to] + k, t_[to] + k);
-    vl_accel_occluded(m->world, n, &rays, blocked_[to] + k);
+    vl_accel_occluded(m->world, n, &rays, NULL, blocked_[to] + k);
   }
 }
 

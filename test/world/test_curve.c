@@ -170,7 +170,7 @@ static int compare(vlWorld *world, const Hair *h, vlCurveKind kind, bool instanc
     uint32_t shape, prim, at;
     uint8_t occluded;
     vl_accel_closest(world, 1, &ray, k % 2, &shape, &prim, &at, &t);
-    vl_accel_occluded(world, 1, &ray, &occluded);
+    vl_accel_occluded(world, 1, &ray, NULL, &occluded);
     doubtful += f.doubtful;
     if (f.doubtful) continue;
     if ((shape != VL_NONE) != f.hit || occluded != f.hit)

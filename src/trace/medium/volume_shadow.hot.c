@@ -123,7 +123,7 @@ void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
   vlShadowRays *q = &t->s->shadow;
   const vlVolumeScratch *v = &t->s->volume;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
   t->batch->shadow_rays += count;
   vl_volume_pass_media(t, p, count, depth);
   if (t->batch->recorder) vl_volume_record_shadows(t, count);

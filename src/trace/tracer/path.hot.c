@@ -133,7 +133,7 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlShadowRays *q = &s->shadow;
   uint32_t count = make_shadow_rays(t, n);
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(world, count, &rays, q->occluded);
+  vl_accel_occluded(world, count, &rays, &s->occluders, q->occluded);
   t->batch->shadow_rays += count;
   if (t->batch->recorder) vl_record_direct_light(t, n, count);
   for (uint32_t k = 0; k < count; k++)

@@ -102,7 +102,7 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
   }
   for (uint32_t i = 0; s->b.time && i < n; i++) q->time[i] = vl_path_time(&s->b, i);
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, s->b.time ? q->time : NULL};
-  vl_accel_occluded(world, n, &rays, q->occluded);
+  vl_accel_occluded(world, n, &rays, &s->occluders, q->occluded);
   t->batch->shadow_rays += n;
   for (uint32_t i = 0; i < n; i++)
     if (!q->occluded[i])

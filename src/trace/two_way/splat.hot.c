@@ -48,7 +48,7 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
   vlTraceScratch *s = t->s;
   vlShadowRays *q = &s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
   b->shadow_rays += count;
   if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   float *value[4], *lambda[4], *inv_pdf[4];

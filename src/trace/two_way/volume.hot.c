@@ -6,7 +6,7 @@
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, q->occluded);
+  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
   t->batch->shadow_rays += count;
   if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   for (uint32_t k = 0; k < count; k++) {

@@ -9,6 +9,7 @@
 #define VL_NONE 0xffffffffu
 
 struct vlWorld;
+typedef struct vlOccluders vlOccluders;
 
 /* Rays in world space, as a structure of arrays. o: origin, d: direction. */
 typedef struct vlRays {
@@ -40,6 +41,7 @@ typedef struct vlAccel {
   uint32_t *members;                /* memory of the members of all bundles */
   struct vlBruteForce *brute_force; /* of a world of few primitives, where it answers all queries; else null */
   const struct vlBruteForceKernels *brute_force_kernels;
+  const struct vlOccluderKernels *occluder_kernels;
   vlRayLogFn *log; /* null except in benchmarks */
   void *log_user;
 } vlAccel;
@@ -57,8 +59,10 @@ void vl_accel_destroy(vlContext *context, vlAccel *accel);
  * traced in packets. */
 void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                       uint32_t *prim, uint32_t *instance, float *t);
-/* occluded[i] = 1 if ray i is blocked within (t_min, t_max). */
-void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded);
+/* occluded[i] = 1 if ray i is blocked within (t_min, t_max). occluders: what the calling thread has learned from its
+ * earlier calls (occluders.h), which saves time and changes no result; may be null. */
+void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
+                       uint8_t *occluded);
 /* Each thread calls this before it traces. It sets flush-to-zero mode, as Embree requires, and returns the previous
  * state. The caller restores that state with vl_accel_leave. */
 unsigned vl_accel_enter(void);

@@ -20,6 +20,7 @@
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
+#include "world/accel/occluders.h"
 #include "world/accel/share.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
@@ -73,6 +74,7 @@ typedef struct Query {
   const vlRays *rays;
   vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
   uint32_t first;
+  vlOccluders *occluders; /* learns the triangles that block the rays; null: nothing does */
 } Query;
 
 static const Query *query_of(const EmbreeContext *context) {
@@ -174,6 +176,14 @@ static void filter_closest(const struct RTCFilterFunctionNArguments *args) {
 static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
   for (unsigned i = 0; i < args->N; i++)
     if (args->valid[i] == -1 && filter_rejects(args, i, true)) args->valid[i] = 0;
+}
+
+/* For shadow rays and opaque triangles that stay in place. */
+static void learn_occluder(const struct RTCFilterFunctionNArguments *args) {
+  const Query *q = query_of(args->context);
+  for (unsigned i = 0; q->occluders && i < args->N; i++)
+    if (args->valid[i] == -1 && instance_of(q->world, *hit_row(args->hit, args->N, INST, i)) == VL_NONE)
+      vl_occluders_learn(q->occluders, *hit_row(args->hit, args->N, GEOM, i), *hit_row(args->hit, args->N, PRIM, i));
 }
 
 /* ---- user geometry ----------------------------------------------------------------------------------------------- */
@@ -286,6 +296,8 @@ static vlResult attach_shape(RTCDevice device, RTCScene scene, unsigned id, Acce
       rtcSetGeometryIntersectFilterFunction(geometry, filter_nearest);
     if (s->alpha >= 0 || s->one_sided || s->pass_shadow)
       rtcSetGeometryOccludedFilterFunction(geometry, filter_occluded);
+    else if (s->steps == 1)
+      rtcSetGeometryOccludedFilterFunction(geometry, learn_occluder);
   } else {
     make_user_geometry(geometry, g->members ? count : s->faces);
   }
@@ -556,26 +568,26 @@ void vl_embree_destroy(vlContext *context, vlAccel *a) {
 enum { PACKET = 8 };
 
 #if VELO_EMBREE_MAJOR >= 4
-#define BEGIN_QUERY(query, r, coherent)                                                               \
-  Query query;                                                                                        \
-  rtcInitRayQueryContext(&query.context);                                                             \
-  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0;                       \
-  struct RTCIntersectArguments closest_arguments;                                                     \
-  rtcInitIntersectArguments(&closest_arguments);                                                      \
-  closest_arguments.context = &query.context;                                                         \
-  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
-  struct RTCOccludedArguments any_arguments;                                                          \
-  rtcInitOccludedArguments(&any_arguments);                                                           \
-  any_arguments.context = &query.context;                                                             \
+#define BEGIN_QUERY(query, r, coherent)                                                                 \
+  Query query;                                                                                          \
+  rtcInitRayQueryContext(&query.context);                                                               \
+  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0, query.occluders = NULL; \
+  struct RTCIntersectArguments closest_arguments;                                                       \
+  rtcInitIntersectArguments(&closest_arguments);                                                        \
+  closest_arguments.context = &query.context;                                                           \
+  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;   \
+  struct RTCOccludedArguments any_arguments;                                                            \
+  rtcInitOccludedArguments(&any_arguments);                                                             \
+  any_arguments.context = &query.context;                                                               \
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
 #define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), (ray), &closest_arguments)
 #else
-#define BEGIN_QUERY(query, r, coherent)                                         \
-  Query query;                                                                  \
-  rtcInitIntersectContext(&query.context);                                      \
-  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0; \
+#define BEGIN_QUERY(query, r, coherent)                                                                 \
+  Query query;                                                                                          \
+  rtcInitIntersectContext(&query.context);                                                              \
+  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0, query.occluders = NULL; \
   query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
@@ -677,9 +689,12 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
   }
 }
 
-void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded) {
+void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
+                        uint8_t *occluded) {
   BEGIN_QUERY(query, rays, false);
+  query.occluders = occluders;
   for (uint32_t i = 0; i < n; i++) {
+    if (occluded[i]) continue;
     struct RTCRay q;
     fill_ray(&q, rays, i);
     if (is_near(rays, i)) OCCLUDED1(world->accel.scene, &q);

@@ -10,6 +10,9 @@ vlResult vl_embree_build(struct vlWorld *world, vlError *error);
 void vl_embree_destroy(vlContext *context, vlAccel *accel);
 void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                        uint32_t *prim, uint32_t *instance, float *t);
-void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint8_t *occluded);
+/* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block rays; null: nothing does.
+ */
+void vl_embree_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
+                        uint8_t *occluded);
 
 #endif

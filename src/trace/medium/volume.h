@@ -5,6 +5,8 @@
 #include "trace/medium/medium.h"
 #include "trace/stages.h"
 
+/* A shadow ray ends at this share of the way to its light. */
+#define VL_SHADOW_END (1.0f - 0x1p-21f)
 /* How a ray ends: values of vlVolumeScratch.event. */
 enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
 /* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is finite. */
@@ -62,6 +64,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
+void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n); /* paths [0, n) */
 /* Copies the lanes of a that scatter in media to volume.scattered and volume.c. The copies are normalised and start at
  * the scattering points, which are also written to s->surface for light sampling. s->order gets the lanes of a.
  * Returns the number of copies. */

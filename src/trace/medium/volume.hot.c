@@ -32,6 +32,24 @@ void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32
   }
 }
 
+void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n) {
+  if (vl_volume_rgb(t)) {
+    for (uint32_t i = 0; i < n; i++) vl_volume_normalise(t, p, v, i);
+    return;
+  }
+  uint32_t padded = VL_PAD(n);
+  int heroes = !t->from_light;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    float first = p->lambda[0][i], second = p->lambda[1][i];
+    int alone = heroes & (second == first);
+    float u0 = v->u[0][i], u1 = alone ? u0 : v->u[1][i], u2 = alone ? u0 : v->u[2][i], u3 = alone ? u0 : v->u[3][i];
+    float inv = 1.0f / (0.25f * ((u0 + u1) + (u2 + u3))); /* vl_flight_mean */
+    v->u[0][i] = u0 * inv, v->u[1][i] = u1 * inv, v->u[2][i] = u2 * inv, v->u[3][i] = u3 * inv;
+    p->beta[0][i] *= inv, p->beta[1][i] *= inv, p->beta[2][i] *= inv, p->beta[3][i] *= inv;
+  }
+}
+
 /* ---- travel ------------------------------------------------------------------------------------------------------ */
 
 /* Stores how the ray of lane i ended. given: radiance that media added. */
@@ -305,31 +323,77 @@ static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
 
+/* Makes the shadow rays of all n light samples, each at the place of its lane, as vl_volume_push_shadow does. s->slot
+ * tells which contribute. */
+static void make_shadows(vlTracing *t, uint32_t n) {
+  vlTraceScratch *s = t->s;
+  const vlPaths *p = &s->b;
+  const vlShade *sh = &s->shade;
+  const vlSurface *f = &s->surface;
+  const vlLightSamples *l = &s->light;
+  vlShadowRays *q = &s->shadow;
+  vlVolumeScratch *v = &s->volume;
+  uint32_t padded = VL_PAD(n), *lit = s->slot;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < padded; i++) {
+    float v0 = sh->value[0][i], v1 = sh->value[1][i], v2 = sh->value[2][i], v3 = sh->value[3][i];
+    float sum = v0 + v1 + v2 + v3, pdf = l->pdf[i];
+    vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
+    vlVec3 o =
+        vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
+    vlVec3 to = vl_sub(vl_vec3(l->tx[i], l->ty[i], l->tz[i]), o), d = vl_normalize(to);
+    int distant = l->distant[i], delta = l->delta[i];
+    float length = distant ? VL_INFINITY : vl_length(to), own = sh->pdf[i];
+    lit[i] = (pdf > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
+    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z;
+    q->dx[i] = distant ? w.x : d.x, q->dy[i] = distant ? w.y : d.y, q->dz[i] = distant ? w.z : d.z;
+    q->t_max[i] = length * VL_SHADOW_END;
+    q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * pdf;
+    q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * pdf;
+    q->radiance[2][i] = p->beta[2][i] * v2 * l->radiance[2][i] * pdf;
+    q->radiance[3][i] = p->beta[3][i] * v3 * l->radiance[3][i] * pdf;
+    v->light_pdf[i] = pdf;
+    v->pdf[i] = delta ? 0.0f : own;
+  }
+}
+
+/* Moves shadow ray i to place k <= i. */
+static void move_shadow(vlTracing *t, uint32_t i, uint32_t k) {
+  vlShadowRays *q = &t->s->shadow;
+  vlVolumeScratch *v = &t->s->volume;
+  q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
+  q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
+  q->t_max[k] = q->t_max[i];
+  for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
+  v->light_pdf[k] = v->light_pdf[i], v->pdf[k] = v->pdf[i];
+}
+
 static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
   const vlPaths *p = &s->b;
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
   vl_stage_light_samples(t, n, p, dimension);
   vl_stage_light_bsdf(t, n);
+  make_shadows(t, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (!(l->pdf[i] > 0.0f)) continue;
-    const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
-    float sum = value[0] + value[1] + value[2] + value[3];
-    if (!(sum > 0.0f) && sum == sum) continue;
+    if (!s->slot[i]) continue;
     /* Light samples through a subsurface material are taken at the exit (subsurface.hot.c). */
     bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
                 (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
     if (into) continue;
-    vlVec3 at = vl_lane3(s->surface.px, s->surface.py, s->surface.pz, i);
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
-    vlVec3 o = vl_offset_origin(at, g, s->surface.offset[i], w);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
-    uint32_t k = count;
-    count = vl_volume_push_shadow(t, p, &s->volume.b, i, o, value, sh->pdf[i],
-                                  vl_medium_beyond(shape, g, w, s->volume.b.medium[i]), count);
+    uint32_t k = count++;
+    if (k != i) move_shadow(t, i, k);
+    for (int c = 0; c < 4; c++) v->density[c][k] = v->b.u[c][i];
+    v->shadow_medium[k] = vl_medium_beyond(shape, g, w, v->b.medium[i]);
+    v->from[k] = i;
+    s->shadow.time[k] = vl_path_time(p, i);
+    s->shadow.lane[k] = p->lane[i];
     vl_shadow_from_surface(t, k, i, sh->wi[2][i]);
   }
   vl_volume_shadows(t, p, count, depth);
@@ -364,7 +428,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
   vl_stage_regularize(t, n);
-  for (uint32_t i = 0; i < n; i++) vl_volume_normalise(t, &s->b, &v->b, i);
+  vl_volume_normalise_all(t, &s->b, &v->b, n);
   if (t->batch->recorder) vl_record_shaded(t, n);
   surface_light(t, n, depth, dimension);
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);

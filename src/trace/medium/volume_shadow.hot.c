@@ -16,7 +16,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
   }
   q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
   q->dx[count] = w.x, q->dy[count] = w.y, q->dz[count] = w.z;
-  q->t_max[count] = length * (1.0f - 0x1p-21f);
+  q->t_max[count] = length * VL_SHADOW_END;
   for (int c = 0; c < 4; c++) {
     q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];
     v->density[c][count] = rows->u[c][i];

@@ -207,7 +207,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t d
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
-  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume.b, n);
   arrive(t, n, depth);
   direct_light(t, n, depth, dimension);
   if (t->def->two_way->inner.paths) vl_stage_connect(t, n, depth);

@@ -223,7 +223,7 @@ static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
-  for (uint32_t i = 0; vl_has_media(t) && i < n; i++) vl_volume_normalise(t, &t->s->b, &t->s->volume.b, i);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume.b, n);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
   if (t->def->two_way->inner.paths && !last) leave_vertices(t, r, b, n, depth);

@@ -134,7 +134,7 @@ typedef struct Bare {
 } Bare;
 
 /* What velo's callbacks (alpha, curved shapes, portable bits) expect behind Embree's context, as in src/world/accel:
- * without a record of the nearest hits, Embree's own counts. */
+ * without a record of the nearest hits, Embree's own counts; nothing is learned about occluders. */
 typedef struct Query {
 #if VELO_EMBREE_MAJOR >= 4
   struct RTCRayQueryContext context;
@@ -145,6 +145,7 @@ typedef struct Query {
   const vlRays *rays;
   void *nearest;
   uint32_t first;
+  vlOccluders *occluders;
 } Query;
 
 #if VELO_EMBREE_MAJOR >= 4

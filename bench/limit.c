@@ -19,6 +19,7 @@
 #include "base/file.h"
 #include "math/hash.h"
 #include "velo/velo.h"
+#include "world/accel/embree.h"
 #include "world/world.h"
 
 enum { ROUNDS = 5, PACKET = 8 /* as in src/world/accel */, SPHERES = 64, RINGS = 88, SEGMENTS = 90, SIZE = 512 };
@@ -141,29 +142,25 @@ typedef struct Query {
 #else
   struct RTCIntersectContext context;
 #endif
-  const vlWorld *world;
-  const vlRays *rays;
-  void *nearest;
-  uint32_t first;
-  vlOccluders *occluders;
+  vlEmbreeQuery q;
 } Query;
 
 #if VELO_EMBREE_MAJOR >= 4
-#define CONTEXT(c)                               \
-  vlRays rays = rays_of(c);                      \
-  Query query = {.world = world, .rays = &rays}; \
-  struct RTCIntersectArguments closest;          \
-  struct RTCOccludedArguments any;               \
-  rtcInitRayQueryContext(&query.context);        \
-  rtcInitIntersectArguments(&closest);           \
-  rtcInitOccludedArguments(&any);                \
+#define CONTEXT(c)                                      \
+  vlRays rays = rays_of(c);                             \
+  Query query = {.q = {.world = world, .rays = &rays}}; \
+  struct RTCIntersectArguments closest;                 \
+  struct RTCOccludedArguments any;                      \
+  rtcInitRayQueryContext(&query.context);               \
+  rtcInitIntersectArguments(&closest);                  \
+  rtcInitOccludedArguments(&any);                       \
   closest.context = any.context = &query.context;
 #define CLOSEST(ray) , (ray), &closest
 #define ANY(ray) , (ray), &any
 #else
-#define CONTEXT(c)                               \
-  vlRays rays = rays_of(c);                      \
-  Query query = {.world = world, .rays = &rays}; \
+#define CONTEXT(c)                                      \
+  vlRays rays = rays_of(c);                             \
+  Query query = {.q = {.world = world, .rays = &rays}}; \
   rtcInitIntersectContext(&query.context);
 #define CLOSEST(ray) , &query.context, (ray)
 #define ANY(ray) , &query.context, (ray)

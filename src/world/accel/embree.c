@@ -70,15 +70,11 @@ typedef struct RTCIntersectContext EmbreeContext;
 #endif
 typedef struct Query {
   EmbreeContext context; /* first, because Embree passes its address to callbacks */
-  const vlWorld *world;
-  const vlRays *rays;
-  vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
-  uint32_t first;
-  vlOccluders *occluders; /* learns the triangles that block the rays; null: nothing does */
+  vlEmbreeQuery q;
 } Query;
 
-static const Query *query_of(const EmbreeContext *context) {
-  return (const Query *)(const void *)context;
+static const vlEmbreeQuery *query_of(const EmbreeContext *context) {
+  return &((const Query *)(const void *)context)->q;
 }
 
 /* Embree's number of an instance; VL_NONE for the shapes outside of groups. */
@@ -88,7 +84,7 @@ static inline uint32_t instance_of(const vlWorld *world, unsigned inst) {
 }
 
 /* inst: as instance_of returns it. */
-static vlLocalRay local_ray(const Query *q, unsigned id, uint32_t inst) {
+static vlLocalRay local_ray(const vlEmbreeQuery *q, unsigned id, uint32_t inst) {
   uint32_t instance = inst == VL_NONE ? VL_NONE : inst - q->world->groups.items[0].count;
   return vl_local_ray(q->world, q->rays, id, instance);
 }
@@ -96,7 +92,7 @@ static vlLocalRay local_ray(const Query *q, unsigned id, uint32_t inst) {
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
 
 static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsigned i, bool shadow) {
-  const Query *q = query_of(args->context);
+  const vlEmbreeQuery *q = query_of(args->context);
   uint32_t inst = instance_of(q->world, *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, *hit_row(args->hit, args->N, GEOM, i), &prim);
@@ -144,7 +140,7 @@ static __attribute__((noinline)) bool compare_hits(const struct RTCFilterFunctio
  * matter. */
 static inline __attribute__((always_inline)) bool is_nearest(const struct RTCFilterFunctionNArguments *args, unsigned n,
                                                              unsigned i) {
-  const Query *q = query_of(args->context);
+  const vlEmbreeQuery *q = query_of(args->context);
   vlNearest *known = q->nearest + (*hit_row(args->ray, n, ID, i) - q->first);
   float t = *ray_row(args->ray, n, TFAR, i);
   if (vl_nearest_clearly(known, t))
@@ -180,7 +176,7 @@ static void filter_occluded(const struct RTCFilterFunctionNArguments *args) {
 
 /* For shadow rays and opaque triangles that stay in place. */
 static void learn_occluder(const struct RTCFilterFunctionNArguments *args) {
-  const Query *q = query_of(args->context);
+  const vlEmbreeQuery *q = query_of(args->context);
   for (unsigned i = 0; q->occluders && i < args->N; i++)
     if (args->valid[i] == -1 && instance_of(q->world, *hit_row(args->hit, args->N, INST, i)) == VL_NONE)
       vl_occluders_learn(q->occluders, *hit_row(args->hit, args->N, GEOM, i), *hit_row(args->hit, args->N, PRIM, i));
@@ -200,7 +196,7 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
 }
 
 /* Whether the shape's texture lets ray `id` pass at a hit. */
-static __attribute__((noinline)) bool alpha_passes(const Query *q, const vlWorldShape *shape, uint32_t prim,
+static __attribute__((noinline)) bool alpha_passes(const vlEmbreeQuery *q, const vlWorldShape *shape, uint32_t prim,
                                                    unsigned id, uint32_t inst, const vlShapeHit *hit) {
   vlLocalRay r = local_ray(q, id, inst);
   vlSurfacePoint point;
@@ -212,7 +208,7 @@ static __attribute__((noinline)) bool alpha_passes(const Query *q, const vlWorld
 
 static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
                      bool shadow, double *t) {
-  const Query *q = query_of(context);
+  const vlEmbreeQuery *q = query_of(context);
   uint32_t inst = instance_of(q->world, context->instID[0]), id = *hit_row(ray, n, ID, i);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
   if (shadow && shape->pass_shadow) return false;
@@ -242,7 +238,7 @@ static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
     double t;
     if (args->valid[i] != -1 || !user_hit(args->context, ray, args->N, i, args->geomID, args->primID, false, &t))
       continue;
-    const Query *q = query_of(args->context);
+    const vlEmbreeQuery *q = query_of(args->context);
     float limit = (float)t;
     if (q->nearest) {
       vlNearest met = {.t = (float)t,
@@ -568,26 +564,26 @@ void vl_embree_destroy(vlContext *context, vlAccel *a) {
 enum { PACKET = 8 };
 
 #if VELO_EMBREE_MAJOR >= 4
-#define BEGIN_QUERY(query, r, coherent)                                                                 \
-  Query query;                                                                                          \
-  rtcInitRayQueryContext(&query.context);                                                               \
-  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0, query.occluders = NULL; \
-  struct RTCIntersectArguments closest_arguments;                                                       \
-  rtcInitIntersectArguments(&closest_arguments);                                                        \
-  closest_arguments.context = &query.context;                                                           \
-  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;   \
-  struct RTCOccludedArguments any_arguments;                                                            \
-  rtcInitOccludedArguments(&any_arguments);                                                             \
-  any_arguments.context = &query.context;                                                               \
+#define BEGIN_QUERY(query, r, coherent)                                                               \
+  Query query;                                                                                        \
+  rtcInitRayQueryContext(&query.context);                                                             \
+  query.q = (vlEmbreeQuery){.world = world, .rays = (r)};                                             \
+  struct RTCIntersectArguments closest_arguments;                                                     \
+  rtcInitIntersectArguments(&closest_arguments);                                                      \
+  closest_arguments.context = &query.context;                                                         \
+  closest_arguments.flags = (coherent) ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT; \
+  struct RTCOccludedArguments any_arguments;                                                          \
+  rtcInitOccludedArguments(&any_arguments);                                                           \
+  any_arguments.context = &query.context;                                                             \
   (void)closest_arguments, (void)any_arguments
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), (ray), &closest_arguments)
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), (ray), &any_arguments)
 #define INTERSECT8(valid, scene, ray) rtcIntersect8((valid), (scene), (ray), &closest_arguments)
 #else
-#define BEGIN_QUERY(query, r, coherent)                                                                 \
-  Query query;                                                                                          \
-  rtcInitIntersectContext(&query.context);                                                              \
-  query.world = world, query.rays = (r), query.nearest = NULL, query.first = 0, query.occluders = NULL; \
+#define BEGIN_QUERY(query, r, coherent)                   \
+  Query query;                                            \
+  rtcInitIntersectContext(&query.context);                \
+  query.q = (vlEmbreeQuery){.world = world, .rays = (r)}; \
   query.context.flags = (coherent) ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT
 #define INTERSECT1(scene, ray) rtcIntersect1((scene), &query.context, (ray))
 #define OCCLUDED1(scene, ray) rtcOccluded1((scene), &query.context, (ray))
@@ -638,15 +634,16 @@ static void closest_packets(const vlWorld *world, uint32_t n, const vlRays *r, u
                             uint32_t *instance, float *t) {
   BEGIN_QUERY(query, r, true);
   vlNearest nearest[PACKET];
-  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = nearest;
+  if (world->def.bits == VL_BITS_PORTABLE) query.q.nearest = nearest;
   for (uint32_t first = 0; first < n; first += PACKET) {
-    query.first = first;
+    query.q.first = first;
     for (uint32_t k = 0; k < PACKET; k++) nearest[k].t = INFINITY;
     struct RTCRayHit8 q;
     int valid[PACKET] __attribute__((aligned(32)));
     fill_packet(&q, valid, r, first, n);
     INTERSECT8(valid, world->accel.scene, &q);
-    for (uint32_t k = 0; k < PACKET && first + k < n; k++) t[first + k] = query.nearest ? nearest[k].t : q.ray.tfar[k];
+    for (uint32_t k = 0; k < PACKET && first + k < n; k++)
+      t[first + k] = query.q.nearest ? nearest[k].t : q.ray.tfar[k];
     for (uint32_t k = 0; k < PACKET && first + k < n; k++)
       store_ids(world, q.hit.geomID[k], q.hit.primID[k], q.hit.instID[0][k], &shape[first + k], &prim[first + k],
                 &instance[first + k]);
@@ -675,16 +672,16 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
   }
   BEGIN_QUERY(query, rays, false);
   vlNearest nearest;
-  if (world->def.bits == VL_BITS_PORTABLE) query.nearest = &nearest;
+  if (world->def.bits == VL_BITS_PORTABLE) query.q.nearest = &nearest;
   for (uint32_t i = 0; i < n; i++) {
-    query.first = i;
+    query.q.first = i;
     nearest.t = INFINITY;
     struct RTCRayHit q;
     fill_ray(&q.ray, rays, i);
     q.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     if (is_near(rays, i)) INTERSECT1(world->accel.scene, &q);
-    t[i] = query.nearest ? nearest.t : q.ray.tfar;
+    t[i] = query.q.nearest ? nearest.t : q.ray.tfar;
     store_ids(world, q.hit.geomID, q.hit.primID, q.hit.instID[0], &shape[i], &prim[i], &instance[i]);
   }
 }
@@ -692,7 +689,7 @@ void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, boo
 void vl_embree_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
                         uint8_t *occluded) {
   BEGIN_QUERY(query, rays, false);
-  query.occluders = occluders;
+  query.q.occluders = occluders;
   for (uint32_t i = 0; i < n; i++) {
     if (occluded[i]) continue;
     struct RTCRay q;

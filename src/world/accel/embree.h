@@ -4,6 +4,15 @@
 
 #include "world/accel/accel.h"
 
+/* What the callbacks of Embree's scenes read. It lies behind Embree's context, with which a query begins. */
+typedef struct vlEmbreeQuery {
+  const struct vlWorld *world;
+  const vlRays *rays;
+  struct vlNearest *nearest; /* nearest hits so far of rays first, first + 1, ...; null: Embree decides */
+  uint32_t first;
+  vlOccluders *occluders; /* learns the triangles that block the rays; null: nothing does */
+} vlEmbreeQuery;
+
 /* Builds Embree's scenes and the members of vlAccel that describe them. */
 vlResult vl_embree_build(struct vlWorld *world, vlError *error);
 /* Frees them and sets *accel to 0. */

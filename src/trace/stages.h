@@ -113,6 +113,14 @@ typedef struct vlShadowRays {
   uint8_t occluded[VL_ROW_SIZE];
 } vlShadowRays;
 
+/* Moves the way and the radiance of shadow ray i to place k. */
+static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
+  q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
+  q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
+  q->t_max[k] = q->t_max[i];
+  for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
+}
+
 enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
 
 /* Additional data of paths through media (volume.hot.c). u and l are the path's rescaled densities (pbrt book 14.2.2):

@@ -24,8 +24,11 @@ static inline float vl_flight_random(vlFlight *f) {
   f->first = -1.0f;
   return first >= 0.0f ? first : vl_unit_float(vl_hash2(f->key, f->count++));
 }
+static inline float vl_flight_mean_of(float v0, float v1, float v2, float v3, int channels) {
+  return channels == 4 ? 0.25f * ((v0 + v1) + (v2 + v3)) : (v0 + v1 + v2) * (1.0f / 3.0f);
+}
 static inline float vl_flight_mean(const float v[4], int channels) {
-  return channels == 4 ? 0.25f * ((v[0] + v[1]) + (v[2] + v[3])) : (v[0] + v[1] + v[2]) * (1.0f / 3.0f);
+  return vl_flight_mean_of(v[0], v[1], v[2], v[3], channels);
 }
 
 static inline bool vl_volume_rgb(const vlTracing *t) {

@@ -44,7 +44,7 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
     float first = p->lambda[0][i], second = p->lambda[1][i];
     int alone = heroes & (second == first);
     float u0 = v->u[0][i], u1 = alone ? u0 : v->u[1][i], u2 = alone ? u0 : v->u[2][i], u3 = alone ? u0 : v->u[3][i];
-    float inv = 1.0f / (0.25f * ((u0 + u1) + (u2 + u3))); /* vl_flight_mean */
+    float inv = 1.0f / vl_flight_mean_of(u0, u1, u2, u3, 4);
     v->u[0][i] = u0 * inv, v->u[1][i] = u1 * inv, v->u[2][i] = u2 * inv, v->u[3][i] = u3 * inv;
     p->beta[0][i] *= inv, p->beta[1][i] *= inv, p->beta[2][i] *= inv, p->beta[3][i] *= inv;
   }
@@ -296,8 +296,8 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   if (count == 0) return 0;
   vl_permute_paths(&s->a, p, s->order, count);
   vl_volume_permute(&v->a, &v->c, s->order, count);
+  vl_volume_normalise_all(t, p, &v->c, count);
   for (uint32_t i = 0; i < count; i++) {
-    vl_volume_normalise(t, p, &v->c, i);
     float distance = v->t[s->order[i]];
     p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
@@ -357,17 +357,6 @@ static void make_shadows(vlTracing *t, uint32_t n) {
   }
 }
 
-/* Moves shadow ray i to place k <= i. */
-static void move_shadow(vlTracing *t, uint32_t i, uint32_t k) {
-  vlShadowRays *q = &t->s->shadow;
-  vlVolumeScratch *v = &t->s->volume;
-  q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
-  q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
-  q->t_max[k] = q->t_max[i];
-  for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
-  v->light_pdf[k] = v->light_pdf[i], v->pdf[k] = v->pdf[i];
-}
-
 static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = &s->volume;
@@ -388,7 +377,8 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
     uint32_t k = count++;
-    if (k != i) move_shadow(t, i, k);
+    if (k != i) vl_shadow_move(&s->shadow, i, k);
+    v->light_pdf[k] = v->light_pdf[i], v->pdf[k] = v->pdf[i];
     for (int c = 0; c < 4; c++) v->density[c][k] = v->b.u[c][i];
     v->shadow_medium[k] = vl_medium_beyond(shape, g, w, v->b.medium[i]);
     v->from[k] = i;

@@ -112,11 +112,7 @@ static uint32_t make_shadow_rays(vlTracing *t, uint32_t n) {
     uint32_t k = count++;
     q->lane[k] = p->lane[i];
     if (p->time) q->time[k] = vl_path_time(p, i);
-    if (k == i) continue;
-    q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
-    q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
-    q->t_max[k] = q->t_max[i];
-    for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
+    if (k != i) vl_shadow_move(q, i, k);
   }
   return count;
 }

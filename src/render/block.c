@@ -320,7 +320,8 @@ void vl_render_choose_blocks(vlRenderRun *r) {
     divide_blocks(r, 2 * threads, 1);
     return;
   }
-  /* The larger a block, the fewer samples its border has in comparison. Adaptive blocks are 32 x 32. */
+  /* The larger a block, the fewer samples its border has in comparison. Adaptive blocks are 32 x 32. Many threads need
+   * many blocks to be busy to the end, but those below 64 x 64 only as many as keep them busy at all. */
   r->span_x = r->span_y = r->adaptive.in_pass < r->adaptive.blocks ? 2 : VL_SHARED_SIDE / VL_RENDER_TILE;
   if (threads > 1) {
     divide_blocks(r, 16 * threads, 4);

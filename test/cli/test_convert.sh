@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # velo scene convert: glTF to glTF keeps every bit of the image, pbrt to pbrt too, between them it stays near; what is
 # not held is told; what the specification forbids is not written: by tools/check_gltf, and by Khronos' validator where it
-# is installed (npm install --prefix build gltf-validator).
+# is installed (script/bootstrap judges).
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/cli/common.sh"
 cd "$work" || exit 1
@@ -332,6 +332,6 @@ done
 if [ -n "$module" ] && command -v node >/dev/null; then
   check validator node "$VELO_SOURCE_DIR/test/cli/validate_gltf.js" "$module" $written
 else
-  skip validator "needs npm's gltf-validator (npm install --prefix build gltf-validator, or GLTF_VALIDATOR=its folder)"
+  skip validator "needs npm's gltf-validator (script/bootstrap judges, or GLTF_VALIDATOR=its folder)"
 fi
 finish

@@ -58,7 +58,8 @@ enum {
   VL_PARAMETER_RULE = 1024,        /**< read and written by a function of the kind, not by the generic code */
   VL_PARAMETER_FILE_NUMBER = 4096, /**< a number in pbrt files, never a texture; a def may have a texture */
   VL_PARAMETER_SHORTHAND = 2048,   /**< in files only: sets members that other parameters set one by one */
-  VL_PARAMETER_VECTOR = 8192       /**< three numbers that files call a vector; without this flag a point */
+  VL_PARAMETER_VECTOR = 8192,      /**< three numbers that files call a vector; without this flag a point */
+  VL_PARAMETER_OWN = 16384         /**< velo's own: pbrt-v4's kind of this name has no such parameter */
 };
 
 /** A parameter of a kind. */

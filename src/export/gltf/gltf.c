@@ -171,6 +171,7 @@ static bool put_mesh(vlExport *x, const vlShapeDef *d, json_int_t *index) {
     vl_export_lose(x, "surfaces that only part media (material interface): left out");
     return true;
   }
+  if (d->displacement.texture.index) vl_export_lose(x, "displacement of meshes: left out");
   if (d->positions_close) vl_export_lose(x, "meshes that change in time: as they are at first");
   if (!vl_export_mesh(x, d, &mesh)) return x->result == VL_OK;
   if (!mesh.faces || !mesh.vertices) {

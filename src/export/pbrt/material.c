@@ -33,7 +33,7 @@ static bool put_normal(vlExport *x, const vlMaterialDef *m) {
   const vlTextureDef *t = vl_export_texture(x, m->principled.normal);
   char name[300];
   if (!t) return true;
-  if (!vl_pbrt_image(x, t, false, name)) return false;
+  if (!vl_pbrt_image(x, t, VL_PBRT_COLORS, name)) return false;
   PUT(" \"string normalmap\" \"%s\"", name);
   return true;
 }

@@ -58,8 +58,19 @@ static PutMedium *const rules[0 VL_MEDIUM_KINDS(VL_COUNT_KIND)] = {
     [VL_MEDIUM_NANOVDB] = put_nanovdb,
 };
 
+/* pbrt's cloud has no scale; its coefficients are multiplied instead. */
+static const vlMediumDef *without_scale(const vlMediumDef *m, vlMediumDef *copy) {
+  if (m->kind != VL_MEDIUM_CLOUD || m->scale == 1) return m;
+  *copy = *m;
+  copy->sigma_a.scale *= m->scale;
+  copy->sigma_s.scale *= m->scale;
+  copy->scale = 1;
+  return copy;
+}
+
 bool vl_pbrt_medium(vlExport *x, size_t i) {
-  const vlMediumDef *m = &x->scene->media.items[i];
+  vlMediumDef copy;
+  const vlMediumDef *m = without_scale(&x->scene->media.items[i], &copy);
   const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)m->kind);
   size_t before = x->text.data.count;
   vl_pbrt_matrix(x, m->world_from_medium);

@@ -4,14 +4,21 @@
 
 #include "export/pbrt/pbrt.h"
 
+bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p) {
+  if (p->flags & VL_PARAMETER_OWN) vl_export_lose(x, "%s of %s: left out", p->name, row->name);
+  return !(p->flags & VL_PARAMETER_OWN);
+}
+
 static bool is_file_parameter(const vlParameter *p) {
   return p->name && !(p->flags & (VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND));
 }
 
-static bool prepare_file(vlExport *x, const char *path, char name[300]) {
+/* Files are copied beside the scene. One of them is an image, whose values are no colours. */
+static bool prepare_file(vlExport *x, const vlParameter *p, const char *path, char name[300]) {
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   t.path = path;
-  return vl_pbrt_image(x, &t, false, name); /* copied like an image */
+  t.encoding = VL_ENCODING_LINEAR, t.encoding_given = true;
+  return vl_pbrt_image(x, &t, strcmp(p->name, "normalmap") == 0 ? VL_PBRT_COLORS : VL_PBRT_ANY, name);
 }
 
 static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum, int depth,
@@ -22,7 +29,7 @@ static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spe
   if (p->type == VL_PARAMETER_EITHER_INPUT || p->type == VL_PARAMETER_FLOAT_INPUT)
     return vl_pbrt_inner_number(x, (const void *)at, depth, &result->input);
   if (p->type == VL_PARAMETER_SPECTRUM_INPUT) return vl_pbrt_inner_color(x, (const void *)at, depth, &result->input);
-  if (p->type == VL_PARAMETER_FILE) return prepare_file(x, *(const char *const *)(const void *)at, result->file);
+  if (p->type == VL_PARAMETER_FILE) return prepare_file(x, p, *(const char *const *)(const void *)at, result->file);
   return true;
 }
 
@@ -34,6 +41,7 @@ bool vl_pbrt_prepare(vlExport *x, const vlKindRow *row, const void *def, bool sp
     list[i] = (vlPbrtParameter){0};
     if (!is_file_parameter(p) || w == VL_PBRT_NEVER) continue;
     list[i].wanted = w == VL_PBRT_ALWAYS || !vl_parameter_is_default(p, def, spectrum);
+    list[i].wanted = list[i].wanted && vl_pbrt_knows(x, row, p);
     if (list[i].wanted && !prepare(x, p, def, spectrum, depth, &list[i])) return false;
   }
   return true;

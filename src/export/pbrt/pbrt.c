@@ -167,7 +167,7 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
   if (d->path || d->image) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
     t.path = d->path, t.image = d->image;
-    if (!vl_pbrt_image(x, &t, true, name)) return false;
+    if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name)) return false;
   }
   PUT("AttributeBegin\n");
   put_place(x, row, d);

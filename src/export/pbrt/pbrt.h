@@ -14,6 +14,8 @@ void vl_pbrt_spectrum(vlExport *x, const char *name, const vlSpectrum *s);
 /* Writes the members of a def that differ from the row's defaults. With `all`, every member that is set is written.
  * Arrays, files, inputs and the member `skip` (may be null) are left out. */
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip);
+/* Whether pbrt's kind has the parameter. A loss is counted when it does not. */
+bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p);
 /* Writes one parameter with the value that it has in the def. Arrays, files and inputs are left out. */
 void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def);
 /* The name of the film's kind. */
@@ -26,8 +28,15 @@ bool vl_pbrt_medium(vlExport *x, size_t index);
 /* Writes "material<id>" and everything it refers to. */
 bool vl_pbrt_material(vlExport *x, uint32_t id);
 bool vl_pbrt_shape(vlExport *x, size_t index);
-/* Copies a texture's image beside the scene unchanged; name receives the file name. light: the values may exceed 1. */
-bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300]);
+/* What pbrt requires of a file. */
+typedef enum vlPbrtFile {
+  VL_PBRT_ANY,    /* not an image: copied as it is */
+  VL_PBRT_VALUES, /* an image of one channel or with channels R, G and B */
+  VL_PBRT_COLORS  /* an image with channels R, G and B: lights, normal maps */
+} vlPbrtFile;
+/* Copies a texture's image beside the scene; name receives the file name. An image that pbrt would refuse is written as
+ * an EXR with channels R, G and B. */
+bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]);
 /* An input as a parameter: a number or a texture. `prepare`, called between directives, writes the texture and keeps
  * its name. `put` writes the parameter. */
 typedef struct vlPbrtInput {

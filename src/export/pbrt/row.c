@@ -47,6 +47,6 @@ void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, c
     if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && strcmp(p->name, skip) == 0)) continue;
     bool is_default = vl_parameter_is_default(p, def, false);
     if (p->flags & VL_PARAMETER_UNSET ? is_default : is_default && !all && !(p->flags & VL_PARAMETER_RGB)) continue;
-    vl_pbrt_parameter(x, p, def);
+    if (vl_pbrt_knows(x, row, p)) vl_pbrt_parameter(x, p, def);
   }
 }

@@ -126,7 +126,7 @@ static bool put_emission(vlExport *x, const vlEmissionDef *e) {
     if (t->tint[0] != t->tint[1] || t->tint[1] != t->tint[2])
       vl_export_lose(x, "tints of images that emit light: left out");
   }
-  if ((t || e->image) && !vl_pbrt_image(x, t ? t : &image, false, name)) return false;
+  if ((t || e->image) && !vl_pbrt_image(x, t ? t : &image, VL_PBRT_COLORS, name)) return false;
   vlEmissionDef scaled = *e;
   const vlKindRow *row = vl_kind_row(&vl_emission_family, 0);
   scaled.scale = (float)scale;
@@ -143,6 +143,7 @@ static bool put_shape(vlExport *x, const vlShapeDef *d, size_t index) {
   if (d->one_sided) vl_export_lose(x, "surfaces that are seen from one side only: from both");
   if (d->tangents && d->tangent_signs) vl_export_lose(x, "tangents of normal maps: those of the uvs");
   if (d->colors) vl_export_lose(x, "colours of vertices: left out");
+  if (d->displacement.texture.index) vl_export_lose(x, "displacement of meshes: left out");
   vlPbrtInput alpha;
   if (!vl_pbrt_prepare_number(x, &d->alpha, false, &alpha)) return false;
   PUT("AttributeBegin\n");

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
 #include "math/fresnel.h"
@@ -29,25 +30,64 @@ static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, co
   return vl_export_file(x, name, bytes, size);
 }
 
-bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, bool light, char name[300]) {
-  vlExportImage *known = find_image(x, t, light);
+/* Whether pbrt reads files of this name. (velo recognises images by their content.) */
+static bool is_name_for_pbrt(const char *name) {
+  static const char *const known[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (vl_ends_with(name, known[i])) return true;
+  return false;
+}
+
+static bool fits_pbrt(const vlImage *image, vlPbrtFile kind, const char *name) {
+  uint32_t channel[4], have = vl_image_color(image, channel);
+  if (!is_name_for_pbrt(name)) return false;
+  if (have >= 3 || kind == VL_PBRT_COLORS) return have >= 3;
+  bool drops_alpha = !vl_ends_with(name, ".exr") && !vl_ends_with(name, ".pfm"); /* of images with Y and A */
+  return image->channels == 1 || (have && drops_alpha);
+}
+
+/* Encodes an image that pbrt would refuse as an EXR of linear R, G and B. *bytes stays null when it would not. */
+static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const char *name, char **bytes, size_t *size) {
+  vlImage *decoded = t->image ? NULL : vl_export_decode(x, t), *rgb = NULL;
+  const vlImage *image = t->image ? t->image : decoded;
+  bool fine = image != NULL;
+  if (fine && !fits_pbrt(image, kind, name)) {
+    uint32_t channel[4] = {0}, have = vl_image_color(image, channel); /* else the first channel, whatever it is */
+    vlImageDef def = vl_default_image_def(image->width, image->height, 3);
+    if (have < 3) channel[1] = channel[2] = channel[0];
+    if (decoded && t->encoding_given) decoded->encoding = t->encoding;
+    fine = vl_image_create(x->context, &def, &rgb) == VL_OK || vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    for (uint32_t y = 0; fine && y < image->height; y++)
+      vl_image_row_to_float(image, y, channel, 3, vl_image_row(rgb, y));
+    fine = fine && vl_export_pack(x, rgb, ".exr", bytes, size);
+  }
+  vl_image_destroy(rgb);
+  vl_image_destroy(decoded);
+  return fine;
+}
+
+bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
+  const uint32_t variant = (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
+  vlExportImage *known = find_image(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
   char *bytes = NULL;
-  size_t size;
+  size_t size = 0;
   const char *suffix = ".exr", *dot = t->path ? strrchr(t->path, '.') : NULL;
-  bool fine;
-  if (t->image) {
+  bool copied = !t->image && dot && strlen(dot) < 8 && !strchr(dot, '/');
+  const char *as = copied ? t->path : t->data ? ".png" : suffix;
+  bool fine = kind == VL_PBRT_ANY || repair(x, t, kind, as, &bytes, &size);
+  if (fine && !bytes && t->image) {
     fine = vl_export_pack(x, t->image, ".exr", &bytes, &size);
-  } else if (t->path && dot && strlen(dot) < 8) { /* copied unchanged, whatever its format */
+  } else if (fine && !bytes && copied) { /* unchanged, whatever its format */
     vlError error;
     vl_error_clear(&error);
     vlResult r = vl_file_read(x->context, t->path, false, &bytes, &size, &error);
     fine = r == VL_OK || vl_export_fail(x, r, "%s", error.message);
     suffix = dot;
-  } else {
+  } else if (fine && !bytes) {
     fine = vl_export_image(x, t, &bytes, &size, &suffix);
   }
-  fine = fine && write_image(x, t, light, bytes, size, suffix, name);
+  fine = fine && write_image(x, t, variant, bytes, size, suffix, name);
   vl_free(x->context, bytes);
   return fine;
 }
@@ -107,11 +147,11 @@ static bool changes_color(Change c) {
 
 /* Changes an image: one channel as the tracer reads it, or three tinted channels. */
 static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[300]) {
-  uint32_t variant = 2 + (change.squared ? 1u : 0u);
+  uint32_t variant = 16 + (change.squared ? 1u : 0u);
   const float key[12] = {t->tint[0],  t->tint[1],          t->tint[2],       t->tint[3],         t->bias,
                          t->scale,    (float)t->channel,   (float)t->cutoff, change.turned_back, change.raised,
                          change.lost, change.metal ? 1 : 0};
-  for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 2u;
+  for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
   vlExportImage *known = find_image(x, t, variant);
   if (known) return memcpy(name, known->name, sizeof known->name), true;
   vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
@@ -182,7 +222,7 @@ static bool put_image(vlExport *x, const vlTextureDef *t, Change change) {
   bool plain = t->spectrum ? even : t->channel < 0 && t->bias == 0 && isnan(t->cutoff) && !change.squared;
   plain = plain && !changes_color(change);
   char name[300];
-  if (!(plain ? vl_pbrt_image(x, t, false, name) : work(x, t, change, name))) return false;
+  if (!(plain ? vl_pbrt_image(x, t, VL_PBRT_VALUES, name) : work(x, t, change, name))) return false;
   if (t->wrap == VL_WRAP_MIRROR) vl_export_lose(x, "images that repeat in a mirror: repeated plainly");
   if (t->wrap_t_given && t->wrap_t != t->wrap) vl_export_lose(x, "wrap modes of their own for each axis: that of s");
   if (t->colors) vl_export_lose(x, "colours of vertices: left out");

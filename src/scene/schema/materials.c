@@ -18,9 +18,10 @@
 #define SHARE CLAMPED(0, 1)
 
 /* Parameters that several kinds share. */
-#define BUMPS                                                                            \
-  INPUT("displacement", displacement, "bump map: height in the scene's unit of length"), \
-      FILE_NAME("normalmap", normal_map, "normal map: an image of tangent-space normals, linear")
+#define BUMPS_(own)                                                                                      \
+  INPUT("displacement", displacement, "bump map: height in the scene's unit of length", .flags = (own)), \
+      FILE_NAME("normalmap", normal_map, "normal map: an image of tangent-space normals, linear", .flags = (own))
+#define BUMPS BUMPS_(0)
 #define REFLECTANCE(value, text) SPECTRUM("reflectance", reflectance, text, VL_DEFAULT(value), ALBEDO)
 #define REMAP                             \
   BOOL("remaproughness", remap_roughness, \
@@ -41,7 +42,8 @@
             VL_RANGE(1, 4294967295.0)),                                                                              \
       COUNT("nsamples", samples, "random walks per evaluation, where the material uses random walks", VL_DEFAULT(1), \
             VL_RANGE(1, 4294967295.0)),                                                                              \
-      BOOL("conserveenergy", conserve_energy, "compensates the energy that a rough coat over a diffuse base loses")
+      BOOL("conserveenergy", conserve_energy, "compensates the energy that a rough coat over a diffuse base loses",  \
+           .flags = VL_PARAMETER_OWN)
 #define METAL(eta_name, k_name)                                                                                    \
   SPECTRUM(eta_name, eta, "index of refraction of the metal", .text = "metal-Cu-eta", UNBOUNDED),                  \
       SPECTRUM(k_name, k, "extinction coefficient of the metal", .text = "metal-Cu-k", UNBOUNDED),                 \
@@ -89,7 +91,7 @@ static const vlParameter hair_parameters[] = {
     INPUT("beta_m", hair.beta_m, "roughness along the hair", VL_DEFAULT(0.3), SHARE),
     INPUT("beta_n", hair.beta_n, "roughness around the hair", VL_DEFAULT(0.3), SHARE),
     INPUT("alpha", hair.alpha, "angle by which the scales on the hair are tilted", VL_DEFAULT(2), .unit = "degrees"),
-    BUMPS,
+    BUMPS_(VL_PARAMETER_OWN),
 };
 VL_KIND_ROW(hair, .name = "hair", .description = "hair and fur (pbrt book 9.9); for curves")
 

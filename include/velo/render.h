@@ -240,12 +240,17 @@ typedef struct vlRenderStats {
   double seconds;            /**< duration of the call */
   uint32_t worst_x, worst_y; /**< a pixel where a sample was discarded */
 } vlRenderStats;
+/** The name of the first feature of world, camera and film that the tracer does not render, such as "material
+ * \"hair\""; null: it renders all. vl_render then uses VL_TRACER_VOLPATH in its place, and tells the log.
+ * docs/tracers.md lists the features. The string is constant. */
+VL_API const char *vl_tracer_lacks(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
+                                   vlTracer tracer);
 /** Adds samples to the film until each pixel has def->spp. The bits depend neither on the number of threads, nor on the
  * crop, nor on the division into passes and calls. VL_CANCELLED when the callback or def->cancel stopped the render;
  * the film then holds whole passes. Only one render at a time may add to a film. The render runs on the workers of the
- * world's context. def and stats may be null. With buckets in the film, the tracers with light paths use camera paths
- * only. Errors: MEMORY; ARGUMENT, also when camera and film have different sizes, when the film has buckets and the
- * world is in RGB mode, or when the film's samples are from a sequence of another length. */
+ * world's context. def and stats may be null. VL_TRACER_VOLPATH replaces a tracer that lacks something of the
+ * scene (vl_tracer_lacks). Errors: MEMORY; ARGUMENT, also when camera and film have different sizes, when the film has
+ * buckets and the world is in RGB mode, or when the film's samples are from a sequence of another length. */
 VL_API vlResult vl_render(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                           vlRenderStats *stats, vlError *error);
 

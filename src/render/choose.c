@@ -105,10 +105,12 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
   return true;
 }
 
-/* Whether the tracers with light paths render this world and film (tracer_of in render.c). */
+/* Whether all tracers of the race render this world and film (support.c). Without lights there is nothing to race for.
+ */
 static bool can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film) {
-  bool rolls = (world->moves || camera->moves) && camera->readout > 0;
-  return !film->buckets && !world->has_subsurface && !world->has_one_sided && !rolls && world->lights.count > 0;
+  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
+    if (vl_tracer_lacks(world, camera, film, rows[i].tracer)) return false;
+  return world->lights.count > 0;
 }
 
 /* ---- running ----------------------------------------------------------------------------------------------------- */

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "render/block.h"
 #include "velo/focus.h"
+#include "velo/schema.h"
 
 enum { MAX_PASS = 16, PASS_SECONDS = 5 };
 static const double NEARLY = 0.97; /* share of the time limit after which no new pass begins */
@@ -114,25 +115,18 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   return VL_OK;
 }
 
-/* The tracer that is used. The two-way tracers do not support spectral films, subsurface materials, nor moving scenes
- * with a readout time (rolling shutter). There volpath replaces them. */
+/* The tracer that is used: volpath in place of one that lacks something of the scene (support.c). */
 static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
   if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0) return VL_TRACER_VOLPATH;
-  bool rolls = (world->moves || camera->moves) && camera->readout > 0;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer renders material \"subsurface\" as clear glass; volpath renders its scattering");
-  if (vl_two_way_tracer(tracer) && vl_film_def(r->film)->buckets) {
-    vl_log(world->context, VL_LOG_INFO, NULL, "this tracer has no spectral film: volpath is used");
-    return VL_TRACER_VOLPATH;
-  }
-  if (!vl_two_way_tracer(tracer) || (!rolls && !world->has_subsurface && !world->has_one_sided)) return tracer;
-  const char *what = rolls                   ? "motion with a rolling shutter"
-                     : world->has_subsurface ? "material \"subsurface\""
-                                             : "surfaces that rays pass through from one side";
-  vl_log(world->context, VL_LOG_INFO, NULL, "this tracer does not support %s: volpath is used", what);
+  const char *lack = vl_tracer_lacks(world, camera, vl_film_def(r->film), tracer);
+  if (!lack) return tracer;
+  vl_log(world->context, VL_LOG_INFO, NULL, "tracer \"%s\" does not support %s: volpath is used",
+         vl_kind_family_find("tracers")->rows[tracer]->name, lack);
   return VL_TRACER_VOLPATH;
 }
 

@@ -139,6 +139,14 @@ static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) 
                    vl_short_text(kind).text, tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
 }
 
+/* Reports that the tracer does not regularize. */
+static void remark_regularize(vlDict *dict, const vlSceneDefs *s) {
+  bool asked = false;
+  if (vl_dict_bool(dict, "regularize", &asked) && asked && !s->build.regularize)
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->place,
+                   "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it", dict->what);
+}
+
 static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   const vlChoice *choice = &import->integrator;
   s->render.tracer = VL_TRACER_VOLPATH;
@@ -164,6 +172,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   read_light_sampler(&dict, row, s);
   read_photons(&dict, row, s);
   skip_ignored(&dict, row);
+  remark_regularize(&dict, s);
   remark_two_way(import, choice->kind, s->render.tracer);
   return vl_dict_done(&dict);
 }

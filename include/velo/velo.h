@@ -11,6 +11,7 @@
 #include "velo/channels.h"
 #include "velo/check.h"
 #include "velo/choose.h"
+#include "velo/color.h"
 #include "velo/denoise.h"
 #include "velo/drawing.h"
 #include "velo/edit.h"

@@ -1,0 +1,40 @@
+/* bsdf.h: how a surface scatters light at one point (pbrt book 9). Directions point away from the surface; wo is where
+ * the path comes from, wi where it goes on. A value includes the cosine |wi . n|. */
+#ifndef REFERENCE_BSDF_H
+#define REFERENCE_BSDF_H
+
+#include "color.h"
+#include "vector.h"
+
+typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC } bsdf_kind;
+
+typedef struct bsdf {
+  bsdf_kind kind;
+  frame frame;             /* around the shading normal */
+  spectrum reflectance;    /* diffuse */
+  spectrum eta, k;         /* conductor: complex index of refraction */
+  double ior;              /* dielectric: index inside over index outside */
+  double alpha_x, alpha_y; /* roughness along the tangent and across it */
+} bsdf;
+
+typedef struct bsdf_sample {
+  vector wi;
+  spectrum weight;  /* f cos / density */
+  double density;   /* per solid angle; not used if specular */
+  bool specular;    /* the only direction there is: no other sampling can find it */
+  bool transmitted; /* to the other side */
+} bsdf_sample;
+
+/* Values and densities for directions in the world. A specular BSDF has value 0: no two given directions fit. */
+spectrum bsdf_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+
+/* The kinds, for directions in the local frame (z is the normal). */
+spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_diffuse(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+spectrum conductor_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_conductor(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+
+#endif

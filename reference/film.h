@@ -1,0 +1,29 @@
+/* film.h: the lecture's view plane: pixels that add up what their samples bring, and the image in the end. */
+#ifndef REFERENCE_FILM_H
+#define REFERENCE_FILM_H
+
+#include "world.h"
+
+typedef struct pixel {
+  double sum[3], squares[3]; /* of the samples and of their squares */
+  double covered;            /* samples that met a surface */
+} pixel;
+
+typedef struct view_plane {
+  uint32_t width, height;
+  uint32_t samples; /* per pixel */
+  vlPixelFilter filter;
+  double filter_integral;
+  vlColorSpace space;
+  double exposure;
+  pixel *pixels;
+} view_plane;
+
+bool make_view_plane(const vlSceneDefs *defs, uint32_t samples, view_plane *v, vlError *error);
+/* A point around the middle of a pixel, in pixels, and its weight. */
+square_point sample_filter(const view_plane *v, sampler *s, double *weight);
+void add_sample(view_plane *v, uint32_t x, uint32_t y, const double rgb[3], bool covered);
+/* The image: R G B A, and error.R error.G error.B, the standard errors of the means. */
+bool make_image(const view_plane *v, vlContext *context, vlImage **image);
+
+#endif

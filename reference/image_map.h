@@ -1,0 +1,26 @@
+/* image_map.h: an image whose pixels are looked up: a texture, or the light of the sky. Values are linear. */
+#ifndef REFERENCE_IMAGE_MAP_H
+#define REFERENCE_IMAGE_MAP_H
+
+#include <velo/velo.h>
+
+typedef struct image_map {
+  uint32_t width, height;
+  uint32_t channels; /* 1: grey, 2: grey and coverage, 3: colour, 4: colour and coverage */
+  float *values;     /* row by row from the top */
+  bool space_given;  /* the file names its colour space */
+  vlColorSpace space;
+} image_map;
+
+/* Copies the linear values of an image. `encoding`: what the file's integers mean; null: what the file says. False:
+ * without memory, or the encoding needs more than this renderer has. */
+bool make_image_map(const vlImage *image, const vlEncoding *encoding, double gamma, image_map *map);
+void free_image_map(image_map *map);
+
+/* The pixel at (x, y), which may lie outside: `wrap` says what is there. All four values are set: grey fills the
+ * colours, a missing coverage is 1. */
+void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
+/* Linear between the four pixels around (s, t), measured from the top left corner, 0 to 1 over the image. */
+void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
+
+#endif

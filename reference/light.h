@@ -1,0 +1,60 @@
+/* light.h: where light comes from: points, distant directions, surfaces and the sky (pbrt book 12). */
+#ifndef REFERENCE_LIGHT_H
+#define REFERENCE_LIGHT_H
+
+#include "medium.h"
+#include "world.h"
+
+typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_SKY, LIGHT_SURFACE } light_kind;
+
+/* The sky's image and the tables from which directions are drawn in proportion to it. */
+typedef struct sky {
+  image_map image;
+  matrix world_from_light, light_from_world;
+  double *rows;    /* shares of the rows above, size + 1 numbers */
+  double *columns; /* of each row: shares of the pixels to the left, size + 1 numbers */
+} sky;
+
+struct light {
+  light_kind kind;
+  color emitted;
+  double factor; /* on `emitted` */
+  vlColorSpace space;
+  vector position;
+  vector direction; /* spot: along its axis; distant: towards the light */
+  double cos_inner, cos_outer;
+  bool cone_squared;
+  const vlEmissionDef *emission; /* of a surface */
+  image_map emission_image;
+  const primitive *what;
+  bool invisible; /* a surface with alpha 0 everywhere: rays pass, light samples do not notice */
+  sky sky;
+};
+
+/* Light that arrives at a point from a sample of a light. */
+typedef struct light_sample {
+  vector direction; /* from the point to the light */
+  double distance;  /* infinite for the sky */
+  spectrum radiance;
+  double density; /* per solid angle; 1 for light from one point or direction */
+  bool single;    /* from one point or direction: no ray can meet it by chance */
+} light_sample;
+
+bool read_lights(world *w, vlError *error);
+void free_lights(world *w);
+/* One sample of one light, both drawn; the density includes the choice. */
+bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result);
+/* What a surface emits towards a direction. */
+spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda);
+/* The density with which sample_light finds the surface at `at` from a point. */
+double density_of_surface(const world *w, const shade_record *at, vector point);
+/* The same for light that a ray finds when it leaves the world. *density: of the whole sky. */
+spectrum emitted_by_sky(const world *w, vector direction, const wavelengths *lambda, double *density);
+
+/* sky.c */
+bool read_sky(const world *w, const vlLightDef *def, light *l, vlError *error);
+spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda);
+vector sample_sky(const light *l, sampler *s, double *density);
+double sky_density(const light *l, vector direction);
+
+#endif

@@ -1,0 +1,60 @@
+/* microfacet.h: rough surfaces as many small mirrors: the distribution of Trowbridge and Reitz, called GGX (pbrt book
+ * 9.6). All directions are local; m is the normal of a small mirror, on the side of +z. */
+#ifndef REFERENCE_MICROFACET_H
+#define REFERENCE_MICROFACET_H
+
+#include "bsdf.h"
+
+/* So smooth that it is computed as a mirror (pbrt's EffectivelySmooth). */
+static inline bool is_smooth(const bsdf *b) {
+  return b->alpha_x < 1e-3 && b->alpha_y < 1e-3;
+}
+
+/* D(m): the area of mirrors with normal m, per area of the surface and per solid angle. */
+static inline double mirror_distribution(const bsdf *b, vector m) {
+  double ax = fmax(b->alpha_x, 1e-4), ay = fmax(b->alpha_y, 1e-4);
+  double e = square(m.x / ax) + square(m.y / ay) + square(m.z);
+  return 1 / (PI * ax * ay * square(e));
+}
+
+/* Smith's Lambda: the hidden area over the visible one, from direction w. */
+static inline double hidden_share(const bsdf *b, vector w) {
+  double ax = fmax(b->alpha_x, 1e-4), ay = fmax(b->alpha_y, 1e-4);
+  double slope2 = (square(ax * w.x) + square(ay * w.y)) / square(w.z);
+  return (sqrt(1 + slope2) - 1) / 2;
+}
+
+/* The share of mirrors seen from w; and of those seen from both directions. */
+static inline double visible(const bsdf *b, vector w) {
+  return 1 / (1 + hidden_share(b, w));
+}
+static inline double visible_from_both(const bsdf *b, vector wo, vector wi) {
+  return 1 / (1 + hidden_share(b, wo) + hidden_share(b, wi));
+}
+
+/* The density of the normals that w sees: D(m) G1(w) |w . m| / |w . z|. */
+static inline double visible_density(const bsdf *b, vector w, vector m) {
+  return visible(b, w) / fabs(w.z) * mirror_distribution(b, m) * fabs(dot(w, m));
+}
+
+/* Draws a normal with that density (Heitz 2018): stretched by alpha the mirrors form a hemisphere; of that, w sees a
+ * disk of which a part lies behind the horizon. */
+static inline vector sample_visible_normal(const bsdf *b, vector w, sampler *s) {
+  double ax = fmax(b->alpha_x, 1e-4), ay = fmax(b->alpha_y, 1e-4);
+  vector wh = normalize(make_vector(ax * w.x, ay * w.y, w.z));
+  if (wh.z < 0) wh = negate(wh);
+  frame f = make_frame(wh, fabs(wh.z) < 0.99999 ? cross(make_vector(0, 0, 1), wh) : make_vector(1, 0, 0));
+  square_point p = sample_unit_disk(s);
+  double h = sqrt(1 - square(p.x));
+  double share = (1 + wh.z) / 2;
+  double y = (1 - share) * h + share * p.y;
+  double z = sqrt(fmax(0, 1 - square(p.x) - square(y)));
+  vector n = from_local(f, make_vector(p.x, y, z));
+  return normalize(make_vector(ax * n.x, ay * n.y, fmax(1e-6, n.z)));
+}
+
+static inline vector reflect(vector w, vector m) {
+  return subtract(scale(2 * dot(w, m), m), w);
+}
+
+#endif

@@ -1,0 +1,130 @@
+#!/usr/bin/python3
+"""The reference renderer against velo, and against closed forms: two programs that share only the description of the scene.
+Images are compared by z of the whole image and of blocks of 8 x 8 pixels, from the standard errors of both."""
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../python"))
+import cases  # noqa: E402
+from cases import SOURCE, VELO, WORK, case  # noqa: E402
+
+numpy = cases.need("numpy")
+import velo  # noqa: E402
+
+REFERENCE = os.path.join(cases.BINARY, "bin/velo-reference")
+CORE = os.path.join(SOURCE, "scenes/reference/core.pbrt")
+if not os.path.exists(REFERENCE):
+    cases.skip_all("velo-reference is not built")
+
+HEAD = """LookAt 0 0 -3  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 16 "integer yresolution" 16 "string filename" "x.exr"
+PixelFilter "box"
+Integrator "volpath" "integer maxdepth" 50
+"""
+
+
+def run(*command):
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def colors(image, prefix=""):
+    return numpy.stack([numpy.asarray(image[prefix + c], dtype=float) for c in "RGB"], -1)
+
+
+def render(scene, name, spp, *options):
+    """Mean and standard error of each pixel and channel, by the reference renderer."""
+    path = os.path.join(WORK, name)
+    result = run(REFERENCE, scene, "-o", path, "--spp", str(spp), *options)
+    assert result.returncode == 0 and not result.stderr, result.stderr
+    image = velo.read_image(path)
+    return colors(image), colors(image, "error.")
+
+
+def render_velo(scene, name, spp, *options):
+    path = os.path.join(WORK, name)
+    result = run(VELO, "render", scene, "-o", path, "--spp", str(spp), "--filter-samples", "own", "--sampler", "independent",
+                 "--tracer", "volpath", "--channels", "error", "--quiet", *options)
+    assert result.returncode == 0, result.stderr
+    image = velo.read_image(path)
+    return colors(image), colors(image, "error.")
+
+
+def worst_z(a, b):
+    """The largest |z| of the whole image and of blocks of 8 x 8."""
+    difference, variance = a[0] - b[0], a[1] ** 2 + b[1] ** 2
+    parts = [(slice(None), slice(None))]
+    parts += [(slice(y, y + 8), slice(x, x + 8)) for y in range(0, difference.shape[0], 8)
+              for x in range(0, difference.shape[1], 8)]
+    return max(abs(difference[p].sum((0, 1)) / numpy.sqrt(variance[p].sum((0, 1)))).max() for p in parts)
+
+
+def scene(name, text):
+    path = os.path.join(WORK, name)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(HEAD + text)
+    return path
+
+
+@case
+def all_of_the_core_agrees_with_velo():
+    size = ("--resolution", "32x24")
+    mine, own = render_velo(CORE, "velo.exr", 512, *size), render(CORE, "reference.exr", 256, *size)
+    z = worst_z(mine, own)
+    assert z < 4.5, "z = %.1f; 39 parts, beyond 4.5 by chance once in 4000 runs" % z
+    z = worst_z((1.05 * mine[0], mine[1]), own)
+    assert z > 4.5, "a difference of 5 %% would not be seen: z = %.1f" % z
+
+
+@case
+def rgb_agrees_with_velo():
+    size = ("--resolution", "32x24", "--color", "rgb", "--max-depth", "3")
+    z = worst_z(render_velo(CORE, "velo_rgb.exr", 256, *size), render(CORE, "reference_rgb.exr", 128, *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
+def a_white_furnace_is_white():
+    for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
+                           ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):
+        path = scene(name + ".pbrt", 'WorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\nMaterial ' + material +
+                     '\nShape "sphere" "float radius" 0.8\n')
+        mean, error = render(path, name + ".exr", 64, "--color", "rgb")
+        z = worst_z((mean, error), (numpy.ones_like(mean), numpy.full_like(mean, 1e-4)))
+        assert z < 4.5 and abs(mean.mean() - 1) < 0.01, (name, z, mean.mean())
+
+
+@case
+def a_point_light_over_a_diffuse_plane_has_its_closed_form():
+    """Radiance = reflectance / pi * I cos / d^2, at the middle of the image: 0.5 / pi * 8 / 4."""
+    path = scene("point.pbrt", 'WorldBegin\nLightSource "point" "rgb I" [ 8 8 8 ] "point3 from" [ 0 0 -2 ]\n'
+                 'Material "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]\nShape "disk" "float radius" 0.02\n')
+    mean, _ = render(path, "point.exr", 16, "--color", "rgb", "--max-depth", "1", "--resolution", "401x401")
+    assert abs(mean[200, 200] - 0.5 / numpy.pi * 2).max() < 1e-4, mean[200, 200]
+
+
+@case
+def a_sphere_of_fog_absorbs_by_beers_law():
+    path = scene("fog.pbrt", 'WorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\n'
+                 'MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [ 1 0.5 0.25 ] "rgb sigma_s" [ 0 0 0 ]\n'
+                 'MediumInterface "fog" ""\nMaterial "interface"\nShape "sphere" "float radius" 0.5\n')
+    mean, _ = render(path, "fog.exr", 16, "--color", "rgb", "--resolution", "401x401")
+    assert abs(mean[200, 200] - numpy.exp([-1, -0.5, -0.25])).max() < 1e-4, mean[200, 200]
+
+
+@case
+def what_it_does_not_have_is_refused_by_name():
+    for text, words in (('Material "hair"\nShape "sphere"\n', 'material "hair" is not part of'),
+                        ('Shape "curve" "point3 P" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]\n', 'shape "curve" is not part of')):
+        path = scene("refused.pbrt", "WorldBegin\n" + text)
+        result = run(REFERENCE, path, "-o", os.path.join(WORK, "refused.exr"), "--spp", "1")
+        assert result.returncode == 3 and words in result.stderr, (result.returncode, result.stderr)
+        assert ":7:" in result.stderr or "refused.pbrt" in result.stderr, result.stderr
+    assert run(REFERENCE, "no.pbrt", "-o", "x.exr").returncode == 4
+    assert run(REFERENCE, CORE).returncode == 2
+    assert run(REFERENCE, CORE, "-o", "x.exr", "--spp", "0").returncode == 2
+
+
+if __name__ == "__main__":
+    cases.main()

@@ -17,6 +17,16 @@ typedef struct vlSampleRange {
   uint32_t first, end; /**< index of the first sample; index behind the last */
 } vlSampleRange;
 
+/** A lock on a film file: nobody else writes it. Its context must outlive it. */
+typedef struct vlFilmLock vlFilmLock;
+/** Locks the file `path`, which need not exist, against other processes and other locks of this one. All functions that
+ * write films respect it. *lock is null and the result VL_OK where another has the lock (after half a second). The lock
+ * ends with the process, however that ends; it works over NFS. Where the file system has no locks, a warning is logged
+ * and *lock locks nothing; so does that of a device or pipe. Errors: ARGUMENT, MEMORY, IO. */
+VL_API vlResult vl_film_lock(vlContext *context, const char *path, vlFilmLock **lock, vlError *error);
+/** Releases a lock. Null is allowed. */
+VL_API void vl_film_unlock(vlFilmLock *lock);
+
 /** How to write a film. */
 typedef struct vlFilmWriteDef {
   uint32_t cookie;
@@ -27,12 +37,15 @@ typedef struct vlFilmWriteDef {
    * are sides of the window or at multiples of 32 pixels. The other pixels have no samples in this file. All 0
    * (default): the film's crop. */
   uint32_t window[4];
+  /** The lock of this path, if the caller has it: it stays. Null (default): the file is locked while it is written. */
+  vlFilmLock *lock;
 } vlFilmWriteDef;
 /** The default def. */
 VL_API vlFilmWriteDef vl_default_film_write_def(void);
 /** Writes a film file whole or not at all: writes a temporary file in the same folder, syncs it, renames it and syncs
  * the folder. An earlier file of that name stays until then. Must not be called while a render runs, except from its
- * callback after a pass. def may be null. Errors: ARGUMENT (also a film without samples), MEMORY, IO. */
+ * callback after a pass. def may be null. Errors: ARGUMENT (also a film without samples), MEMORY; IO: also where
+ * another has the lock. */
 VL_API vlResult vl_film_write(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlError *error);
 
 /** A film file that is being written. The film's context must outlive it. */
@@ -77,14 +90,24 @@ VL_API vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *blo
  * has no samples, or (without `partial`) has pixels without samples or with other first samples. */
 VL_API vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error);
 
+/** How to merge films. */
+typedef struct vlFilmMergeDef {
+  uint32_t cookie;
+  /** Replaces an earlier film whatever it holds. False (default): only a film of the same render all of whose samples
+   * the result has. Other files are never replaced. If the earlier file stays, the result is SCENE. */
+  bool overwrite;
+} vlFilmMergeDef;
+/** The default def. */
+VL_API vlFilmMergeDef vl_default_film_merge_def(void);
 /** Merges `count` film files of one render that have different samples or pixels. The result has the bytes that a
  * single render of all these samples would have written. The order and the grouping of merges do not matter. If two
  * files share samples of a block, one of them must have all the samples of the other there; shared samples count once.
- * `output` may be one of the paths. It needs the memory of a few blocks, for any number of files. Errors: SCENE: a file
- * is damaged, the files are of different renders (the message names the difference), or samples overlap partly;
- * ARGUMENT, MISSING, IO, MEMORY, UNSUPPORTED. */
-VL_API vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const char *output,
-                              vlError *error);
+ * `output` may be one of the paths; it is locked from the first read to the last write. It needs the memory of a few
+ * blocks, for any number of files. def may be null. Errors: SCENE: a file is damaged, the files are of different
+ * renders (the message names the difference), samples overlap partly, or the earlier output would be lost; ARGUMENT,
+ * MISSING, MEMORY, UNSUPPORTED; IO: also where another has the lock of the output. */
+VL_API vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const vlFilmMergeDef *def,
+                              const char *output, vlError *error);
 
 #ifdef __cplusplus
 }

@@ -115,14 +115,15 @@ end:
   return result;
 }
 
-/* film_merge(context, [paths], output) */
+/* film_merge(context, [paths], output, overwrite) */
 static PyObject *film_merge(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
   PyObject *paths, *output, *keep = PyList_New(0);
   const char **texts = NULL;
-  if (!keep || !PyArg_ParseTuple(arguments, "O!O!O:film_merge", base_types[TYPE_CONTEXT], &context, &PyList_Type,
-                                 &paths, &output))
+  int overwrite;
+  if (!keep || !PyArg_ParseTuple(arguments, "O!O!Op:film_merge", base_types[TYPE_CONTEXT], &context, &PyList_Type,
+                                 &paths, &output, &overwrite))
     goto fail;
   Py_ssize_t count = PyList_Size(paths);
   texts = PyMem_Malloc((size_t)(count + 1) * sizeof *texts);
@@ -132,7 +133,9 @@ static PyObject *film_merge(PyObject *module, PyObject *arguments) {
   Call call;
   if (!file || !call_begin(&call, context, NULL)) goto fail;
   vlError error = {0};
-  vlResult done = vl_film_merge(context->context, texts, (uint32_t)count, file, &error);
+  vlFilmMergeDef def = vl_default_film_merge_def();
+  def.overwrite = overwrite;
+  vlResult done = vl_film_merge(context->context, texts, (uint32_t)count, &def, file, &error);
   call_end(&call);
   PyMem_Free((void *)texts);
   Py_DECREF(keep);
@@ -199,6 +202,6 @@ PyType_Spec film_spec = {"velo._velo.Film", sizeof(Film), 0,
 PyMethodDef film_functions[] = {
     {"film_new", film_new, METH_VARARGS, "An empty film: context, settings."},
     {"film_read", film_read, METH_VARARGS, "Reads a film file: context, path, partial."},
-    {"film_merge", film_merge, METH_VARARGS, "Merges film files: context, list of paths, output."},
+    {"film_merge", film_merge, METH_VARARGS, "Merges film files: context, list of paths, output, overwrite."},
     {NULL, NULL, 0, NULL},
 };

@@ -1,11 +1,22 @@
 """Films: the samples of an image. They are written to files, read, continued and merged."""
 from __future__ import annotations
 
-from typing import Any, Sequence
+import os
+from typing import Any, Optional, Sequence
 
 from velo import _velo
 from velo._context import default_context
+from velo._errors import UsageError
 from velo.image import Image, Path
+
+
+def _state_of(path: Path) -> Optional[tuple[int, int, int]]:
+    """What tells whether a file is still the one that it was; None: there is none, or it is empty."""
+    try:
+        info = os.stat(path)
+    except OSError:
+        return None
+    return (info.st_dev, info.st_ino, info.st_mtime_ns) if info.st_size else None
 
 
 class Film(_velo.Film):
@@ -24,9 +35,20 @@ class Film(_velo.Film):
         """Radiance per wavelength, a channel for each bucket. The film must be made with buckets."""
         return self._image("spectrum", 1.0)
 
-    def write(self, path: Path) -> None:
-        """Writes a film file, whole or not at all."""
+    #: The files that this film was read from or written to, by their paths, as they were then.
+    _files: Optional[dict[str, Optional[tuple[int, int, int]]]] = None
+
+    def _knows(self, path: Path) -> None:
+        self._files = {**(self._files or {}), os.path.abspath(os.fsdecode(path)): _state_of(path)}
+
+    def write(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes a film file, whole or not at all. A file that is there already must be one that this film was read from or
+        has written, and unchanged since; overwrite: replaces any."""
+        state = _state_of(path)
+        if state and state not in (self._files or {}).values() and not overwrite:
+            raise UsageError(f"{os.fsdecode(path)}: this file is not of this film; overwrite=True replaces it")
         self._write(path)
+        self._knows(path)
 
     def close(self) -> None:
         """Frees the samples."""
@@ -48,9 +70,13 @@ _velo.set_type("Film", Film)
 
 def read_film(path: Path, *, partial: bool = False, context: Any = None) -> Film:
     """Reads a film file. partial: pixels may have different samples; such a film can be developed, not continued."""
-    return _velo.film_read(context or default_context(), path, partial)
+    film = _velo.film_read(context or default_context(), path, partial)
+    if not partial:
+        film._knows(path)
+    return film
 
 
-def merge_films(paths: Sequence[Path], output: Path, *, context: Any = None) -> None:
-    """Merges film files of one render, which have different samples or pixels, to one."""
-    _velo.film_merge(context or default_context(), list(paths), output)
+def merge_films(paths: Sequence[Path], output: Path, *, overwrite: bool = False, context: Any = None) -> None:
+    """Merges film files of one render, which have different samples or pixels, to one. A film that is there already must be
+    of the same render, and the result must have all its samples; overwrite: replaces any film."""
+    _velo.film_merge(context or default_context(), list(paths), output, overwrite)

@@ -4,9 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "api/receipt.h"
+#include "base/cookie.h"
 #include "base/error.h"
 #include "film/file.h"
 #include "velo/film.h"
@@ -28,6 +30,7 @@ typedef struct Merge {
   uint32_t range_count;
   vlComparedNoise compared; /* of the result's block: that of its only part, 0 if it has several */
   char *sum, *data;         /* the result's block, with the means of its only part; one part's block */
+  vlFilmReader earlier;     /* the file that the result replaces; only what the result has, too; descriptor -1: none */
   vlFileWriter file;
   vlError *error;
 } Merge;
@@ -89,6 +92,21 @@ static vlResult open_parts(Merge *m, const char *const *paths) {
     if (result != VL_OK) return result;
   }
   return VL_OK;
+}
+
+/* Opens the file that the result would replace. It must be a film, and of the same render unless it is overwritten; an
+ * empty file is none. */
+static vlResult open_earlier(Merge *m, const char *output, bool overwrite) {
+  struct stat info;
+  vlError own = {0}, *error = m->error;
+  if (stat(output, &info) != 0 || !S_ISREG(info.st_mode) || info.st_size == 0) return VL_OK;
+  if (overwrite && vl_film_begins_as_film(output)) return VL_OK;
+  m->error = &own;
+  vlResult result = vl_film_reader_open(&m->earlier, m->context, output, &own);
+  if (result == VL_OK) result = check_pair(m, &m->earlier);
+  m->error = error;
+  if (result == VL_OK || result == VL_ERROR_MEMORY) return result;
+  return vl_fail(error, result, "%s is not replaced: %s", output, own.message);
 }
 
 /* The first of the parts' receipts in the order of strcmp, so that the header of the result does not depend on the
@@ -183,6 +201,16 @@ static void sort_parts(Merge *m) {
     }
 }
 
+/* Whether the result's block has all samples of the earlier file's. */
+static vlResult check_earlier(Merge *m) {
+  vlFilmReader *r = &m->earlier;
+  if (r->descriptor < 0) return VL_OK;
+  vlResult result = vl_film_reader_next(r, m->error);
+  if (result != VL_OK || contains(m->ranges, m->range_count, r->ranges, r->head.range_count)) return result;
+  return vl_fail(m->error, VL_ERROR_SCENE, "%s is not replaced: it has samples of pixels %u,%u that the result lacks",
+                 r->path, r->head.x0, r->head.y0);
+}
+
 static vlResult merge_block(Merge *m) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < m->count && result == VL_OK; i++) {
@@ -214,6 +242,7 @@ static vlResult merge_block(Merge *m) {
     if (result != VL_OK) return result;
     p->added = true;
   }
+  if ((result = check_earlier(m)) != VL_OK) return result;
   const uint32_t place[4] = {h->x0, h->y0, h->x1, h->y1};
   vlFilmBlockHead head;
   vl_film_block_head(def, place, m->range_count, &m->compared, &head);
@@ -254,13 +283,15 @@ static vlResult merge_opened(Merge *m, const char *output) {
   return result;
 }
 
-static vlResult merge_some(vlContext *context, const char *const *paths, uint32_t count, const char *output,
-                           vlError *error) {
-  Merge m = {.context = context, .count = count, .error = error};
+static vlResult merge_some(vlContext *context, const char *const *paths, uint32_t count, bool overwrite,
+                           const char *output, vlError *error) {
+  Merge m = {.context = context, .count = count, .earlier = {.descriptor = -1}, .error = error};
   m.parts = vl_alloc_zero(context, count, sizeof *m.parts);
   m.order = vl_alloc_array(context, count, sizeof *m.order);
   vlResult result = m.parts && m.order ? open_parts(&m, paths) : vl_fail_memory(error);
+  if (result == VL_OK) result = open_earlier(&m, output, overwrite);
   if (result == VL_OK) result = merge_opened(&m, output);
+  if (m.earlier.path) vl_film_reader_close(&m.earlier);
   for (uint32_t i = 0; i < count && m.parts && m.order; i++)
     if (m.parts[i].reader.path) vl_film_reader_close(&m.parts[i].reader);
   vl_free(context, m.parts);
@@ -272,23 +303,47 @@ static vlResult merge_some(vlContext *context, const char *const *paths, uint32_
   return result;
 }
 
-vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const char *output,
-                       vlError *error) {
-  vl_error_clear(error);
-  if (!context || !paths || !count || !output)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "film merge: context, paths, count or output is null");
-  if (count <= MOST_FILES) return merge_some(context, paths, count, output, error);
-  char between[4096];
+vlFilmMergeDef vl_default_film_merge_def(void) {
+  return (vlFilmMergeDef){.cookie = VL_COOKIE_FILM_MERGE};
+}
+
+/* In rounds, with a temporary file that nobody else uses as long as the output is locked. */
+static vlResult merge_many(vlContext *context, const char *const *paths, uint32_t count, bool overwrite,
+                           const char *output, const vlFilmLock *lock, vlError *error) {
+  char between[sizeof lock->file.path];
   const char *some[MOST_FILES];
-  if (snprintf(between, sizeof between, "%s.merge", output) >= (int)sizeof between)
-    return vl_fail(error, VL_ERROR_IO, "cannot write %s: the path is too long", output);
+  if (!lock->file.path[0])
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: more than %d films need a temporary file beside the result",
+                   output, MOST_FILES);
+  vl_lock_sibling(&lock->file, between, sizeof between);
   vlResult result = VL_OK;
   for (uint32_t done = 0; done < count && result == VL_OK;) {
     uint32_t n = 0;
     if (done) some[n++] = between;
     while (n < MOST_FILES && done < count) some[n++] = paths[done++];
-    result = merge_some(context, some, n, done < count ? between : output, error);
+    bool last = done == count;
+    result = merge_some(context, some, n, last ? overwrite : true, last ? output : between, error);
   }
   unlink(between);
+  return result;
+}
+
+vlResult vl_film_merge(vlContext *context, const char *const *paths, uint32_t count, const vlFilmMergeDef *def,
+                       const char *output, vlError *error) {
+  vl_error_clear(error);
+  vlFilmMergeDef standard = vl_default_film_merge_def();
+  if (!def) def = &standard;
+  if (!context || !paths || !count || !output || def->cookie != VL_COOKIE_FILM_MERGE)
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "film merge: context, paths, count or output is null, or def.cookie is not that of a default def of "
+                   "this version");
+  vlFilmLock *lock;
+  vlResult result = vl_film_lock_write(context, output, &lock, error);
+  if (result != VL_OK) return result;
+  if (count <= MOST_FILES)
+    result = merge_some(context, paths, count, def->overwrite, output, error);
+  else
+    result = merge_many(context, paths, count, def->overwrite, output, lock, error);
+  vl_film_unlock(lock);
   return result;
 }

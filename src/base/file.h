@@ -46,6 +46,9 @@ void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint6
 vlResult vl_file_commit(vlFileWriter *writer, vlError *error);
 void vl_file_abandon(vlFileWriter *writer);
 
+/* Resolves the symbolic links of `path`; the target need not exist. False: errno is set. */
+bool vl_follow_links(const char *path, char *target, size_t size);
+
 double vl_seconds(void); /* seconds of a monotonic clock */
 
 #endif

@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_lock.h"
 
 /* Temporary files are named by the process id alone, so that targets with the longest names can be written. The
  * writer holds a lock on its temporary file: one without a lock belongs to a process that has ended. */
@@ -24,8 +25,7 @@ static size_t folder_length(const char *path) {
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* Resolves the symbolic links of `path`; the target need not exist. False: errno is set. */
-static bool follow_links(const char *path, char *target, size_t size) {
+bool vl_follow_links(const char *path, char *target, size_t size) {
   char link[4096];
   if (strlen(path) >= size) return errno = ENAMETOOLONG, false;
   memcpy(target, path, strlen(path) + 1);
@@ -101,12 +101,13 @@ static bool is_temporary(const char *name) {
 
 void vl_remove_leftovers(const char *path) {
   char target[4096], folder[4096];
-  if (!path || !follow_links(path, target, sizeof target)) return;
+  if (!path || !vl_follow_links(path, target, sizeof target)) return;
   snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(target), target);
   DIR *directory = opendir(folder);
   if (!directory) return;
   struct dirent *entry;
   while ((entry = readdir(directory))) {
+    if (vl_is_lock_name(entry->d_name)) vl_file_lock_sweep(dirfd(directory), entry->d_name);
     if (!is_temporary(entry->d_name)) continue;
     int fd = openat(dirfd(directory), entry->d_name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0) continue;
@@ -136,7 +137,7 @@ vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *err
   } else if (there && !S_ISREG(info.st_mode)) { /* a device or pipe cannot be replaced, only written to */
     writer->descriptor = open(path, O_WRONLY | O_CLOEXEC);
   } else if ((!writer->replaces || access(path, W_OK) == 0) &&
-             follow_links(path, writer->target, sizeof writer->target)) {
+             vl_follow_links(path, writer->target, sizeof writer->target)) {
     open_temporary(writer);
   }
   if (writer->descriptor >= 0) return VL_OK;

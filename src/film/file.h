@@ -4,7 +4,9 @@
 #define FILM_FILE_H
 
 #include "base/file.h"
+#include "base/file_lock.h"
 #include "film/sums.h"
+#include "velo/film.h"
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "film files are little-endian, and sums are stored as they are");
@@ -82,6 +84,8 @@ typedef struct vlFilmReader {
 } vlFilmReader;
 
 vlResult vl_film_reader_open(vlFilmReader *reader, vlContext *context, const char *path, vlError *error);
+/* Whether a file begins as film files do, damaged or not. */
+bool vl_film_begins_as_film(const char *path);
 void vl_film_reader_close(vlFilmReader *reader);
 /* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
@@ -95,6 +99,16 @@ vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error)
 
 /* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file. */
 void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, const void *from);
+
+/* ---- locks ------------------------------------------------------------------------------------------------------- */
+
+struct vlFilmLock {
+  vlContext *context;
+  vlFileLock file;
+};
+
+/* As vl_film_lock; where another has the lock: IO. */
+vlResult vl_film_lock_write(vlContext *context, const char *path, vlFilmLock **lock, vlError *error);
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 

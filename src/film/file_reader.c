@@ -88,6 +88,14 @@ vlResult vl_film_reader_open(vlFilmReader *r, vlContext *context, const char *pa
   return result;
 }
 
+bool vl_film_begins_as_film(const char *path) {
+  char magic[sizeof vl_film_magic];
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  ssize_t n = descriptor < 0 ? -1 : pread(descriptor, magic, sizeof magic, 0);
+  if (descriptor >= 0) close(descriptor);
+  return n == (ssize_t)sizeof magic && memcmp(magic, vl_film_magic, sizeof magic) == 0;
+}
+
 void vl_film_reader_close(vlFilmReader *r) {
   if (r->descriptor >= 0) close(r->descriptor);
   r->descriptor = -1;

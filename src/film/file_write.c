@@ -12,6 +12,7 @@
 
 struct vlFilmWriter {
   vlContext *context;
+  vlFilmLock *lock; /* null: the caller has it */
   vlFileWriter file;
 };
 
@@ -155,7 +156,8 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
     return vl_fail_memory(error);
   }
   made->context = film->context;
-  result = vl_file_open_write(&made->file, path, error);
+  if (!def->lock) result = vl_film_lock_write(film->context, path, &made->lock, error);
+  if (result == VL_OK) result = vl_file_open_write(&made->file, path, error);
   if (result == VL_OK) {
     Run run = {.film = film, .window = window, .descriptor = made->file.descriptor};
     result = vl_film_put_header(&made->file, header);
@@ -165,10 +167,12 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
     if (result != VL_OK) vl_file_abandon(&made->file);
   }
   vl_free(film->context, header);
-  if (result == VL_OK)
+  if (result == VL_OK) {
     *writer = made;
-  else
+  } else {
+    vl_film_unlock(made->lock);
     vl_free(film->context, made);
+  }
   return result;
 }
 
@@ -176,6 +180,7 @@ vlResult vl_film_write_end(vlFilmWriter *writer, vlError *error) {
   vl_error_clear(error);
   if (!writer) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: writer is null");
   vlResult result = vl_file_commit(&writer->file, error);
+  vl_film_unlock(writer->lock);
   vl_free(writer->context, writer);
   return result;
 }

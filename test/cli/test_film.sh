@@ -18,7 +18,7 @@ identical() {
 # Continued: every tracer, with error sums, with spectra, a sampler with cells; another number of threads.
 for tracer in path volpath bidirectional merging sppm lightpath randomwalk raycast ambientocclusion; do
   for more in "" "--channels error,Z" "--spectrum 4" "--sampler stratified --sequence 8"; do
-    rm -f a.exr b.exr
+    rm -f a.exr b.exr f.film
     $render scene.pbrt $small --tracer $tracer $more --spp 12 -o a.exr
     $render scene.pbrt $small --tracer $tracer $more --spp 5 --film f.film -t 1
     identical "continued: $tracer $more" $render --continue f.film --spp 12 -o b.exr -t 3
@@ -28,17 +28,17 @@ $render scene.pbrt $small --stereo parallel --spp 6 -o a.exr
 $render scene.pbrt $small --stereo parallel --spp 2 --film eye_%v.film
 identical "continued: two eyes" $render --continue eye_%v.film --spp 6 -o b.exr
 $render scene.pbrt $small --spp 5 -o a.exr --channels Z,N,id.object
-$render scene.pbrt $small --spp 5 --film f.film
+$render scene.pbrt $small --spp 5 --film f.film --overwrite
 identical "channels of a complete film" $render --continue f.film -o b.exr --channels Z,N,id.object
-$render scene.pbrt $small --spp 4 --film f.film -o own.exr
+$render scene.pbrt $small --spp 4 --film f.film --overwrite -o own.exr
 rm own.exr
 $render --continue f.film --spp 6
 $render scene.pbrt $small --spp 6 -o whole.exr
 same "outputs are those of the film" own.exr whole.exr
 rm -f asked.exr
-$render scene.pbrt $small --film f.film
+$render scene.pbrt $small --film f.film --overwrite
 [ ! -e asked.exr ] && pass "a film without -o writes no image" || fail "a film without -o writes no image"
-$render scene.pbrt $small --time 0.3 --film f.film -o a.exr
+$render scene.pbrt $small --time 0.3 --film f.film --overwrite -o a.exr
 spp=$("$VELO" film info f.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p')
 identical "--time is the --spp that it reached" $render scene.pbrt $small --spp "$spp" -o b.exr
 
@@ -105,7 +105,7 @@ refused() {
     sed 's/^/  | /' refused.txt
   fi
 }
-$render scene.pbrt $small --spp 6 --film f.film
+$render scene.pbrt $small --spp 6 --film f.film --overwrite
 refused "other settings" 3 "tracer is volpath, was path" $render --continue f.film --tracer volpath
 refused "another seed" 3 "seed" $render --continue f.film --seed 7
 refused "another size" 3 "width" $render --continue f.film --resolution 60x40

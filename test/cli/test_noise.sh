@@ -63,24 +63,24 @@ PATH=$PWD/bin:$PATH sh missing.sh 2>missing.txt
 same "what is missing is rendered by the command that info prints" gap.pfm whole.pfm
 # stopped between two comparisons, and at a number at which some blocks are compared and others end by the last one
 for spp in 8 9 11 12 14 16 20 24 30 32; do
-  $render scene.pbrt $noise --spp $spp --film s.film --channels samples,error,Z
+  $render scene.pbrt $noise --spp $spp --film s.film --overwrite --channels samples,error,Z
   $render --continue s.film --spp 65536 -o b.exr
   same "continued from $spp" a.exr b.exr
 done
 # continued without more samples: the comparison at this number is not repeated, its means are those of these samples
-$render scene.pbrt $noise --spp 16 --film s.film
+$render scene.pbrt $noise --spp 16 --film s.film --overwrite
 cp s.film t.film
 check "no more samples" $render --continue s.film --spp 16
 same "no more samples leave the film" s.film t.film
 # another exposure has comparisons of its own
-$render scene.pbrt $noise --film s.film
+$render scene.pbrt $noise --film s.film --overwrite
 before=$("$VELO" film info s.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)
 check "another exposure" $render --continue s.film --exposure 3 --spp 65536 -o b.exr
 after=$("$VELO" film info s.film | sed -n 's/^ *samples *0:\([0-9]*\) .*/\1/p' | sort -n | tail -n 1)
 check "a brighter view needs more samples" test "$after" -gt "$before"
 # a lower threshold goes on with the film of a higher one
 $render scene.pbrt $small --noise 1.5% -o finer.exr
-$render scene.pbrt $noise --film s.film
+$render scene.pbrt $noise --film s.film --overwrite
 check finer $render --continue s.film --noise 1.5% --spp 65536 -o b.exr
 same "a lower threshold" finer.exr b.exr
 # a crop along blocks has the pixels of the whole

@@ -171,7 +171,9 @@ static void what_is_written_is_read(void **state) {
 }
 
 static vlResult merge(const char *const *paths, uint32_t count, const char *output, vlError *error) {
-  return vl_film_merge(context, paths, count, output, error);
+  vlFilmMergeDef def = vl_default_film_merge_def();
+  def.overwrite = true;
+  return vl_film_merge(context, paths, count, &def, output, error);
 }
 
 /* Whether the means of a block's first 16 samples are in the film. */
@@ -419,7 +421,7 @@ static vlResult whole_life(vlContext *own, void *user) {
   vlFilm *film = make_film(own, ERRORS, NULL, 0, 1), *read = NULL;
   vlError error;
   vlResult result = film ? vl_film_write(film, NULL, paths[0], &error) : VL_ERROR_MEMORY;
-  if (result == VL_OK) result = vl_film_merge(own, paths, 2, path_of("life2.film"), &error);
+  if (result == VL_OK) result = vl_film_merge(own, paths, 2, NULL, path_of("life2.film"), &error);
   if (result == VL_OK) result = vl_film_read(own, path_of("life2.film"), false, &read, &error);
   vl_film_destroy(film);
   vl_film_destroy(read);
@@ -458,7 +460,7 @@ static vlResult life_with_receipt(void) {
   vlResult result = vl_receipt_parse(context, text, strlen(text), &receipt, &error);
   def.receipt = receipt;
   if (result == VL_OK) result = vl_film_write(film, &def, paths[0], &error);
-  if (result == VL_OK) result = vl_film_merge(context, paths, 2, path_of("json2.film"), &error);
+  if (result == VL_OK) result = vl_film_merge(context, paths, 2, NULL, path_of("json2.film"), &error);
   if (result == VL_OK) result = vl_film_read(context, path_of("json2.film"), false, &read, &error);
   if (result != VL_OK && result != VL_ERROR_MEMORY) print_message("%s\n", error.message);
   vl_receipt_destroy(receipt);

@@ -160,7 +160,7 @@ static void *merge_shards(void *user) {
   path_of(paths[0], "first.film");
   path_of(paths[1], "last.film");
   path_of(output, shard->name);
-  shard->done = vl_film_merge(context, (const char *const[]){paths[1], paths[0]}, 2, output, NULL) == VL_OK;
+  shard->done = vl_film_merge(context, (const char *const[]){paths[1], paths[0]}, 2, NULL, output, NULL) == VL_OK;
   return NULL;
 }
 

@@ -57,7 +57,7 @@ static void use(vlContext *context, const char *path) {
   char output[200];
   snprintf(output, sizeof output, "%s.merged", path);
   const char *const paths[2] = {path, path};
-  vl_film_merge(context, paths, 2, output, &error);
+  vl_film_merge(context, paths, 2, NULL, output, &error);
   unlink(output);
 }
 

@@ -229,6 +229,16 @@ def films_are_written_continued_and_merged():
         film.errors()
     scene.render(spp=8, errors=True)
     assert numpy.isfinite(numpy.asarray(scene.film.errors())).all()
+    scene.film.write(work("errors.film"))
+    scene.film.write(work("errors.film"))
+    with raises(velo.UsageError, "errors.film: this file is not of this film"):
+        film.write(work("errors.film"))
+    with raises(velo.SceneError, "errors.film is not replaced"):
+        velo.merge_films([first, second], work("errors.film"))
+    velo.merge_films([first, second], work("errors.film"), overwrite=True)
+    film.write(work("errors.film"), overwrite=True)
+    with raises(velo.UsageError, "not of this film"):
+        scene.film.write(work("errors.film"))
     with open(first, "r+b") as file:
         file.seek(60)
         file.write(b"\xff" * 40)

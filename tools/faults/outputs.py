@@ -38,8 +38,9 @@ class Output:
 
 
 def render(*words, **earlier):
-    """A render that writes the files that it names; those named by `earlier` were films before."""
-    files = {w: None for w in words if w.startswith("out") and "%" not in w}
+    """A render that writes the files that it names; those named by `earlier` were these films before, other films that of another
+    render."""
+    files = {w: "errors.film" if w.endswith(".film") else None for w in words if w.startswith("out") and "%" not in w}
     files.update({name.replace("_film", ".film"): film for name, film in earlier.items()})
     return Output(["render", *([] if "--continue" in words else ["scene.pbrt"]), *words], files)
 
@@ -49,14 +50,16 @@ OUTPUTS = [
     render("-o", "out.png"),
     render("-o", "out.exr", "-o", "out.png"),
     render("-o", "out.exr", "--channels", "all"),
-    render("--film", "out.film"),
-    render("--film", "out.film", "--checkpoint", "0.01", "-o", "out.exr"),
-    render("--film", "out.film", "--checkpoint", "0.01", "-o", "out.exr", "--channels", "error,Z", "--spectrum", "3"),
-    render("--film", "out.film", "--checkpoint", "0.01", "--shard", "1/2"),
-    render("--film", "out_%v.film", "--stereo", "parallel", "--checkpoint", "0.01", out_left_film=None, out_right_film=None),
+    render("--overwrite", "--film", "out.film"),
+    render("--overwrite", "--film", "out.film", "--checkpoint", "0.01", "-o", "out.exr"),
+    render("--overwrite", "--film", "out.film", "--checkpoint", "0.01", "-o", "out.exr", "--channels", "error,Z", "--spectrum", "3"),
+    render("--overwrite", "--film", "out.film", "--checkpoint", "0.01", "--shard", "1/2"),
+    render("--overwrite", "--film", "out_%v.film", "--stereo", "parallel", "--checkpoint", "0.01", out_left_film="first.film", out_right_film="first.film"),
     render("--continue", "out.film", "--checkpoint", "0.01", out_film="first.film"),
     render("--continue", "out.film", "--checkpoint", "0.01", "-o", "out.exr", "--channels", "Z", out_film="first.film"),
-    Output(["film", "merge", "part_1.film", "part_2.film", "-o", "out.film"], {"out.film": None}, ["part_1.film", "part_2.film"]),
+    render("--film", "out.film", "--checkpoint", "0.01", "-o", "out.exr", out_film="first.film"),
+    Output(["film", "merge", "part_1.film", "part_2.film", "--overwrite", "-o", "out.film"], {"out.film": "errors.film"},
+           ["part_1.film", "part_2.film"]),
     Output(["film", "merge", "out.film", "part_1.film", "part_2.film", "-o", "out.film"], {"out.film": "tile_1.film"},
            ["part_1.film", "part_2.film"]),
     Output(["film", "develop", "errors.film", "-o", "out.exr", "-o", "out.png"], {"out.exr": None, "out.png": None}, ["errors.film"]),

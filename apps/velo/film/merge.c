@@ -8,7 +8,7 @@
 #include "image/image.h"
 #include "render/outputs.h"
 
-enum { MERGE_OUTPUT };
+enum { MERGE_OUTPUT, MERGE_OVERWRITE };
 
 static int run_merge(const Command *command, const Arguments *arguments) {
   (void)command;
@@ -20,14 +20,18 @@ static int run_merge(const Command *command, const Arguments *arguments) {
   int status = outputs_check_folders(&outputs);
   if (status < 0) status = image_context(&context);
   if (status >= 0) return status;
+  vlFilmMergeDef def = vl_default_film_merge_def();
+  def.overwrite = arguments->values[MERGE_OVERWRITE].given;
   vlResult result =
-      vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, output->text, &error);
+      vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def, output->text, &error);
   vl_context_destroy(context);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }
 
 static const Option merge_options[] = {
     {MERGE_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "film file to write; may be one of the parts", 0, 0, NULL},
+    {MERGE_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL,
+     "replace an earlier film even if it is of another render or has samples that the result lacks", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 const Command film_merge_command = {

@@ -101,7 +101,7 @@ int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context,
   uint32_t parts =
       VL_RECEIPT_SEQUENCE | VL_RECEIPT_FILES | VL_RECEIPT_SETTINGS | VL_RECEIPT_SAMPLES | VL_RECEIPT_DEVELOP;
   if (with_camera) parts |= VL_RECEIPT_CAMERA;
-  int status = receipt_report_differences(again->receipt, now, parts, again->path, ": ");
+  int status = receipt_report_differences(again->receipt, now, parts, again->path);
   vl_receipt_destroy(now);
   return status;
 }

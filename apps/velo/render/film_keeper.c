@@ -26,13 +26,15 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
   return result == VL_OK ? -1 : report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
-int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, const char *path, vlContext *context, const Job *job,
+int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *context, const Job *job,
                       const char *eye) {
+  const FilmClaim *claim = &plan->claims[view];
   memset(k, 0, sizeof *k);
-  if (!path) return -1;
+  if (!claim->path[0]) return -1;
   const OptionValue *every = &plan->receipt->arguments->values[RENDER_CHECKPOINT];
   const vlFilmDef *film = &plan->whole.film;
-  snprintf(k->path, sizeof k->path, "%s", path);
+  snprintf(k->path, sizeof k->path, "%s", claim->path);
+  k->lock = claim->lock;
   k->every = every->given ? every->number : EVERY;
   k->share = every->given ? 0 : film->errors || film->buckets ? SHARE_WITH_ERRORS : SHARE;
   memcpy(k->window, film->crop, sizeof k->window);
@@ -57,6 +59,7 @@ static vlResult join(FilmKeeper *k) {
 static vlResult begin_write(FilmKeeper *k, const vlFilm *film) {
   vlFilmWriteDef def = vl_default_film_write_def();
   def.receipt = k->receipt;
+  def.lock = k->lock;
   memcpy(def.window, k->window, sizeof def.window);
   k->written = vl_film_spp(film);
   return vl_film_write_begin(film, &def, k->path, &k->writer, &k->error);

@@ -5,20 +5,24 @@
 
 #include <pthread.h>
 
+#include "render/film_claim.h"
 #include "render/outputs.h"
 #include "render/receipt.h"
 
 /* Settings shared by all films of a command. */
 typedef struct FilmPlan {
-  const char *path;  /* path of the film file, with two eyes a pattern (pattern.h); null: no film files */
-  const char *from;  /* path of the film to continue; null: none */
-  vlSceneDefs whole; /* defs of the whole render, if the command renders a part of it */
+  const char *path;    /* path of the film file, with two eyes a pattern (pattern.h); null: no film files */
+  const char *from;    /* path of the film to continue; null: none */
+  bool overwrite;      /* the film that is there is not continued */
+  FilmClaim claims[2]; /* of the film files: of the camera or the left eye, of the right eye */
+  vlSceneDefs whole;   /* defs of the whole render, if the command renders a part of it */
   const ReceiptPlan *receipt;
   const Outputs *outputs;
 } FilmPlan;
 
 typedef struct FilmKeeper {
   char path[4096];    /* path of the film file; empty: none */
+  vlFilmLock *lock;   /* of the claim */
   double every;       /* seconds between two checkpoints */
   double share;       /* largest fraction of the time for checkpoints; 0: no limit */
   uint32_t window[4]; /* crop window of the whole render */
@@ -32,9 +36,9 @@ typedef struct FilmKeeper {
   vlError error;
 } FilmKeeper;
 
-/* path: the film file of this film, or null for none. eye: the eye that the film belongs to, or null for the camera.
- * Returns -1 or the exit code. */
-int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, const char *path, vlContext *context, const Job *job,
+/* view: of the plan's claims; if it has no path, no film is written. eye: the eye that the film belongs to, or null for
+ * the camera. Returns -1 or the exit code. */
+int film_keeper_start(FilmKeeper *keeper, const FilmPlan *plan, int view, vlContext *context, const Job *job,
                       const char *eye);
 /* Makes the receipt again for another range of samples. Returns -1 or the exit code. */
 int film_keeper_describe(FilmKeeper *keeper, const FilmPlan *plan, vlContext *context, const Job *job, const char *eye);

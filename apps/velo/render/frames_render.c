@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -90,21 +89,19 @@ static int develop(const Job *job, const vlFilm *film, vlImage **image) {
   return result == VL_OK ? STATUS_OK : report_reason(result, job->path, "the image cannot be made of the film");
 }
 
-/* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the caller then frees. */
+/* Gets the film of a view. It is the camera's film, cleared, or the film to continue, which the caller then frees. own
+ * null: only checks the film to continue. */
 static int open_film(Run *run, const Frame *frame, int view, Job *job, vlFilm **own) {
   const FilmPlan *plan = run->frames->films;
   const char *name = run->frames->view_names[view];
-  char path[4096] = "", from[4096] = "";
-  vl_film_clear(frame->camera->film);
+  if (own) vl_film_clear(frame->camera->film);
   run->film = frame->camera->film;
   if (!plan) return -1;
-  bool good = frames_path(run->frames, frame, plan->path, view, path, sizeof path) &&
-              (!plan->from || frames_path(run->frames, frame, plan->from, view, from, sizeof from));
-  if (!good) return report_failure(STATUS_IO, "%s: the file's name is too long", plan->path);
-  int status = film_keeper_start(&run->keeper, plan, path, run->context, job, *name ? name : NULL);
-  if (status >= 0 || !plan->from || access(from, F_OK) != 0) return status; /* an eye that was not begun */
-  status = continue_film(from, plan->receipt->arguments, run->keeper.receipt, run->context, job->defs, own);
-  if (*own) run->film = *own;
+  int status = film_keeper_start(&run->keeper, plan, view, run->context, job, *name ? name : NULL);
+  if (status < 0)
+    status =
+        continue_film(&plan->claims[view], plan->receipt->arguments, run->keeper.receipt, run->context, job->defs, own);
+  if (own && *own) run->film = *own;
   return status;
 }
 
@@ -124,17 +121,39 @@ static int render_film(Run *run, const char *place, int view, Job *job, FrameIma
   return run->layers ? channels_render(&image->channels[view], run->context, run->world, job, run->film) : STATUS_OK;
 }
 
-/* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a whole pass is done. */
-static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
+/* Makes the job of a view, with its camera. */
+static int make_view(Run *run, const Frame *frame, int view, Job *job) {
   char place[200];
   vlError error = {0};
-  vlFilm *own = NULL;
-  Job *job = &image->jobs[view];
   *job = frame->camera->job;
   frame_place(run, frame, place, sizeof place);
   vlResult result = frames_camera(run->frames, frame, view, &job->camera, &error);
   if (result != VL_OK) return report_error(&error, result, place);
-  int status = lens_autofocus(job, NULL, run->world);
+  return lens_autofocus(job, NULL, run->world);
+}
+
+/* Checks the films of both eyes before the first is rendered. */
+static int check_films(Run *run) {
+  const Frame frame = frames_at(run->frames, 0);
+  int status = -1;
+  for (int view = 0; view < run->frames->views && run->frames->films && status < 0; view++) {
+    Job job;
+    status = make_view(run, &frame, view, &job);
+    vlSceneDefs defs = *job.defs; /* continuing changes them */
+    job.defs = &defs;
+    if (status < 0) status = open_film(run, &frame, view, &job, NULL);
+    film_keeper_free(&run->keeper);
+  }
+  return status;
+}
+
+/* Renders one eye's image and channels. When interrupted: 128 + signal, with an image if a whole pass is done. */
+static int render_view(Run *run, const Frame *frame, int view, FrameImage *image) {
+  char place[200];
+  vlFilm *own = NULL;
+  Job *job = &image->jobs[view];
+  frame_place(run, frame, place, sizeof place);
+  int status = make_view(run, frame, view, job);
   if (status >= 0) return status;
   job->defs->render.progress = on_progress;
   job->defs->render.progress_user = run;
@@ -198,6 +217,8 @@ int frames_render(Frames *frames, vlContext *context, const vlWorld *world, cons
              .count = frames_count(frames),
              .start = monotonic_seconds()};
   for (int i = 0; i < outputs->count; i++) run.layers = run.layers || output_holds_layers(outputs->paths[i]);
+  int checked = check_films(&run);
+  if (checked >= 0) return checked;
   FrameWriter *writer = frame_writer_start(context, world, frames, outputs);
   if (!writer) return report_error(NULL, VL_ERROR_MEMORY, NULL);
   signals_remember();

@@ -44,9 +44,12 @@ const Option render_options[] = {
     {RENDER_CROPWINDOW, 0, "cropwindow", OPTION_FRACTIONS, "x0,x1,y0,y1",
      "crop window in fractions of the image size, in pbrt's order", 0, 0, NULL},
     {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE",
-     "write the film to this file, during the render and at its end; a render that is interrupted can be continued "
-     "from it. Without -o no image is written",
+     "write the film to this file, during the render and at its end. If it is there already, it is continued: the "
+     "command of an interrupted render is simply repeated. The film of another render is refused. Without -o no image "
+     "is written",
      0, 0, NULL},
+    {RENDER_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL,
+     "begin the film of --film anew; the film that is there is replaced at the first checkpoint", 0, 0, NULL},
     {RENDER_CHECKPOINT, 0, "checkpoint", OPTION_TIME, "TIME",
      "time between two checkpoints, at which the film is written during the render; default 30s, and longer where "
      "checkpoints would take more than 0.5 % of the time",

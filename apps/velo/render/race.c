@@ -17,9 +17,27 @@ int race_check(const Render *render, const Arguments *arguments) {
   return race_check_options(arguments);
 }
 
+/* The film that is there names the tracer that won the race of its first samples. */
+static void take_films_own(Render *render, const FilmClaim *claim) {
+  Job *job = &render->job;
+  vlRenderDef *own = &job->defs->render, *whole = &render->film_plan.whole.render;
+  film_claim_take_tracer(claim, own);
+  whole->tracer = own->tracer, whole->light_paths = own->light_paths;
+  for (uint32_t i = 0; render->many && i < render->frames.camera_count; i++) {
+    Job *camera = &render->frames.cameras[i].job;
+    camera->defs->render.tracer = own->tracer, camera->defs->render.light_paths = own->light_paths;
+    camera->raced = true;
+  }
+  job->race = RACE_NONE;
+  job->raced = true;
+}
+
 int race_plan(Render *render, const Arguments *arguments) {
+  const FilmClaim *claims = render->film_plan.claims;
   bool repeats = render->resumed.path || render->again.receipt;
   if (race_is_asked(arguments) || !repeats) render->job.race = race_kind(&render->film_plan.whole, arguments);
+  for (int i = 0; i < 2 && render->job.race != RACE_NONE; i++)
+    if (claims[i].earlier) take_films_own(render, &claims[i]);
   return -1;
 }
 

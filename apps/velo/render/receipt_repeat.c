@@ -63,12 +63,17 @@ static bool name_difference(void *user, const char *text) {
   return true;
 }
 
-int receipt_report_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts, const char *path,
-                               const char *refusal) {
+bool receipt_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts, char *text, size_t size) {
   Difference difference = {.count = 0};
   vl_receipt_compare(then, now, parts, name_difference, &difference);
-  if (!difference.count) return -1;
   char more[40] = "";
   if (difference.more) snprintf(more, sizeof more, "; and %u more", difference.more);
-  return report_failure(STATUS_SCENE, "%s%s%s%s", path, refusal, difference.text, more);
+  snprintf(text, size, "%s%s", difference.text, more);
+  return difference.count > 0;
+}
+
+int receipt_report_differences(const vlReceipt *then, const vlReceipt *now, uint32_t parts, const char *path) {
+  char text[600];
+  if (!receipt_differences(then, now, parts, text, sizeof text)) return -1;
+  return report_failure(STATUS_SCENE, "%s: %s", path, text);
 }

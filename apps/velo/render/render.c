@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/context.h"
@@ -110,6 +111,7 @@ static int prepare(Render *render, const Arguments *arguments) {
                                          : v[RENDER_CONTINUE].given ? v[RENDER_CONTINUE].text
                                                                     : NULL,
                                  .from = render->resumed.path,
+                                 .overwrite = v[RENDER_OVERWRITE].given,
                                  .receipt = &render->receipt,
                                  .outputs = &render->outputs};
   outputs->half = v[RENDER_HALF].given;
@@ -124,6 +126,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = frames_check(arguments, outputs);
   if (status < 0) status = denoised_choose(&render->denoised, arguments, outputs);
   if (status < 0) status = outputs_check_folders(outputs);
+  if (status < 0) status = film_claim_check(v[RENDER_OVERWRITE].given, v[RENDER_FILM].text, render->film_plan.from);
   const Outputs film = {
       .paths = {render->film_plan.path}, .count = render->film_plan.path ? 1 : 0, .patterns = outputs->patterns};
   if (status < 0) status = outputs_check_folders(&film);
@@ -240,6 +243,31 @@ static int build_world(Render *render, const char *path) {
   return -1;
 }
 
+static bool film_name(const Render *render, const char *pattern, int view, char *path, size_t size) {
+  if (!render->many) return snprintf(path, size, "%s", pattern) < (int)size;
+  const Frame frame = frames_at(&render->frames, 0);
+  return frames_path(&render->frames, &frame, pattern, view, path, size);
+}
+
+/* Locks the film files, and opens the films that are there. */
+static int claim_films(Render *render, const Arguments *arguments) {
+  FilmPlan *plan = &render->film_plan;
+  if (!plan->path || arguments->values[RENDER_DRY_RUN].given) return -1;
+  int status = -1, views = render->many ? render->frames.views : 1;
+  for (int view = 0; view < views && status < 0; view++) {
+    char path[4096], from[4096];
+    if (!film_name(render, plan->path, view, path, sizeof path) ||
+        !film_name(render, plan->from ? plan->from : "", view, from, sizeof from))
+      return report_failure(STATUS_IO, "%s: the file's name is too long", plan->path);
+    if (render->many && access(from, F_OK) != 0) *from = 0; /* an eye that was not begun */
+    status = film_claim(&plan->claims[view], render->context, path, from, plan->overwrite);
+  }
+  if (status >= 0 || render->many) return status;
+  film_claim_take(&plan->claims[0], &render->job.defs->film);
+  plan->whole.film.errors = render->job.defs->film.errors;
+  return -1;
+}
+
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   const bool kept = render->shared && render->shared->scene;
@@ -284,7 +312,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
-  status = race_plan(render, arguments);
+  status = claim_films(render, arguments);
+  if (status < 0) status = race_plan(render, arguments);
   if (status < 0) status = build_world(render, path);
   if (status >= 0) return status;
   vl_context_record_files(render->context, false);
@@ -339,6 +368,7 @@ static void free_render(Render *render) {
   frames_free(&render->frames);
   channels_free(&render->channels);
   film_keeper_free(&render->keeper);
+  for (int i = 0; i < 2; i++) film_claim_release(&render->film_plan.claims[i]);
   vl_film_destroy(render->film);
   if (!shared) vl_world_destroy(render->world);
   if (!shared || render->scene != shared->scene) vl_scene_destroy(render->scene);

@@ -232,11 +232,10 @@ static int write_last(Render *render, OutputStage *stage) {
 
 /* Makes the film, or reads the film to continue. */
 static int open_film(Render *render) {
-  const char *from = render->resumed.path;
-  int status = film_keeper_start(&render->keeper, &render->film_plan, render->film_plan.path, render->context,
-                                 &render->job, NULL);
-  if (status < 0 && from)
-    status = continue_film(from, render->receipt.arguments, render->keeper.receipt, render->context, render->job.defs,
+  const FilmClaim *claim = &render->film_plan.claims[0];
+  int status = film_keeper_start(&render->keeper, &render->film_plan, 0, render->context, &render->job, NULL);
+  if (status < 0)
+    status = continue_film(claim, render->receipt.arguments, render->keeper.receipt, render->context, render->job.defs,
                            &render->film);
   if (status >= 0 || render->film) return status;
   vlResult result = vl_film_create(render->context, &render->job.defs->film, &render->film);
@@ -261,6 +260,8 @@ int run_image(Render *render) {
   if (opened >= 0) return opened;
   render->time_limit = job->defs->render.time_limit;
   render->begun_spp = vl_film_spp(render->film);
+  if (render->film_plan.claims[0].earlier)
+    report_note("%s is continued from %u samples per pixel on", render->film_plan.path, render->begun_spp);
   render->render_start = monotonic_seconds();
   progress_start(&render->progress, render->time_limit);
   limit_time(render);

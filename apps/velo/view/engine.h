@@ -14,10 +14,13 @@ typedef struct EngineDef {
   bool lecture;               /* pages choose among the scenes of the lecture; nothing is saved */
   const Arguments *arguments; /* of the command line */
   const char *film_path;      /* to write the film to at the end; null: none */
+  vlFilmLock *film_lock;      /* of film_path */
 } EngineDef;
 
 /* Loads the scene. Returns -1 with *engine, or the exit code after reporting the error. */
 int engine_create(const EngineDef *def, Engine **engine);
+/* The file beside a film that holds its camera. */
+void engine_film_camera(const char *film_path, char *path, size_t size);
 /* The calls for the server of this engine. */
 ServerCalls engine_calls(Engine *engine);
 /* Starts the thread that renders. Returns -1 or the exit code. */

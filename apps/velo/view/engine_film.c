@@ -26,6 +26,10 @@ static bool is_scenes_own(const Engine *e) {
   return memcmp(&a->def, &b->def, sizeof a->def) == 0 && memcmp(&a->made, &b->made, sizeof a->made) == 0;
 }
 
+void engine_film_camera(const char *film_path, char *path, size_t size) {
+  snprintf(path, size, "%s.camera.json", film_path);
+}
+
 /* Writes the camera, and replaces the options that give it. Returns -1, or the exit code after reporting the error. */
 static int take_camera(const Engine *e, FilmCommand *c) {
   static const int replaced[] = {
@@ -36,7 +40,7 @@ static int take_camera(const Engine *e, FilmCommand *c) {
   vlCameraFileDef def = vl_default_camera_file_def();
   vlError error = {0};
   def.dialect = VL_CAMERA_DIALECT_VELO;
-  snprintf(c->camera, sizeof c->camera, "%s.camera.json", e->def.film_path);
+  engine_film_camera(e->def.film_path, c->camera, sizeof c->camera);
   vlResult result = vl_camera_write(e->def.context, c->camera, &def, &record, &error);
   if (result != VL_OK) return report_error(&error, result, c->camera);
   for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++) set_option(c, replaced[i], NULL);
@@ -93,6 +97,7 @@ int engine_write_film(Engine *e) {
   if (status >= 0) return status;
   vlFilmWriteDef def = vl_default_film_write_def();
   def.receipt = receipt;
+  def.lock = e->def.film_lock;
   vlResult result = vl_film_write(e->film, &def, path, &error);
   vl_receipt_destroy(receipt);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, path);

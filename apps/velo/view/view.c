@@ -75,6 +75,7 @@ const Option view_options[] = {
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel at which the image is done", 1, 1 << 24, NULL},
     {RENDER_FILM, 0, "film", OPTION_TEXT, "FILE", "write the film of the last image to this file at the end", 0, 0,
      NULL},
+    {RENDER_OVERWRITE, 0, "overwrite", OPTION_FLAG, NULL, "replace a film that is there already", 0, 0, NULL},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
      "image size in pixels; the field of view across the smaller side is kept", 1, 65536, NULL},
     {RENDER_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "render only these pixels at first", 0, 0, NULL},

@@ -10,6 +10,8 @@
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/film_claim.h"
+#include "render/job.h"
 #include "view/engine.h"
 #include "view/lecture.h"
 #include "view/view.h"
@@ -58,11 +60,27 @@ static void wait_for_end(void) {
   }
 }
 
+/* Locks the file of --film, which must not be there already. Returns -1 or the exit code. */
+static int claim_film(FilmClaim *claim, vlContext *context, const Arguments *arguments) {
+  const char *path = arguments->values[RENDER_FILM].text;
+  const bool overwrite = arguments->values[RENDER_OVERWRITE].given;
+  char camera[4200];
+  int status = film_claim_check(overwrite, path, NULL);
+  if (status >= 0 || !path) return status;
+  status = film_claim(claim, context, path, "", overwrite);
+  if (status >= 0 || overwrite) return status;
+  engine_film_camera(path, camera, sizeof camera);
+  if (claim->earlier) return film_claim_refuse("%s is a film already", path);
+  return access(camera, F_OK) == 0 ? film_claim_refuse("%s, where its camera is written, is there already", camera)
+                                   : -1;
+}
+
 int view_run(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlContext *context = NULL;
   Engine *engine = NULL;
   Server *server = NULL;
+  FilmClaim claim = {.lock = NULL};
   report_setup(false, v[RENDER_QUIET].given ? REPORT_QUIET : REPORT_NORMAL);
   bool lecture = v[VIEW_LECTURE].given;
   const EngineDef def = {.path = lecture ? lecture_first_scene : arguments->operands[0],
@@ -70,9 +88,11 @@ int view_run(const Arguments *arguments) {
                          .arguments = arguments,
                          .film_path = v[RENDER_FILM].given ? v[RENDER_FILM].text : NULL};
   int status = open_context(arguments, &context);
+  if (status < 0) status = claim_film(&claim, context, arguments);
   if (status < 0) {
     EngineDef complete = def;
     complete.context = context;
+    complete.film_lock = claim.lock;
     status = engine_create(&complete, &engine);
   }
   if (status < 0) {
@@ -105,6 +125,7 @@ int view_run(const Arguments *arguments) {
   int stopped = engine ? engine_stop(engine) : STATUS_OK;
   server_stop(server);
   engine_destroy(engine);
+  film_claim_release(&claim);
   report_memory_of(NULL, 0);
   vl_context_destroy(context);
   return status == STATUS_OK ? stopped : status;

@@ -29,9 +29,9 @@ find_velo() {
 # is_count TEXT: a number from 1 on.
 is_count() { case $1 in '' | *[!0-9]* | 0*) return 1 ;; *) [ ${#1} -le 9 ] ;; esac; }
 
-# split_words WORD...: sets words (for every part), outputs, film, frames (1: a trajectory; its parts are frames).
+# split_words WORD...: sets words (for every part), outputs, film, overwrite, frames (1: a trajectory; its parts are frames).
 split_words() {
-  words=() outputs=() film='' frames=0
+  words=() outputs=() film='' overwrite=() frames=0
   while [ $# -gt 0 ]; do
     local word=$1 value='' own=1 # own: its value is the next word
     case $word in
@@ -44,6 +44,11 @@ split_words() {
         if [ -z "$value" ]; then die 2 "$word needs a value"; fi
         if [ "$word" = --film ]; then film=$value; else outputs+=("$value"); fi
         shift $((1 + own))
+        continue
+        ;;
+      --overwrite)
+        overwrite=(--overwrite) # for the film; the parts have films of their own
+        shift
         continue
         ;;
       --trajectory) frames=1 ;;
@@ -69,9 +74,13 @@ split_words() {
 # is_done I: whether part I is in the folder.
 is_done() { [ -f "$folder/part-$1.film" ] || [ -f "$folder/part-$1.done" ]; }
 
-# Makes the folder of the parts, or goes on with it. Sets missing: the parts that are not done.
+# Makes the folder of the parts, or goes on with it. Sets missing: the parts that are not done. A film that is there
+# before anything is rendered is refused here: cluster/merge would refuse it at the end, unless it is of the same render.
 open_folder() {
   folder=$(realpath -m "$folder")
+  if [ -n "$film" ] && [ -s "$film" ] && [ ! -f "$folder/plan" ] && [ ${#overwrite[@]} -eq 0 ]; then
+    die 2 "--film: $film is there already; --overwrite replaces it"
+  fi
   case $folder in *%*) die 2 "--folder \"$folder\": must have no %" ;; esac
   mkdir -p "$folder/log" || die 5 "cannot make the folder $folder"
   local plan
@@ -105,5 +114,5 @@ arrange_outputs() {
     case $place in */*) place=${place%/*}/ ;; *) place='' ;; esac
     shard+=(-o "$folder/frames/$i/${output#"$place"}")
   done
-  if [ -n "$film" ]; then images+=(--film "$film"); fi
+  if [ -n "$film" ]; then images+=(--film "$film" "${overwrite[@]}"); fi
 }

@@ -16,6 +16,7 @@ rounds limits 4 limit
 rounds vanished_folders 3 folder
 rounds closed_output 4 stdout
 rounds killed_films 2 kill
+rounds films_that_several_want 8 owner
 films() { check "film_$1" "$VELO_SOURCE_DIR/tools/check_faults" --velo "$VELO" --rounds "$2" --only "$1" --seed 5 --output film; }
 films signal 3
 films space 3

@@ -83,6 +83,16 @@ $render scene.pbrt $small --noise 1.5% -o finer.exr
 $render scene.pbrt $noise --film s.film --overwrite
 check finer $render --continue s.film --noise 1.5% --spp 65536 -o b.exr
 same "a lower threshold" finer.exr b.exr
+# The same film ended by its --spp: a threshold on the command line of --continue is reached, unless an --spp there limits.
+$render scene.pbrt $small --noise 5% --spp 16 --time 10m --film s.film --overwrite
+check "an spp of the film does not limit" $VELO render --continue s.film --noise 1.5% -o b.exr
+expect_text "an spp of the film: below" 'all blocks are below the noise of 1.5 %'
+same "an spp of the film: the image" finer.exr b.exr
+$render scene.pbrt $small --noise 5% --spp 16 --film s.film --overwrite
+check "an spp of this command limits" $VELO render --continue s.film --noise 1.5% --spp 24 -o b.exr
+expect_text "an spp of this command: above" 'blocks are still above the noise of 1.5 %'
+check "the command repeated with a lower threshold" $render scene.pbrt $small --noise 1.5% --film s.film -o b.exr
+same "the command repeated: the image" finer.exr b.exr
 # a crop along blocks has the pixels of the whole
 "$VELO" image convert a.exr part.pfm --crop 32,32,96,64
 $render scene.pbrt $noise --crop 32,32,96,64 -o crop.pfm

@@ -96,6 +96,12 @@ check parallel_tiles "$parallel" --parts 3 --by tiles "${words[@]}" -o tiled.exr
 same parallel_tiles_same_bytes tiled.exr one.exr
 check parallel_film_same "$VELO" render "${words[@]}" --film straight.film -o tiled.exr
 same parallel_film_same_bytes kept.film straight.film
+expect_code 2 parallel_film_there "$parallel" --parts 3 "${words[@]}" --film kept.film
+expect_text parallel_film_there_says 'kept.film is there already'
+same parallel_film_stays kept.film straight.film
+check parallel_film_overwritten "$parallel" --parts 2 "${words[@]}" --film kept.film --overwrite --seed 3
+check parallel_film_other "$VELO" render "${words[@]}" --film other.film --seed 3
+same parallel_film_other_bytes kept.film other.film
 check parallel_frames "$parallel" --parts 2 scene.pbrt --trajectory poses.csv --spp 2 --quiet -o many/%04d.exr
 # Hosts: an ssh that runs its command here; one host is dead, its parts are tried on the other.
 mkdir bin

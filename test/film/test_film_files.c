@@ -491,6 +491,71 @@ static void memory_of_json_runs_out(void **state) {
   assert_true(total > 100);
 }
 
+/* A lock is one for all names of a file; who writes without it is refused. A leftover of a killed process locks
+ * nothing. */
+static void one_writer_at_a_time(void **state) {
+  (void)state;
+  vlError error = {0};
+  vlFilmLock *lock = NULL, *other = NULL;
+  vlFilm *film = make_film(context, PLAIN, NULL, 0, 4);
+  vlFilmWriteDef def = vl_default_film_write_def();
+  const char *path = path_of("locked.film"), *alias = path_of("alias.film");
+  assert_int_equal(symlink("locked.film", alias), 0);
+  assert_int_equal(vl_film_lock(context, path, &lock, &error), VL_OK);
+  assert_non_null(lock);
+  assert_int_equal(vl_film_lock(context, alias, &other, &error), VL_OK);
+  assert_null(other);
+  assert_int_equal(vl_film_write(film, NULL, alias, &error), VL_ERROR_IO);
+  assert_non_null(strstr(error.message, "another process is writing it"));
+  vl_remove_leftovers(path); /* leaves a lock that is held */
+  assert_int_equal(vl_film_lock(context, path, &other, &error), VL_OK);
+  assert_null(other);
+  def.lock = lock;
+  for (int i = 0; i < 2; i++) assert_int_equal(vl_film_write(film, &def, path, &error), VL_OK);
+  assert_int_equal(vl_film_lock(context, path, &other, &error), VL_OK);
+  assert_null(other); /* the file was replaced, its lock stays */
+  const char *const parts[1] = {path};
+  assert_int_equal(vl_film_merge(context, parts, 1, NULL, path, &error), VL_ERROR_IO);
+  vl_film_unlock(lock);
+  assert_int_equal(vl_film_write(film, NULL, path, &error), VL_OK);
+  assert_int_equal(vl_film_merge(context, parts, 1, NULL, path, &error), VL_OK);
+  vl_film_unlock(NULL);
+  vl_film_destroy(film);
+  assert_int_equal(unlink(alias), 0);
+}
+
+/* A merge replaces what its result holds, and nothing else. */
+static void a_merge_loses_nothing(void **state) {
+  (void)state;
+  vlError error = {0};
+  vlFilmMergeDef over = vl_default_film_merge_def();
+  over.overwrite = true;
+  const char *first = path_of("first.film"), *last = path_of("last.film"), *all = path_of("result.film");
+  write_film(first, PLAIN, NULL, 0, 5);
+  write_film(last, PLAIN, NULL, 5, SPP);
+  write_film(all, PLAIN, NULL, 0, 5);
+  const char *const both[2] = {first, last};
+  assert_int_equal(vl_film_merge(context, both + 1, 1, NULL, all, &error), VL_ERROR_SCENE);
+  assert_non_null(strstr(error.message, "is not replaced: it has samples"));
+  assert_true(same_bytes(first, all));
+  assert_int_equal(vl_film_merge(context, both, 2, NULL, all, &error), VL_OK);
+  assert_int_equal(vl_film_merge(context, both, 2, NULL, all, &error), VL_OK);
+  assert_int_equal(vl_film_merge(context, both, 1, NULL, all, &error), VL_ERROR_SCENE);
+  assert_int_equal(vl_film_merge(context, both, 1, &over, all, &error), VL_OK);
+  assert_true(same_bytes(first, all));
+  write_film(all, ERRORS, NULL, 0, 5); /* with error sums: another film */
+  assert_int_equal(vl_film_merge(context, both, 2, NULL, all, &error), VL_ERROR_SCENE);
+  FILE *file = fopen(all, "wb");
+  assert_non_null(file);
+  fputs("not a film", file);
+  fclose(file);
+  assert_int_equal(vl_film_merge(context, both, 2, &over, all, &error), VL_ERROR_SCENE);
+  file = fopen(all, "wb"); /* an empty file holds nothing */
+  assert_non_null(file);
+  fclose(file);
+  assert_int_equal(vl_film_merge(context, both, 2, NULL, all, &error), VL_OK);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_written_is_read),
                                      cmocka_unit_test(compared_noise),
@@ -501,6 +566,8 @@ int main(void) {
                                      cmocka_unit_test(no_damage_goes_unseen),
                                      cmocka_unit_test(impossible_sums_are_refused),
                                      cmocka_unit_test(files_that_cannot_be_written),
+                                     cmocka_unit_test(one_writer_at_a_time),
+                                     cmocka_unit_test(a_merge_loses_nothing),
                                      cmocka_unit_test(memory_runs_out),
                                      cmocka_unit_test(memory_of_json_runs_out)};
   return cmocka_run_group_tests(tests, begin, end);

@@ -17,7 +17,9 @@ static void take_options(Continue *c, const Arguments *given, const vlReceipt *r
   a->channels_later = given->values[RENDER_CHANNELS].given && !a->values[RENDER_CHANNELS].given;
   for (const Option *option = render_options; option->name; option++)
     if (given->values[option->id].given) a->values[option->id] = given->values[option->id];
-  if (given->values[RENDER_TIME].given && !given->values[RENDER_SPP].given) a->values[RENDER_SPP].given = false;
+  /* --time and --noise say when the render ends; the --spp of the film does so no longer */
+  bool ends = given->values[RENDER_TIME].given || given->values[RENDER_NOISE].given;
+  if (ends && !given->values[RENDER_SPP].given) a->values[RENDER_SPP].given = false;
   receipt_take_names(a, given);
   const char *output;
   bool part =

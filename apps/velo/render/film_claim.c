@@ -78,12 +78,13 @@ static const char *word_after(const vlReceipt *receipt, const char *option) {
   return NULL;
 }
 
-void film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render) {
+bool film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render) {
   static const vlTracer raced[] = {VL_TRACER_VOLPATH, VL_TRACER_BIDIRECTIONAL, VL_TRACER_MERGING};
   const vlReceipt *receipt = vl_film_file_receipt(claim->earlier);
-  if (!receipt) return;
+  if (!receipt) return false;
   const char *name = word_after(receipt, "--tracer"), *paths = word_after(receipt, "--light-paths");
   for (size_t i = 0; i < sizeof raced / sizeof *raced && name; i++)
     if (strcmp(name, kind_name("tracers", (int)raced[i])) == 0) render->tracer = raced[i];
   if (paths) render->light_paths = (uint32_t)strtoul(paths, NULL, 10);
+  return name || paths;
 }

@@ -24,7 +24,8 @@ int film_claim_check(bool overwrite, const char *film, const char *from);
 /* Settings of the earlier film that the command leaves open: sums of errors, which it may have for outputs of another
  * command. */
 void film_claim_take(const FilmClaim *claim, vlFilmDef *film);
-/* Takes the tracer and the number of light paths, which a race would choose, from the earlier film. */
-void film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render);
+/* Takes the tracer and the number of light paths, which a race would choose, from the earlier film. Returns whether its
+ * command names them. */
+bool film_claim_take_tracer(const FilmClaim *claim, vlRenderDef *render);
 
 #endif

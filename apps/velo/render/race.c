@@ -21,15 +21,14 @@ int race_check(const Render *render, const Arguments *arguments) {
 static void take_films_own(Render *render, const FilmClaim *claim) {
   Job *job = &render->job;
   vlRenderDef *own = &job->defs->render, *whole = &render->film_plan.whole.render;
-  film_claim_take_tracer(claim, own);
+  job->race = RACE_NONE;
+  job->raced = film_claim_take_tracer(claim, own);
   whole->tracer = own->tracer, whole->light_paths = own->light_paths;
   for (uint32_t i = 0; render->many && i < render->frames.camera_count; i++) {
     Job *camera = &render->frames.cameras[i].job;
     camera->defs->render.tracer = own->tracer, camera->defs->render.light_paths = own->light_paths;
-    camera->raced = true;
+    camera->raced = job->raced;
   }
-  job->race = RACE_NONE;
-  job->raced = true;
 }
 
 int race_plan(Render *render, const Arguments *arguments) {

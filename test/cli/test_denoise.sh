@@ -35,6 +35,43 @@ assert own_clean < own / 2 and clean < own_clean and clean < raw, (clean, raw, o
 PY
 check crop "$VELO" render room.pbrt --spp 4 --crop 8,4,40,30 -o crop.png --denoise crop_clean.png
 
+# A metered exposure is one for both: of a model with a lamp, and of --exposure auto.
+cat >lamp.gltf <<'GLTF'
+{"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_lights_punctual"], "scene": 0, "scenes": [{"nodes": [0, 1]}],
+ "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 90}]}},
+ "nodes": [{"mesh": 0}, {"rotation": [-0.3, 0.2, 0, 0.93], "extensions": {"KHR_lights_punctual": {"light": 0}}}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}],
+ "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
+GLTF
+for exposure in "" "--exposure auto"; do
+  # shellcheck disable=SC2086
+  check "metered$exposure" "$VELO" render lamp.gltf --resolution 32x32 --spp 8 $exposure -o raw.png --denoise clean.png
+  check "metered_once$exposure" test "$(grep -c 'exposed by' "$work/.err")" = 1
+  run "$VELO" image diff raw.png clean.png --json
+  if printf '%s' "$out" | python3 -c 'import json, sys; assert 0.98 < json.load(sys.stdin)["meanratio"] < 1.02'; then pass "same_exposure$exposure"; else
+    fail "same_exposure$exposure"
+    show diff
+  fi
+done
+
+# Stopped while it denoises: the image is there, no denoised copy is, and none is said to be.
+for try in 1 2 3 4 5 6; do
+  rm -f stopped.exr stopped_clean.exr
+  "$VELO" render room.pbrt --resolution $((400 + 200 * try))x300 --spp 2 -o stopped.exr --denoise stopped_clean.exr >said 2>&1 &
+  process=$!
+  while [ ! -e stopped.exr ] && kill -0 $process 2>/dev/null; do sleep 0.01; done
+  kill -TERM $process 2>/dev/null
+  wait $process
+  code=$?
+  [ -e stopped_clean.exr ] || break
+done
+check stopped_code test "$code" = 143
+check stopped_has_the_image test -s stopped.exr
+check stopped_no_copy test ! -e stopped_clean.exr
+check stopped_says sh -c 'grep -q "wrote stopped.exr" said && ! grep -q "wrote.*stopped_clean" said && grep -q "before stopped_clean.exr was done" said'
+
 expect_code 2 one_sample "$VELO" render room.pbrt --spp 1 -o a.exr --denoise b.exr
 expect_code 2 same_file "$VELO" render room.pbrt --spp 4 -o a.exr --denoise a.exr
 expect_code 2 many "$VELO" render room.pbrt --spp 4 -o a.exr --denoise b.exr --stereo parallel

@@ -1,6 +1,7 @@
 /* render/denoised.c: see denoised.h. */
 #include "render/denoised.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -111,6 +112,15 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   return result;
 }
 
+void denoised_share_exposure(Denoised *d, Outputs *image) {
+  if (!d->outputs.count) return;
+  d->exposure = NAN;
+  if (image->meter && !image->shared) image->shared = &d->exposure;
+  d->outputs.meter = image->meter;
+  d->outputs.exposure = image->exposure;
+  d->outputs.shared = image->shared;
+}
+
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
                    OutputStage stage) {
   if (!d->outputs.count) return STATUS_OK;
@@ -121,11 +131,15 @@ int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const 
   if (result == VL_OK) result = vl_denoise(image, &d->def, &clean, &stats, &error);
   if (result == VL_OK) result = denoise_name(clean, d->def.denoiser);
   int status = STATUS_OK;
-  if (result == VL_CANCELLED) status = 128 + signals_pending();
+  if (result == VL_CANCELLED) {
+    status = 128 + signals_pending();
+    report_note("interrupted before %s was done", d->outputs.paths[0]);
+  }
   if (result != VL_OK && result != VL_CANCELLED) status = report_error(&error, result, d->outputs.paths[0]);
   if (result == VL_OK) {
     denoise_report(&stats);
     status = outputs_write(context, &d->outputs, clean, vl_film_spp(film), stage);
+    d->written = status == STATUS_OK;
   }
   vl_image_destroy(image);
   vl_image_destroy(clean);

@@ -7,6 +7,8 @@
 
 typedef struct Denoised {
   Outputs outputs; /* count 0: --denoise is not given */
+  float exposure;  /* that of the image, where each of both would be metered */
+  bool written;
   vlDenoiseDef def;
 } Denoised;
 
@@ -21,8 +23,11 @@ uint64_t denoised_memory(uint64_t pixels);
 /* Estimated seconds of denoised_write for an image of so many pixels with `spp` samples, from those that one sample per
  * pixel and the writing of an image took, on so many threads. */
 double denoised_seconds(uint64_t pixels, uint32_t spp, double sample, double writing, uint32_t threads);
-/* Renders the features, denoises the film's image and writes the result. Returns STATUS_OK, or the exit code after
- * reporting the error. */
+/* Makes the copy share the exposure of the image, which is known after its options are read: call before the image is
+ * written. */
+void denoised_share_exposure(Denoised *d, Outputs *image);
+/* Renders the features, denoises the film's image and writes the result; d->written tells whether it is there. Returns
+ * STATUS_OK, or the exit code after reporting the error. */
 int denoised_write(Denoised *d, vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film,
                    OutputStage stage);
 

@@ -201,10 +201,13 @@ static void report_end(const Run *run, uint32_t written, int status) {
   char time[32], speed[32];
   format_seconds(time, sizeof time, seconds);
   format_count(speed, sizeof speed, seconds > 0 ? (double)t->paths / seconds : 0);
+  const bool images = run->outputs->count && written;
   report_note("%u of %u frames%s in %s, %u spp, %s paths/s; %s%s%s", written, run->count,
               run->frames->views == 2 ? " (two eyes)" : "", time, t->spp, speed,
-              run->outputs->count ? "wrote " : "kept in films", run->outputs->count ? run->outputs->paths[0] : "",
-              run->outputs->count > 1 ? ", ..." : "");
+              images                ? "wrote "
+              : run->outputs->count ? "no image is written"
+                                    : "kept in films",
+              images ? run->outputs->paths[0] : "", images && run->outputs->count > 1 ? ", ..." : "");
 }
 
 int frames_render(Frames *frames, vlContext *context, const vlWorld *world, const Outputs *outputs,

@@ -194,7 +194,7 @@ int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, ui
   float exposure = outputs->exposure, *shared = outputs->shared;
   const bool known = !outputs->meter || (shared && !isnan(*shared));
   if (outputs->meter) exposure = known ? *shared : exposure_meter(image);
-  if (outputs->meter && shared && stage == OUTPUT_FINISHED) *shared = exposure;
+  if (outputs->meter && shared && stage != OUTPUT_PROGRESS) *shared = exposure;
   vlImage *displays[2] = {NULL, NULL}; /* made when the first file needs it: without and with alpha */
   int status = STATUS_OK;
   for (int i = 0; i < outputs->count; i++) {

@@ -50,7 +50,7 @@ static void list_files(const Render *render, OutputStage stage, char *text, size
     size_t n = strlen(text);
     snprintf(text + n, size - n, "%s%s", i ? ", " : "", output_written(&render->outputs, i, stage, part, sizeof part));
   }
-  if (render->denoised.outputs.count && stage != OUTPUT_PROGRESS) {
+  if (render->denoised.written && stage != OUTPUT_PROGRESS) {
     size_t n = strlen(text);
     snprintf(text + n, size - n, ", %s", output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
   }
@@ -175,7 +175,7 @@ static void report_result(const Render *render, const vlRenderStats *stats, Outp
     json_begin(&json, "files", '[');
     for (int i = 0; i < outputs->count && spp; i++)
       json_text(&json, NULL, output_written(outputs, i, stage, part, sizeof part));
-    if (render->denoised.outputs.count && spp)
+    if (render->denoised.written)
       json_text(&json, NULL, output_written(&render->denoised.outputs, 0, stage, part, sizeof part));
     if (render->film_plan.path && spp) json_text(&json, NULL, render->film_plan.path);
     json_end(&json, ']');
@@ -223,8 +223,8 @@ static int write_last(Render *render, OutputStage *stage) {
       written = channels_write_ids(&render->channels, NULL, render->world,
                                    output_written(&render->outputs, i, *stage, part, sizeof part));
   }
+  denoised_share_exposure(&render->denoised, &render->outputs);
   int code = write_image(render, *stage);
-  render->denoised.outputs.meter = render->outputs.meter;
   if (code == STATUS_OK && status == STATUS_OK)
     code = denoised_write(&render->denoised, render->context, render->world, &render->job, render->film, *stage);
   return code != STATUS_OK ? code : written != STATUS_OK ? written : status;

@@ -261,6 +261,14 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   return VL_OK;
 }
 
+vlResult vl_context_create_quiet(const vlContext *context, vlContext **result) {
+  vlContextDef def = context->def;
+  def.log = NULL;
+  def.threads = 1;
+  def.sandbox = (const char *const *)context->sandbox;
+  return vl_context_create(&def, result);
+}
+
 void vl_context_destroy(vlContext *context) {
   if (!context) return;
   if (!context->def.parallel_for) vl_pool_stop(&context->pool);

@@ -55,4 +55,7 @@ void vl_parallel_for_at(vlContext *context, const vlLoopDef *def, uint32_t count
 /* The same with the default def. */
 void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, void *loop_user);
 
+/* Creates a context like this one that has one thread and logs nothing. */
+vlResult vl_context_create_quiet(const vlContext *context, vlContext **result);
+
 #endif

@@ -33,4 +33,9 @@ VL_SCENE_FORMATS(VL_DECLARE_IMPORT)
 vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
                                vlError *error);
 
+/* The same with the text of included files: pairs of a name, as Include gives it, and its text. Such a file need not
+ * exist; others are read from the disk. */
+vlResult vl_import_pbrt_texts(vlScene *scene, const char *path, const char *text, const char *const *texts,
+                              size_t count, const vlLoadDef *def, vlError *error);
+
 #endif

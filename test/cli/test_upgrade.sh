@@ -93,6 +93,89 @@ expect_code 2 not_itself "$VELO" scene upgrade old/lost.pbrt old/lost.pbrt
 expect_code 4 missing "$VELO" scene upgrade old/none.pbrt new/none.pbrt
 expect_code 5 no_folder "$VELO" scene upgrade old/lost.pbrt nowhere/none.pbrt
 
+# Names that are given twice: each block has its own, whatever its kind, also in a file that is included twice.
+image() {
+  printf '%s\n' 'LookAt 0 0 9  0 0 0  0 1 0' 'Camera "perspective" "float fov" 40' "Film \"$1\" \"integer xresolution\" 48 \"integer yresolution\" 32" \
+    'Sampler "sobol" "integer pixelsamples" 8' 'PixelFilter "box"' 'Integrator "path"' WorldBegin 'LightSource "infinite"'
+}
+cat >old/green.pbrt <<'END'
+Texture "t" "color" "constant" "rgb value" [ .1 .9 .1 ]
+Texture "t" "float" "constant" "float value" .2
+MakeNamedMaterial "m" "string type" "plastic" "texture Kd" "t" "texture roughness" "t"
+NamedMaterial "m"
+Shape "sphere" "float radius" [ .7 ]
+END
+{
+  image image
+  cat <<'END'
+AttributeBegin
+  Texture "t" "color" "constant" "rgb value" [ .9 .1 .1 ]
+  AttributeBegin
+    Texture "t" "color" "constant" "rgb value" [ .1 .1 .9 ]
+    Material "matte" "texture Kd" "t"
+    Translate -2 0 0
+    Shape "sphere" "float radius" [ .7 ]
+  AttributeEnd
+  Material "matte" "texture Kd" "t"
+  Shape "sphere" "float radius" [ .7 ]
+  MakeNamedMaterial "m" "string type" "matte" "texture Kd" "t"
+AttributeEnd
+AttributeBegin
+  Translate 2 0 0
+  Include "green.pbrt"
+  Translate 0 2 0
+  Include "green.pbrt"
+AttributeEnd
+ObjectBegin "o"
+  Shape "sphere" "float radius" [ .5 ]
+ObjectEnd
+TransformBegin
+  Translate -2 2 0
+  ObjectInstance "o"
+TransformEnd
+ObjectBegin "o"
+  Shape "disk" "float radius" [ .5 ]
+ObjectEnd
+TransformBegin
+  Translate 0 2 0
+  ObjectInstance "o"
+TransformEnd
+WorldEnd
+END
+} >old/twice.pbrt
+{
+  image rgb
+  for ball in 'Translate -2 0 0|Material "diffuse" "rgb reflectance" [ .1 .1 .9 ]|sphere|.7' \
+    'Translate 0 0 0|Material "diffuse" "rgb reflectance" [ .9 .1 .1 ]|sphere|.7' \
+    'Translate 2 0 0|Material "coateddiffuse" "rgb reflectance" [ .1 .9 .1 ] "float roughness" .2|sphere|.7' \
+    'Translate 2 2 0|Material "coateddiffuse" "rgb reflectance" [ .1 .9 .1 ] "float roughness" .2|sphere|.7' \
+    'Translate -2 2 0||sphere|.5' 'Translate 0 2 0||disk|.5'; do
+    IFS='|' read -r place material shape radius <<<"$ball"
+    printf '%s\n' AttributeBegin "$material" "$place" "Shape \"$shape\" \"float radius\" $radius" AttributeEnd
+  done
+} >new/twice-hand.pbrt
+check twice "$VELO" scene upgrade old/twice.pbrt new/twice.pbrt
+expect_text twice_says 'Texture: a second "t" -> "t-2"'
+check twice_includes sh -c 'grep -q "Include \"green.pbrt\"" new/twice.pbrt && grep -q "Include \"green-2.pbrt\"" new/twice.pbrt'
+check twice_rules "$VELO_SOURCE_DIR/tools/check_pbrt" new/twice.pbrt
+check twice_a "$VELO" render new/twice.pbrt -o a.exr --quiet
+check twice_b "$VELO" render new/twice-hand.pbrt -o b.exr --quiet
+check twice_image "$VELO" image diff a.exr b.exr --threshold relmse=0.02
+
+# What velo would not read is not written, and a file of that name stays.
+{ image image; printf 'Shape "sphere" "float radius" "big"\n'; } >old/wrong.pbrt
+cp new/twice.pbrt new/wrong.pbrt
+cp new/green.pbrt green-before.pbrt
+expect_code 3 wrong "$VELO" scene upgrade old/wrong.pbrt new/wrong.pbrt
+expect_text wrong_says 'the upgraded scene is wrong here, and nothing is written'
+check wrong_keeps cmp new/wrong.pbrt new/twice.pbrt
+{ image image; printf 'Include "green.pbrt"\nInclude "bad.pbrt"\n'; } >old/wrong.pbrt
+printf 'Texture "t" "color" "constant"\nShape "sphere" "float radius" "big"\nMaterial "matte"\n' >old/bad.pbrt
+expect_code 3 wrong_include "$VELO" scene upgrade old/wrong.pbrt new/wrong.pbrt
+expect_text wrong_include_place 'new/bad.pbrt:2'
+check wrong_include_writes_none test ! -e new/bad.pbrt
+check wrong_include_keeps cmp new/green.pbrt green-before.pbrt
+
 # Missing images of other formats; files elsewhere.
 printf 'newmtl a\nmap_Kd gone.png\n' >t.mtl
 printf 'mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n' >t.obj

@@ -275,8 +275,8 @@ static bool fail_old(vlImport *import, const char *path) {
   return true;
 }
 
-static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const vlLoadDef *def,
-                    vlError *error) {
+static vlResult run(vlScene *scene, const char *path, const char *data, size_t size, const char *const *texts,
+                    size_t text_count, const vlLoadDef *def, vlError *error) {
   if (scene->error.code != VL_OK) return vl_scene_result(scene, error);
   vlImport *import = vl_alloc_zero(scene->context, 1, sizeof *import);
   if (!import) return vl_fail_memory(error);
@@ -297,6 +297,8 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
                           .search_path = import->search_path,
                           .found_elsewhere = vl_import_note_elsewhere,
                           .go_on = go_on,
+                          .texts = texts,
+                          .text_count = text_count,
                           .skip = skip_include};
   bool is_old = !data && scene->problem && fail_old(import, path); /* its many errors are not listed */
   bool fine = is_old ? false
@@ -311,10 +313,15 @@ static vlResult run(vlScene *scene, const char *path, const char *data, size_t s
 }
 
 vlResult vl_import_pbrt(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {
-  return run(scene, path, NULL, 0, def, error);
+  return run(scene, path, NULL, 0, NULL, 0, def, error);
 }
 
 vlResult vl_import_pbrt_memory(vlScene *scene, const char *data, size_t size, const char *name, const vlLoadDef *def,
                                vlError *error) {
-  return run(scene, name, data, size, def, error);
+  return run(scene, name, data, size, NULL, 0, def, error);
+}
+
+vlResult vl_import_pbrt_texts(vlScene *scene, const char *path, const char *text, const char *const *texts,
+                              size_t count, const vlLoadDef *def, vlError *error) {
+  return run(scene, path, text, strlen(text), texts, count, def, error);
 }

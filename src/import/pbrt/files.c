@@ -96,10 +96,41 @@ static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, cons
   return fine;
 }
 
+/* Parses a copy of the text, which ends with a zero byte. */
+static bool parse_text(vlParserFile *file, const char *text, size_t size) {
+  vlContext *context = file->parser->context;
+  char *copy = vl_alloc(context, size + 1);
+  if (!copy) return vl_parse_fail_memory(file);
+  memcpy(copy, text, size);
+  copy[size] = 0;
+  bool fine = vl_parse_block(file, copy, size);
+  vl_free(context, copy);
+  return fine;
+}
+
+/* The given text of an included file; null: it is read from the disk. */
+static const char *given_text(const vlParseTarget *target, const char *name) {
+  for (size_t i = 0; i < target->text_count; i++)
+    if (strcmp(target->texts[2 * i], name) == 0) return target->texts[2 * i + 1];
+  return NULL;
+}
+
+static bool follow_text(vlParserFile *parent, vlSource at, const char *name, const char *text, bool included) {
+  char path[MAX_PATH];
+  vlParserFile file = {.parser = parent->parser, .parent = parent, .included = included, .path = path};
+  file.depth = parent->depth + 1;
+  if (!vl_path_join(parent->parser->first, name, path, sizeof path))
+    return vl_parse_fail(parent, at, "file name too long");
+  if (file.depth > MAX_DEPTH) return vl_parse_fail(parent, at, "files include each other more than %d deep", MAX_DEPTH);
+  return parse_text(&file, text, strlen(text));
+}
+
 bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bool included) {
   const vlParseTarget *target = file->parser->target;
   vlSource place = vl_parse_place(file, at);
   char path[MAX_PATH];
+  const char *text = given_text(target, name);
+  if (text) return follow_text(file, place, name, text, included);
   vlFound found = vl_find_file(file->path, file->parser->first, target->search_path, name, path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_parse_fail(file, place, "file name too long");
   if (found == VL_FOUND_CURRENT && target->found_elsewhere) target->found_elsewhere(target->user, place, path);
@@ -116,12 +147,7 @@ bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *ta
 bool vl_parse_memory(vlContext *context, const char *data, size_t size, const char *name, const vlParseTarget *target) {
   vlParser parser = {.context = context, .target = target, .first = name};
   vlParserFile file = {.parser = &parser, .path = name};
-  char *copy = vl_alloc(context, size + 1);
-  if (!copy) return vl_parse_fail_memory(&file);
-  memcpy(copy, data, size);
-  copy[size] = 0;
-  bool fine = vl_parse_block(&file, copy, size);
-  vl_free(context, copy);
+  bool fine = parse_text(&file, data, size);
   vl_free(context, parser.seen);
   return fine;
 }

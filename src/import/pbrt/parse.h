@@ -79,6 +79,9 @@ typedef struct vlParseTarget {
    * inside included files. False: the parser stops; the
    * callee has reported why. May be null. */
   bool (*go_on)(void *user, double fraction);
+  /* Included files that are not read from the disk: pairs of the name in Include, and the text. May be null. */
+  const char *const *texts;
+  size_t text_count;
   /* Called for a file beyond the limits. Returns true to leave the file out. May be null. */
   bool (*skip)(void *user, vlSource place);
 } vlParseTarget;

@@ -28,6 +28,7 @@ bool vl_old_fail_memory(vlUpgrade *u) {
 
 static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, const char *text) {
   const vlUpgradeDef *def = file->u->def;
+  if (file->u->quiet) return;
   vlError place = {0};
   vl_fail_at(&place, VL_OK, file->path, line, 0, "%s", "");
   if (def->report) def->report(def->report_user, note, &place, text);
@@ -39,7 +40,7 @@ void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) {
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  file->u->lost++;
+  if (!file->u->quiet) file->u->lost++;
   report(file, VL_UPGRADE_LOST, line, text);
 }
 
@@ -201,6 +202,8 @@ static bool cut_param(vlOldFile *file, const vlOldParam *p) {
 bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
   if (s->finished) return true;
   s->finished = true;
+  for (size_t i = 0; i < s->name_count; i++)
+    if (s->renamed >> i & 1 && !vl_old_edit(file, s->names[i], "\"%s\"", s->name[i])) return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
     if (p->dropped && s->whole.end == s->whole.start) continue; /* the whole statement is removed */

@@ -105,6 +105,7 @@ bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const 
   vlFound found = vl_find_file(file->path, u->first, u->def->search_path, name, path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   if (found == VL_FOUND_NOT) {
+    u->missing++;
     vl_old_lose(file, line, "there is no image \"%s\": it must become an equal-area map", name);
     return snprintf(result, size, "%s", name) > 0;
   }

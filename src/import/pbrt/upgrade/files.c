@@ -55,6 +55,7 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
     return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   snprintf(result, size, "%s", name);
   if (found == VL_FOUND_NOT) {
+    u->missing++;
     vl_old_lose(file, line, "there is no file \"%s\": its name stays as it is", name);
     return true;
   }
@@ -68,7 +69,7 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
 
 /* ---- Include ----------------------------------------------------------------------------------------------------- */
 
-static vlOldInclude *find_include(vlUpgrade *u, const char *path) {
+static const vlOldInclude *find_include(vlUpgrade *u, const char *path) {
   for (size_t i = 0; i < u->includes.count; i++)
     if (strcmp(u->includes.items[i].path, path) == 0) return &u->includes.items[i];
   return NULL;
@@ -102,11 +103,25 @@ void vl_old_make_folders(const vlUpgrade *u, const char *path) {
   }
 }
 
+static bool is_output(const vlUpgrade *u, const char *name) {
+  for (size_t i = 0; i < u->outputs.count; i += 2)
+    if (strcmp(u->outputs.items[i], name) == 0) return true;
+  return false;
+}
+
+/* Adds a number to the name where another file to be written has it. */
+static bool make_unique(const vlUpgrade *u, char *name, size_t size) {
+  char plain[4096];
+  const int stem = (int)strlen(name) - (vl_ends_with(name, ".pbrt") ? 5 : 0);
+  snprintf(plain, sizeof plain, "%s", name);
+  for (uint32_t k = 2; is_output(u, name); k++)
+    if (snprintf(name, size, "%.*s-%u%s", stem, plain, k, plain + stem) >= (int)size) return false;
+  return true;
+}
+
 /* Keeps a file to be written at the end. Takes the text. */
 static bool keep_output(vlUpgrade *u, const char *name, char *text) {
-  char path[PATH_MAX + 4200];
-  snprintf(path, sizeof path, "%s/%s", u->to_folder, name);
-  char **slot = VL_PUSH(u->context, &u->outputs), *copy = vl_strdup(u->context, path);
+  char **slot = VL_PUSH(u->context, &u->outputs), *copy = vl_strdup(u->context, name);
   char **second = slot && copy ? VL_PUSH(u->context, &u->outputs) : NULL;
   if (slot) u->outputs.items[u->outputs.count - (second ? 2 : 1)] = copy;
   if (!second) {
@@ -118,36 +133,63 @@ static bool keep_output(vlUpgrade *u, const char *name, char *text) {
   return true;
 }
 
+/* Whether a file that was included before has the text; null: that of the old file. */
+static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const char *text) {
+  for (size_t i = 0; i < u->includes.count; i++) {
+    const vlOldInclude *n = &u->includes.items[i];
+    if (strcmp(n->path, path) == 0 && (n->text && text ? strcmp(n->text, text) == 0 : n->text == text)) return n;
+  }
+  return NULL;
+}
+
+/* Upgrades the file, and names the new one. first: it was not included before. Null after an error. */
+static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s, const char *path, bool first) {
+  vlUpgrade *u = file->u;
+  char name[4096], *text = NULL;
+  const size_t made = u->names.count;
+  const uint32_t referred = u->referred;
+  const bool quiet = u->quiet;
+  bool changed;
+  u->depth++;
+  u->quiet = quiet || !first;
+  bool fine = vl_old_upgrade_file(u, path, &text, &changed);
+  u->quiet = quiet;
+  u->depth--;
+  if (!fine) return NULL;
+  if (!changed) {
+    vl_free(u->context, text);
+    text = NULL;
+  }
+  const vlOldInclude *known = find_text(u, path, text);
+  if (known) return vl_free(u->context, text), known;
+  if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name)) return NULL;
+  if (text && (!new_name(u, s->name[0], path, name, sizeof name) || !make_unique(u, name, sizeof name)))
+    return vl_free(u->context, text), vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long"), NULL;
+  if (text && !keep_output(u, name, text)) return NULL;
+  vlOldInclude *n = VL_PUSH(u->context, &u->includes);
+  if (!n) return vl_old_fail_memory(u), NULL;
+  *n = (vlOldInclude){.path = vl_strdup(u->context, path),
+                      .name = vl_strdup(u->context, name),
+                      .text = text,
+                      .makes = u->names.count > made,
+                      .refers = u->referred > referred};
+  if (!n->path || !n->name) return vl_old_fail_memory(u), NULL;
+  return n;
+}
+
 bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
   vlUpgrade *u = file->u;
-  char path[4096], name[4096];
+  char path[4096];
   vlFound found = vl_find_file(file->path, u->first, u->def->search_path, s->name[0], path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
   if (u->depth > 64)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "files include each other more than 64 deep");
   if (found == VL_FOUND_NOT) {
+    u->missing++;
     vl_old_lose(file, s->line, "there is no file \"%s\": its name stays as it is", s->name[0]);
     return true;
   }
-  vlOldInclude *known = find_include(u, path);
-  if (!known) {
-    char *text = NULL;
-    bool changed;
-    u->depth++;
-    if (!vl_old_upgrade_file(u, path, &text, &changed)) return false;
-    u->depth--;
-    if (!changed) {
-      vl_free(u->context, text);
-      if (!vl_old_file_name(file, s->line, s->name[0], name, sizeof name)) return false;
-    } else {
-      if (!new_name(u, s->name[0], path, name, sizeof name))
-        return vl_free(u->context, text), vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
-      if (!keep_output(u, name, text)) return false;
-    }
-    known = VL_PUSH(u->context, &u->includes);
-    if (!known) return vl_old_fail_memory(u);
-    *known = (vlOldInclude){vl_strdup(u->context, path), vl_strdup(u->context, name)};
-    if (!known->path || !known->name) return vl_old_fail_memory(u);
-  }
-  return vl_old_rename(file, s, 0, known->name);
+  const vlOldInclude *known = find_include(u, path);
+  if (!known || known->makes || (known->refers && u->renamed)) known = read_include(file, s, path, !known);
+  return known && vl_old_rename(file, s, 0, known->name);
 }

@@ -48,6 +48,7 @@ static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldPara
     return vl_old_after(file, s, "Material \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s", solid, amount);
   }
   snprintf(solid, sizeof solid, "%.200s-solid", s->name[0]);
+  s->renamed = 0; /* the name is written here */
   if (!vl_old_edit(file, s->names[0], "\"%s\"", solid)) return false;
   return vl_old_after(
       file, s, "MakeNamedMaterial \"%s\" \"string type\" \"mix\" \"string materials\" [ \"see-through\" \"%s\" ] %s",

@@ -260,6 +260,7 @@ bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
 /* ---- WorldBegin -------------------------------------------------------------------------------------------------- */
 
 bool vl_old_world(vlOldFile *file, vlOldStatement *s) {
+  file->u->has_world = true;
   vlUpgrade *u = file->u;
   char text[32];
   double iso = u->iso * u->exposure;

@@ -178,6 +178,7 @@ static bool noise_rule(vlOldFile *file, vlOldStatement *s) {
   vl_old_note(s, "a mix by the float texture \"%s\"", name);
   if (!keep_noise(file->u, s->name[0], name)) return false;
   s->name[1] = "float";
+  s->renamed = 0; /* its name is written here */
   return vl_old_edit(file, s->names[0], "\"%s\"", name) && vl_old_edit(file, s->names[1], "\"float\"") &&
          vl_old_after(file, s,
                       "Texture \"%s\" \"spectrum\" \"mix\" \"rgb tex1\" [ 0 0 0 ] \"rgb tex2\" [ 1 1 1 ] "

@@ -94,7 +94,7 @@ static bool read_all(vlOldFile *file) {
     vlOldStatement s;
     bool fine = vl_old_read(file, &tokens, &s, &end);
     if (fine && !end) {
-      fine = s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s);
+      fine = (s.word->form != VL_OLD_PARAMS || vl_old_types(file, &s)) && vl_old_names(file, &s);
       if (fine && s.word->rule) fine = s.word->rule(file, &s);
       fine = fine && vl_old_finish(file, &s);
       if (fine) vl_old_block_sets(file, &s);
@@ -170,6 +170,10 @@ static void release(vlUpgrade *u) {
     vl_free(c, u->textures.items[i].text);
     vl_free(c, u->textures.items[i].copy);
   }
+  for (size_t i = 0; i < u->names.count; i++) {
+    vl_free(c, u->names.items[i].old);
+    vl_free(c, u->names.items[i].name);
+  }
   for (size_t i = 0; i < u->includes.count; i++) {
     vl_free(c, u->includes.items[i].path);
     vl_free(c, u->includes.items[i].name);
@@ -181,6 +185,7 @@ static void release(vlUpgrade *u) {
   }
   VL_ARRAY_FREE(c, &u->textures);
   VL_ARRAY_FREE(c, &u->includes);
+  VL_ARRAY_FREE(c, &u->names);
   VL_ARRAY_FREE(c, &u->outputs);
   VL_ARRAY_FREE(c, &u->maps);
 }
@@ -195,10 +200,12 @@ static bool run(vlUpgrade *u) {
                            "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
     return false;
   }
-  bool fine = vl_old_convert_maps(u);
+  bool fine = vl_old_check(u, text) && vl_old_convert_maps(u);
   for (size_t i = 0; fine && i + 1 < u->outputs.count; i += 2) {
-    vl_old_make_folders(u, u->outputs.items[i]);
-    fine = write_text(u, u->outputs.items[i], u->outputs.items[i + 1]);
+    char path[PATH_MAX + 4200];
+    snprintf(path, sizeof path, "%s/%s", u->to_folder, u->outputs.items[i]);
+    vl_old_make_folders(u, path);
+    fine = write_text(u, path, u->outputs.items[i + 1]);
   }
   fine = fine && write_text(u, u->to, text);
   vl_free(u->context, text);

@@ -40,6 +40,7 @@ typedef struct vlOldStatement {
   VL_ARRAY(vlOldParam) params;
   vlOldSpan numbers[2]; /* opening and closing bracket of a list of numbers; start == end: none */
   char changes[400];    /* what the report says of the statement */
+  uint32_t renamed;     /* bits of the names that vl_old_finish writes */
   bool finished;        /* vl_old_finish has run */
 } vlOldStatement;
 
@@ -55,9 +56,19 @@ typedef struct vlOldTexture {
   bool grey;                /* the copy says all */
 } vlOldTexture;
 
-/* A file that was included. */
+/* A texture, material, medium or object of the old scene (names.c). */
+typedef struct vlOldName {
+  int family;
+  uint32_t depth;   /* of the attribute block that made it */
+  bool ended;       /* the block has ended */
+  char *old, *name; /* name: in the new scene, where each is given once */
+} vlOldName;
+
+/* A file that was included. One that makes names, or refers to renamed ones, becomes several files. */
 typedef struct vlOldInclude {
-  char *path, *name; /* where it was found; what the new Include says */
+  char *path, *name;  /* where it was found; what the new Include says */
+  const char *text;   /* of the new file, which u->outputs owns; null: the old file is used */
+  bool makes, refers; /* names */
 } vlOldInclude;
 
 /* An image of a light that is converted at the end. */
@@ -74,15 +85,20 @@ typedef struct vlUpgrade {
   bool same_folder;
   vlResult result;
   vlError error;
-  uint32_t lost, made; /* made: number of names that were made up */
-  bool see_through;    /* the material of that name was written */
+  uint32_t lost, made;        /* made: number of names that were made up */
+  bool see_through;           /* the material of that name was written */
+  bool quiet;                 /* a file is read again: nothing is reported */
+  uint32_t attributes;        /* depth of attribute blocks */
+  uint32_t renamed, referred; /* number of second names; of references to names */
+  VL_ARRAY(vlOldName) names;
   VL_ARRAY(vlOldTexture) textures;
   VL_ARRAY(vlOldInclude) includes;
-  VL_ARRAY(char *) outputs; /* pairs: path and text of the files to write */
+  VL_ARRAY(char *) outputs; /* pairs: name, relative to the new scene's folder, and text of the files to write */
+  uint32_t missing;         /* files that were not found */
   VL_ARRAY(vlOldMap) maps;
   uint32_t depth;
   bool is_old; /* the first file has statements that pbrt-v4 does not have */
-  bool filter_given;
+  bool filter_given, has_world;
   bool subsurface, plain_path; /* the first file has subsurface materials; the integrator is path */
   double exposure;             /* factor on the film's iso: 1 / the shutter's time */
   double iso;                  /* of the film: 100 * its scale */
@@ -221,6 +237,9 @@ vlOldRule vl_old_filter, vl_old_accelerator, vl_old_medium, vl_old_world; /* set
 bool vl_old_finish_settings(vlOldFile *file, vlOldStatement *world);
 /* A float texture with the values of the spectrum texture, written before the statement. Null: there is none. */
 const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *texture);
+/* Gives names that are made a second time new ones, also where the statement refers to them (names.c). Runs before the
+ * rule of the statement. */
+bool vl_old_names(vlOldFile *file, vlOldStatement *s);
 vlOldRule vl_old_block; /* blocks.c */
 /* Remembers a statement that sets an attribute. */
 void vl_old_block_sets(vlOldFile *file, const vlOldStatement *s);
@@ -241,6 +260,8 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
                         size_t size);
 bool vl_old_convert_maps(vlUpgrade *u);
+/* Reads the new scene as velo reads scenes; false: it is wrong. Nothing is written before (check.c). */
+bool vl_old_check(vlUpgrade *u, const char *text);
 /* Makes the folders of a file that is to be written, below the new scene's folder. */
 void vl_old_make_folders(const vlUpgrade *u, const char *path);
 

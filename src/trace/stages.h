@@ -10,6 +10,7 @@
 
 #include "color/kernels.h"
 #include "trace/bsdf/bsdf.h"
+#include "trace/surface/offset.h"
 #include "trace/trace.h"
 #include "world/accel/occluders.h"
 
@@ -327,10 +328,11 @@ typedef struct vlPoint {
 #define VL_REFIND 0x1p-21
 #define VL_REFIND_LEAST 1e-37
 
-/* Returns the start of a ray segment just past a surface point. The margin comes from the bound of the point's error.
- * The result is larger than t_min. */
+/* Returns the start of a ray segment just past a surface point. The margin comes from the bound of the point's error,
+ * and from that of distances from the ray's origin (as in vl_offset_end). The result is larger than t_min. */
 static inline float vl_past_crossing(float t, vlVec3 g, float offset, vlVec3 d, float t_min) {
-  float margin = 2.0f * offset / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + 0x1p-22f * vl_abs(t);
+  float error = 2.0f * (offset + 2.0f * VL_GAMMA(5) * vl_abs(t) * vl_abs_dot(g, d));
+  float margin = error / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + VL_GAMMA(8) * vl_abs(t);
   return vl_max(t, t_min) +
          vl_max(margin, VL_MIN_POSITIVE); /* the result is larger than t_min even if t_min and margin are 0 */
 }
@@ -420,21 +422,6 @@ static inline vlFootprint vl_footprint_of(vlVec3 d, vlVec3 g, float width) {
 }
 static inline void vl_path_lambda(const vlPaths *p, uint32_t i, float lambda[4]) {
   for (int c = 0; c < 4; c++) lambda[c] = p->lambda[c][i];
-}
-
-/* The next float in the direction of d's sign: x rounded towards +inf (d > 0) or -inf (d < 0). */
-static inline float vl_nudge(float x, float d) {
-  int32_t i = (int32_t)vl_float_bits(x);
-  int32_t step = (d > 0.0f) == (i >= 0) ? 1 : -1;
-  int32_t j = x == 0.0f ? (int32_t)(d > 0.0f ? 1u : 0x80000001u) : i + step;
-  return d != 0.0f ? vl_bits_float((uint32_t)j) : x;
-}
-/* Origin of a ray that leaves the surface point p on the side to which w points (pbrt book 6.8.6). g: geometric
- * normal. */
-static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w) {
-  float side = vl_dot(w, g) < 0.0f ? -offset : offset;
-  vlVec3 d = vl_mul(g, side);
-  return vl_vec3(vl_nudge(p.x + d.x, d.x), vl_nudge(p.y + d.y, d.y), vl_nudge(p.z + d.z, d.z));
 }
 
 #endif

@@ -80,7 +80,9 @@ typedef struct vlWorldInstance {
   float from_group[12], to_group[12]; /* world from group, and its inverse; if moving, at the world's time 0 */
   uint32_t keys;                      /* number of poses in path, at equal steps of the world's time; 0: at rest */
   const float *path;                  /* pose (world from group) of each key, 12 floats */
-  float doubt[4];                     /* bound of the rounding error of an interpolated matrix, by column; 0 at rest */
+  /* Bound of the distance, world space, between a placed point and the surface that a ray meets: a point x of the group
+   * may be off by error[0] |x| + error[1] |y| + error[2] |z| + error[3] (surface_point.h). */
+  float error[4];
 } vlWorldInstance;
 
 /* ---- materials --------------------------------------------------------------------------------------------------- */
@@ -210,8 +212,8 @@ typedef struct vlWorldLight {
   uint32_t image; /* of goniometric and projection lights: image index; their `corners` hold the rotation from world to
                      light directions */
   float image_extent[2]; /* of a projection light: half the width and height of the image at distance 1 */
-  /* Of an area light that is a triangle: its corners. Of a plain sphere: its centre, its radius, and 1 if it emits
-   * outwards or -1 if it emits inwards. */
+  /* Of an area light that is a triangle: its corners. Of a whole sphere: its centre, its radius, 1 if it emits outwards
+   * or -1 if it emits inwards, and the distance by which points sampled on it may be off. */
   float corners[9];
   bool one_sided_normals; /* `direction` is the normal of the emitting side at every point of the light */
   bool plain_triangle;    /* a triangle with one_sided_normals, opaque, with the same emission everywhere */

@@ -266,8 +266,7 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
     bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
     if (k == to->count && seen) to->object[k] = object, to->instance[k] = placed, to->count++;
-    float margin = 2.0f * at.offset / vl_max(vl_abs(vl_dot(at.g, along)), 0.01f) + 0x1p-22f * vl_abs(at.t);
-    t_min = vl_max(at.t, t_min) + vl_max(margin, VL_MIN_POSITIVE);
+    t_min = vl_past_surface(&at, along, t_min);
   }
 }
 

@@ -70,7 +70,7 @@ typedef struct vlSphereSample {
   vlVec3 p, n; /* point and normal on the sphere */
   float pdf;   /* per solid angle */
 } vlSphereSample;
-/* side: 1, or -1 for normals that point inwards. */
+/* side: 1, or -1 for normals that point inwards. p is off the sphere by rounding errors (vlWorldLight.corners). */
 static inline vlSphereSample vl_sample_sphere(vlVec3 center, float radius, float side, vlVec3 from, float u, float v) {
   vlVec3 to = vl_sub(center, from);
   float d2 = vl_length2(to), d = __builtin_sqrtf(d2);
@@ -85,15 +85,6 @@ static inline vlSphereSample vl_sample_sphere(vlVec3 center, float radius, float
   vlFrame frame = vl_frame_from_z(vl_mul(to, -1.0f / d));
   vlVec3 n = vl_from_local(frame, vl_vec3(sin_a * phi.cos, sin_a * phi.sin, cos_a));
   return (vlSphereSample){vl_add(center, vl_mul(n, radius)), vl_mul(n, side), 1.0f / (2.0f * VL_PI * span)};
-}
-
-/* ---- triangles and spheres --------------------------------------------------------------------------------------- */
-
-/* End point of a shadow ray that arrives at p in direction w. It is moved off the light by the bound of the rounding
- * error of p. n: normal at p. */
-static inline vlVec3 vl_light_target(vlVec3 p, vlVec3 n, vlVec3 w) {
-  float size = vl_abs(p.x) + vl_abs(p.y) + vl_abs(p.z);
-  return vl_offset_origin(p, n, 16.0f * 0x1p-24f * size, vl_neg(w));
 }
 
 #endif

@@ -10,7 +10,7 @@ enum { BLOCK = VL_AREA_BLOCK };
 typedef struct Block {
   VL_ROW uint32_t lane[BLOCK];
   VL_ROW float px[BLOCK], py[BLOCK], pz[BLOCK], u[BLOCK], v[BLOCK]; /* the point that receives light */
-  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK]; /* for spheres: centre and radius; side, 1 or -1 (area.h) */
+  VL_ROW float corner[9][BLOCK], n[3][BLOCK], area[BLOCK]; /* of spheres only `corner` (vlWorldLight.corners) */
   VL_ROW float two_sided[BLOCK];
   VL_ROW float wx[BLOCK], wy[BLOCK], wz[BLOCK], tx[BLOCK], ty[BLOCK], tz[BLOCK];
   VL_ROW float pdf[BLOCK]; /* 0: no sample */
@@ -35,13 +35,13 @@ static uint32_t gather(const vlWorld *world, const vlPaths *paths, const vlSurfa
   return padded;
 }
 
-/* Sets lane k's sample: a point p of the light, its normal, and its density per solid angle. */
+/* Sets lane k's sample: a point p of the light, its normal, its offset, and its density per solid angle. */
 static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint32_t k, vlVec3 from, vlVec3 p, vlVec3 n,
-                                                         float pdf) {
+                                                         float offset, float pdf) {
   vlVec3 w = vl_normalize(vl_sub(p, from));
   float facing = -vl_dot(w, n), side = facing < 0.0f ? -1.0f : 1.0f;
   int emits = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
-  vlVec3 target = vl_light_target(p, vl_vec3(side * n.x, side * n.y, side * n.z), w);
+  vlVec3 target = vl_offset_end(p, vl_vec3(side * n.x, side * n.y, side * n.z), offset, w, from);
   b->pdf[k] = emits & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
   b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
   b->tx[k] = target.x, b->ty[k] = target.y, b->tz[k] = target.z;
@@ -64,7 +64,8 @@ static void triangles(uint32_t padded, Block *restrict b) {
     float b0 = near ? round.x : flat.x, b1 = near ? round.y : flat.y, b2 = near ? round.z : 1.0f - flat.x - flat.y;
     vlVec3 p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
     float by_area = area > 0.0f ? vl_solid_pdf(1.0f / area, from, p, n) : 0.0f;
-    arrive(b, k, from, p, n, near ? 1.0f / cap.solid_angle : by_area);
+    float offset = vl_triangle_offset(n, p, p0, p1, p2, b0, b1, b2, 0.0f);
+    arrive(b, k, from, p, n, offset, near ? 1.0f / cap.solid_angle : by_area);
   }
 }
 
@@ -75,7 +76,7 @@ static void spheres(uint32_t padded, Block *restrict b) {
     vlVec3 from = vl_vec3(b->px[k], b->py[k], b->pz[k]);
     vlVec3 center = vl_vec3(b->corner[0][k], b->corner[1][k], b->corner[2][k]);
     vlSphereSample s = vl_sample_sphere(center, b->corner[3][k], b->corner[4][k], from, b->u[k], b->v[k]);
-    arrive(b, k, from, s.p, s.n, s.pdf);
+    arrive(b, k, from, s.p, s.n, b->corner[5][k], s.pdf);
   }
 }
 

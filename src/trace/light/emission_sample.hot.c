@@ -83,7 +83,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
 
 typedef struct Spot {
   vlVec3 p, n;
-  float pdf, u, v;
+  float offset, pdf, u, v;
   float weights[3]; /* barycentric coordinates in a triangle */
 } Spot;
 
@@ -93,12 +93,14 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   const uint32_t *f = s->indices + 3 * (size_t)light->prim;
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
-  Spot r = {vl_vec3(0, 0, 0),  vl_vec3(light->direction[0], light->direction[1], light->direction[2]), 0, 0, 0,
-            {b[0], b[1], b[2]}};
+  vlVec3 corner[3];
+  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]),
+            .weights = {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
   const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {
-    r.p = vl_add(r.p, vl_mul(vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]), b[k]));
+    corner[k] = vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]);
+    r.p = vl_add(r.p, vl_mul(corner[k], b[k]));
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
     r.u += b[k] * t[0], r.v += b[k] * t[1];
     if (light->one_sided_normals) continue;
@@ -106,6 +108,7 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
     ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
   }
   if (vl_dot(r.n, ns) < 0.0f) r.n = vl_neg(r.n);
+  r.offset = vl_triangle_offset(r.n, r.p, corner[0], corner[1], corner[2], b[0], b[1], b[2], 0.0f);
   r.pdf = light->area > 0.0f ? 1.0f / light->area : 0.0f;
   return r;
 }
@@ -116,6 +119,7 @@ static Spot on_shape(const vlWorldLight *light, const vlWorldShape *s, float u, 
   vl_shape_sample(s, light->prim, u, v, &point, &pdf);
   return (Spot){vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
                 vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]),
+                vl_point_offset(&point),
                 (float)pdf,
                 point.uv[0],
                 point.uv[1],
@@ -142,8 +146,7 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   vlVec3 local = vl_warp_cosine_hemisphere(s, t);
   if (!(local.z > 0.0f)) return;
   out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
-  float size = vl_abs(at.p.x) + vl_abs(at.p.y) + vl_abs(at.p.z);
-  out->o = vl_offset_origin(at.p, side, 16.0f * 0x1p-24f * size, out->d);
+  out->o = vl_offset_origin(at.p, side, at.offset, out->d);
   out->at = at.p, out->n = at.n;
   vl_emitted_at(world, e, q->lambda, at.u, 1.0f - at.v, false, out->flux);
   float scale = VL_PI * sides / at.pdf;

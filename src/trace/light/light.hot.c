@@ -70,8 +70,9 @@ float vl_infinite_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 o,
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 typedef struct Sample {
-  vlVec3 p, n; /* point and normal on the light */
-  float pdf;   /* per solid angle */
+  vlVec3 p, n;  /* point and normal on the light */
+  float offset; /* of p (trace/surface/offset.h) */
+  float pdf;    /* per solid angle */
   float u, v;
   float weights[3]; /* barycentric coordinates in a triangle */
 } Sample;
@@ -112,6 +113,7 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   Sample r;
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
   r.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]);
+  r.offset = vl_triangle_offset(r.n, r.p, p[0], p[1], p[2], b[0], b[1], b[2], 0.0f);
   r.u = r.v = 0;
   for (int k = 0; k < 3; k++) r.weights[k] = b[k];
   r.pdf = near.near            ? 1.0f / near.cap.solid_angle
@@ -165,7 +167,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
     vlVec3 to = vl_sub(center, from);
     if (vl_outside_sphere(to, radius)) {
       vlSphereSample at = vl_sample_sphere(center, radius, s->flip ? -1.0f : 1.0f, from, u, v);
-      Sample r = {at.p, at.n, at.pdf, 0, 0, {0, 0, 0}};
+      Sample r = {at.p, at.n, light->corners[5], at.pdf, 0, 0, {0, 0, 0}};
       if (with_uv) { /* the shape computes uv */
         vlShapeHit hit = {.t = 0};
         vlSurfacePoint point;
@@ -184,6 +186,7 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   Sample r;
   r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
   r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
+  r.offset = vl_point_offset(&point);
   r.u = point.uv[0], r.v = point.uv[1];
   r.weights[0] = r.weights[1] = r.weights[2] = 0;
   r.pdf = vl_solid_pdf((float)pdf, from, r.p, r.n);
@@ -246,7 +249,7 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
     float cover = vl_light_coverage(q->world, light, at.p, at.n, at.u, at.v, at.weights);
     for (int c = 0; c < 4; c++) out->radiance[c] *= cover;
   }
-  out->target = vl_light_target(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, w);
+  out->target = vl_offset_end(at.p, facing < 0.0f ? vl_neg(at.n) : at.n, at.offset, w, q->p);
   out->w = w;
   out->pdf = at.pdf;
 }

@@ -6,24 +6,12 @@
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 
-/* gamma_n = n eps / (1 - n eps), the bound of n roundings (pbrt book 6.8.1). */
-#define GAMMA(n) ((n)*0x1p-24f / (1.0f - (n)*0x1p-24f))
-
-typedef struct Corner {
-  vlVec3 p;
-  float error;
-} Corner;
-
-static inline Corner move_corner(const float m[12], const float *x) {
-  vlVec3 p = vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3], m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
-                     m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
-  float e = 0;
-  for (int i = 0; i < 3; i++) {
-    float sum =
-        vl_abs(m[4 * i] * x[0]) + vl_abs(m[4 * i + 1] * x[1]) + vl_abs(m[4 * i + 2] * x[2]) + vl_abs(m[4 * i + 3]);
-    e = sum > e ? sum : e;
-  }
-  return (Corner){p, e * GAMMA(4)};
+static inline vlVec3 move_corner(const float m[12], const float *x) {
+  return vl_vec3(m[0] * x[0] + m[1] * x[1] + m[2] * x[2] + m[3], m[4] * x[0] + m[5] * x[1] + m[6] * x[2] + m[7],
+                 m[8] * x[0] + m[9] * x[1] + m[10] * x[2] + m[11]);
+}
+static inline float placing_error(const vlWorldInstance *q, const float *x) {
+  return q->error[0] * vl_abs(x[0]) + q->error[1] * vl_abs(x[1]) + q->error[2] * vl_abs(x[2]) + q->error[3];
 }
 /* Transforms a normal by the inverse transpose: the rows of the inverse matrix are used as columns. */
 static inline vlVec3 move_normal(const float inverse[12], const float *n) {
@@ -52,9 +40,10 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   if (q->keys || s->steps > 1) return;
   c->flip[i] = s->flip != q->mirrored ? -1.0f : 1.0f;
   for (int k = 0; k < 3; k++) {
-    Corner moved = move_corner(q->from_group, s->positions + 3 * (size_t)f[k]);
-    c->p[3 * k][i] = moved.p.x, c->p[3 * k + 1][i] = moved.p.y, c->p[3 * k + 2][i] = moved.p.z;
-    c->error[i] = moved.error > c->error[i] ? moved.error : c->error[i];
+    const float *x = s->positions + 3 * (size_t)f[k];
+    vlVec3 moved = move_corner(q->from_group, x);
+    c->p[3 * k][i] = moved.x, c->p[3 * k + 1][i] = moved.y, c->p[3 * k + 2][i] = moved.z;
+    c->error[i] = vl_max(c->error[i], placing_error(q, x));
     if (s->normals) {
       vlVec3 n = move_normal(q->to_group, s->normals + 3 * (size_t)f[k]);
       c->n[3 * k][i] = n.x, c->n[3 * k + 1][i] = n.y, c->n[3 * k + 2][i] = n.z;
@@ -107,12 +96,10 @@ static MovedTriangle move_triangle(const vlWorldShape *s, const vlWorldInstance 
     r.p[k] = vl_vec3(x[0], x[1], x[2]);
     r.n[k] = y ? vl_vec3(y[0], y[1], y[2]) : vl_vec3(0, 0, 0);
     if (q) {
-      Corner moved = move_corner(q->from_group, x);
       float size = 0;
       for (int i = 0; i < 9; i++) size = vl_max(size, vl_abs(q->from_group[i + i / 3]));
-      float doubt = q->doubt[0] * vl_abs(x[0]) + q->doubt[1] * vl_abs(x[1]) + q->doubt[2] * vl_abs(x[2]) + q->doubt[3];
-      r.p[k] = moved.p;
-      error = moved.error + doubt + 3.0f * size * error;
+      r.p[k] = move_corner(q->from_group, x);
+      error = placing_error(q, x) + 3.0f * size * error;
       if (y) r.n[k] = move_normal(q->to_group, y);
     }
     r.error = vl_max(r.error, error);
@@ -175,20 +162,15 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   b0 = sum > 0.0f ? b0 * inv : 1.0f, b1 = b1 * inv, b2 = b2 * inv;
   Triangle r;
   r.p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
-  float ex = vl_abs(b0 * p0.x) + vl_abs(b1 * p1.x) + vl_abs(b2 * p2.x);
-  float ey = vl_abs(b0 * p0.y) + vl_abs(b1 * p1.y) + vl_abs(b2 * p2.y);
-  float ez = vl_abs(b0 * p0.z) + vl_abs(b1 * p1.z) + vl_abs(b2 * p2.z);
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(near_one(cross));
-  /* The offset is pbrt's bound of the point's error (book 6.8.3), projected on the normal, plus the error of Embree's
-   * distance if a ray from here hits this triangle again. Embree's plane goes through corner 0 and has a rounded
-   * normal, so that error grows with the distance from corner 0. Both are doubled. */
-  vlVec3 way = vl_sub(r.p, p0);
-  float reach = vl_abs(way.x) + vl_abs(way.y) + vl_abs(way.z);
-  r.offset = 2.0f * (GAMMA(7) * (vl_abs(g.x) * ex + vl_abs(g.y) * ey + vl_abs(g.z) * ez) + GAMMA(5) * reach +
-                     corner_error * (vl_abs(g.x) + vl_abs(g.y) + vl_abs(g.z)));
-  r.dist = vl_dot(vl_sub(r.p, o), d);
+  r.offset = vl_triangle_offset(g, r.p, p0, p1, p2, b0, b1, b2, corner_error);
+  /* The distance to the triangle's plane. It does not depend on where in the plane p is, which is uncertain in triangles
+   * that are thin and far away. */
+  vlVec3 way = vl_sub(r.p, o);
+  float along = vl_dot(way, d), steep = vl_dot(g, d), height = vl_dot(g, way);
+  r.dist = vl_abs(steep) > 0.01f ? height / steep : along;
   vlVec3 ns = vl_add(vl_add(vl_mul(n0, b0), vl_mul(n1, b1)), vl_mul(n2, b2));
   float has_n = vl_length2(ns) > 0.0f ? 1.0f : 0.0f;
   /* Mean curvature, from the change of the normals along the three edges. */
@@ -219,12 +201,6 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   return r;
 }
 
-/* Bound of the distance between the surface and the computed point. */
-static float point_error(const vlSurfacePoint *q) {
-  return (float)(__builtin_fabs(q->n[0]) * q->error[0] + __builtin_fabs(q->n[1]) * q->error[1] +
-                 __builtin_fabs(q->n[2]) * q->error[2]);
-}
-
 /* Mean curvature from the derivatives of point and normal (Weingarten's equations). */
 static float mean_curvature(const vlSurfacePoint *q) {
   const double *u = q->dpdu, *v = q->dpdv, *a = q->dndu, *b = q->dndv;
@@ -235,7 +211,7 @@ static float mean_curvature(const vlSurfacePoint *q) {
   return det > 0 ? (float)(0.5 * (l * g - 2 * m * f + n * e) / det) : 0.0f;
 }
 
-static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
+static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, float t) {
   out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
   out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
   out->nx[i] = (float)q->ns[0], out->ny[i] = (float)q->ns[1], out->nz[i] = (float)q->ns[2];
@@ -244,18 +220,16 @@ static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, vlV
   for (int k = 0; k < 3; k++) out->dn[k][i] = (float)q->dndu[k], out->dn[3 + k][i] = (float)q->dndv[k];
   out->curvature[i] = mean_curvature(q);
   out->u[i] = q->uv[0], out->v[i] = q->uv[1];
-  vlVec3 p = vl_vec3(out->px[i], out->py[i], out->pz[i]);
-  out->t[i] = vl_dot(vl_sub(p, o), d);
-  out->offset[i] = 2.0f * GAMMA(7) * (vl_abs(out->gx[i] * p.x) + vl_abs(out->gy[i] * p.y) + vl_abs(out->gz[i] * p.z)) +
-                   point_error(q);
+  out->t[i] = t;
+  out->offset[i] = vl_point_offset(q);
   float area = vl_length(vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
   out->uv_scale[i] = area > 0.0f ? 1.0f / __builtin_sqrtf(area) : 0.0f;
 }
 
-/* Computes the surface point of a sphere, disk, cylinder or patch: intersects the shape again in group space and
- * transforms the point to world space. The same arithmetic computed t, which identifies the crossing. */
+/* Computes the surface point of a sphere, disk, cylinder, patch or curve: intersects the shape again in group space and
+ * transforms the point to world space. The same arithmetic computed *t, which identifies the crossing. */
 static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vlVec3 d, uint32_t shape, uint32_t prim,
-                                  uint32_t instance, float t) {
+                                  uint32_t instance, float *t) {
   const vlWorldShape *s = &world->shapes.items[shape];
   double go[3] = {o.x, o.y, o.z}, gd[3] = {d.x, d.y, d.z};
   vlWorldInstance room;
@@ -264,7 +238,8 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   if (q) vl_ray_to_group(q, go, gd);
   vlShapeHit hit;
   vlSurfacePoint point;
-  if (vl_shape_intersect(s, prim, go, gd, t * (1 - VL_REFIND), t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
+  if (vl_shape_intersect(s, prim, go, gd, *t * (1 - VL_REFIND), *t * (1 + VL_REFIND) + VL_REFIND_LEAST, &hit)) {
+    *t = (float)hit.t;
     vl_shape_point(s, prim, &hit, &point);
   } else { /* cannot happen: the same ray hit it with the same arithmetic */
     double pdf;
@@ -272,6 +247,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   }
   if (!q) return point;
   const float *m = q->from_group, *w = q->to_group;
+  const float x[3] = {(float)point.p[0], (float)point.p[1], (float)point.p[2]};
   vlSurfacePoint r = point;
   for (int i = 0; i < 3; i++) {
     r.p[i] = (double)m[4 * i] * point.p[0] + (double)m[4 * i + 1] * point.p[1] + (double)m[4 * i + 2] * point.p[2] +
@@ -285,7 +261,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
     r.n[i] = (double)w[i] * point.n[0] + (double)w[4 + i] * point.n[1] + (double)w[8 + i] * point.n[2];
     r.error[i] = __builtin_fabs((double)m[4 * i]) * point.error[0] +
                  __builtin_fabs((double)m[4 * i + 1]) * point.error[1] +
-                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2];
+                 __builtin_fabs((double)m[4 * i + 2]) * point.error[2] + (double)placing_error(q, x);
     r.ns[i] = (double)w[i] * point.ns[0] + (double)w[4 + i] * point.ns[1] + (double)w[8 + i] * point.ns[2];
   }
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
@@ -368,9 +344,10 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
     const vlWorldShape *s = &world->shapes.items[hits->shape[i]];
     vlVec3 o = vl_vec3(paths->ox[i], paths->oy[i], paths->oz[i]), d = vl_vec3(paths->dx[i], paths->dy[i], paths->dz[i]);
     if (s->kind != VL_SHAPE_TRIANGLES) {
-      vlSurfacePoint q = other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i],
-                                     hits->instance[i], hits->t[i]);
-      store_point(out, i, &q, o, d);
+      float t = hits->t[i];
+      vlSurfacePoint q =
+          other_point(world, vl_path_time(paths, i), o, d, hits->shape[i], hits->prim[i], hits->instance[i], &t);
+      store_point(out, i, &q, t);
     }
   }
   for (uint32_t i = 0; i < padded; i++) {
@@ -406,9 +383,8 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
     r.p[k] = vl_vec3(x[0], x[1], x[2]);
     r.n[k] = vl_vec3(0, 0, 0);
     if (q) {
-      Corner moved = move_corner(q->from_group, x);
-      r.p[k] = moved.p;
-      r.error = vl_max(r.error, moved.error);
+      r.p[k] = move_corner(q->from_group, x);
+      r.error = vl_max(r.error, placing_error(q, x));
     }
     if (s->normals) {
       const float *y = s->normals + 3 * (size_t)f[k];
@@ -426,14 +402,14 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
   return r;
 }
 
-static vlPoint point_of(const vlSurfacePoint *q, vlVec3 o, vlVec3 d) {
+static vlPoint point_of(const vlSurfacePoint *q, float t) {
   vlPoint r;
   r.p = vl_vec3((float)q->p[0], (float)q->p[1], (float)q->p[2]);
   r.g = vl_vec3((float)q->n[0], (float)q->n[1], (float)q->n[2]);
   r.n = vl_vec3((float)q->ns[0], (float)q->ns[1], (float)q->ns[2]);
   r.u = q->uv[0], r.v = q->uv[1];
-  r.t = vl_dot(vl_sub(r.p, o), d);
-  r.offset = 2.0f * GAMMA(7) * (vl_abs(r.g.x * r.p.x) + vl_abs(r.g.y * r.p.y) + vl_abs(r.g.z * r.p.z)) + point_error(q);
+  r.t = t;
+  r.offset = vl_point_offset(q);
   return r;
 }
 
@@ -444,8 +420,8 @@ vlPoint vl_point_at_time(const vlWorld *world, float time, vlVec3 o, vlVec3 d, u
     Triangle t = triangle_point(o, d, c.p[0], c.p[1], c.p[2], c.n[0], c.n[1], c.n[2], c.uv, c.error, c.flip);
     return (vlPoint){t.p, t.g, t.n, t.s, t.t, t.dist, t.offset};
   }
-  vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, t_hit);
-  return point_of(&q, o, d);
+  vlSurfacePoint q = other_point(world, time, o, d, shape, prim, instance, &t_hit);
+  return point_of(&q, t_hit);
 }
 
 /* Gathers the corners of triangles; the points of other shapes are complete. Returns the number of triangles. */
@@ -491,9 +467,10 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, co
     uint32_t i = lanes[k];
     if (world->shapes.items[x->shape[i]].kind == VL_SHAPE_TRIANGLES) continue;
     vlVec3 o = vl_vec3(rays->ox[i], rays->oy[i], rays->oz[i]), d = vl_vec3(rays->dx[i], rays->dy[i], rays->dz[i]);
+    float t = x->hit[i];
     vlSurfacePoint q =
-        other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i], x->prim[i], x->instance[i], x->hit[i]);
-    vlPoint at = point_of(&q, o, d);
+        other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i], x->prim[i], x->instance[i], &t);
+    vlPoint at = point_of(&q, t);
     x->t[i] = at.t;
     x->gx[i] = at.g.x, x->gy[i] = at.g.y, x->gz[i] = at.g.z;
     x->offset[i] = at.offset;

@@ -185,7 +185,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float 
       inv2 * ((r->a[i] * r->rev[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) + x->back * forth * there);
   factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->b, i) ? 0.25f : 1.0f);
   for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * s->rows[3 + c][i] * x->power[c] * factor;
-  vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_origin(xp, xg, x->offset, vl_neg(w)), o);
+  vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
   q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
   q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
   q->t_max[count] = VL_ONE_MINUS_EPSILON;

@@ -81,7 +81,7 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
     vlVec3 g = vl_vec3(x->g[0], x->g[1], x->g[2]);
     gives = cosine = vl_abs(vl_dot(g, c->w));
     back = there * VL_INV_PI;
-    end = vl_offset_origin(end, g, x->offset, vl_neg(c->w));
+    end = vl_offset_end(end, g, x->offset, c->w, c->at);
   }
   r->own[count] = connect;
   r->others[count] = inv2 * (c->ways * back * c->cosine + ways * c->forth * cosine);

@@ -87,6 +87,17 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
   light->direction[0] = g.x, light->direction[1] = g.y, light->direction[2] = g.z;
 }
 
+/* Sets the numbers from which points are sampled, and the bound of the error of such a point: a float's rounding of the
+ * centre, of the point and of the normal (some twenty roundings, area.h), and the deviation of a map that is only nearly
+ * a similarity. */
+static void sphere_light(const vlWorldShape *s, vlVec3 center, float radius, vlWorldLight *light) {
+  const float round = 0x1p-24f;
+  double scale = (double)radius / (double)s->radius;
+  float error = radius * (32 * round + 2 * (float)vl_similarity_error(s->from_shape, scale)) + 4 * round * vl_length(center);
+  const float q[6] = {center.x, center.y, center.z, radius, s->flip ? -1.0f : 1.0f, error};
+  memcpy(light->corners, q, sizeof q);
+}
+
 /* Compiles the emission of a shape into world->emitted, unless an earlier shape has compiled the same emission
  * (*index is then set). */
 static vlResult add_shape_emission(vlWorld *world, const vlScene *scene, const vlEmissionDef *def, uint32_t *index,
@@ -180,10 +191,7 @@ vlResult vl_world_add_shape_lights(vlWorld *world, const vlScene *scene, uint32_
       light->plain_triangle = plain && light->one_sided_normals;
     }
     light->plain_sphere = plain && sphere;
-    if (light->plain_sphere) {
-      const float q[5] = {center.x, center.y, center.z, radius, shape->flip ? -1.0f : 1.0f};
-      memcpy(light->corners, q, sizeof q);
-    }
+    if (sphere) sphere_light(shape, center, radius, light);
     if (shape->kind == VL_SHAPE_DISK) {
       vlSurfacePoint point;
       double pdf;

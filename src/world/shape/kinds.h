@@ -24,8 +24,7 @@ typedef struct vlSurfacePoint {
   double ns[3]; /* shading normal: the interpolated vertex normal, or n if there are no vertex normals */
   double dpdu[3], dpdv[3];
   double dndu[3], dndv[3]; /* derivatives of ns; 0 for curves, which are thin */
-  double error[3]; /* for curves: bound of the error of p along each axis; 0 for other kinds, where only rounding
-                      matters */
+  double error[3]; /* bound of the distance between p and the surface that a ray meets, along each axis */
   float uv[2];
 } vlSurfacePoint;
 /* Derivative of the unit normal n = m / |m|. On entry d is the derivative of m, on return that of n. length: |m|. The
@@ -34,6 +33,10 @@ static inline void vl_normal_derivative(const double n[3], double length, double
   double along = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
   for (int i = 0; i < 3; i++) d[i] = length > 0 ? (d[i] - along * n[i]) / length : 0;
 }
+
+/* Relative error of what is computed in double precision from the numbers of a shape: thousands of roundings, so that
+ * there is room for maps with a condition number of as much. */
+#define VL_SHAPE_ERROR 0x1p-40
 
 /* The functions of one kind of shape. All arguments are in group space. */
 typedef struct vlShapeFunctions {
@@ -46,7 +49,7 @@ typedef struct vlShapeFunctions {
   /* Finds the nearest hit of a ray in (t_min, t_max) and fills the members of hit that `point` reads. False: no hit. */
   bool (*intersect)(const vlWorldShape *shape, uint32_t prim, const double o[3], const double d[3], double t_min,
                     double t_max, vlShapeHit *hit);
-  /* Computes the surface at a hit. The caller sets point->error to 0 before. */
+  /* Computes the surface at a hit. */
   void (*point)(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point);
   /* Samples a point from random numbers u, v in [0, 1), and gives its density per area. The caller sets *point and *pdf
    * to 0 before. */

@@ -9,6 +9,7 @@
 #include "math/motion.h"
 #include "scene/scene.h"
 #include "world/shape/double3.h"
+#include "world/shape/surface_point.h"
 
 /* ---- when -------------------------------------------------------------------------------------------------------- */
 
@@ -134,19 +135,26 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
   return MOST_STEPS;
 }
 
-/* Embree and velo both compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three
- * rounding errors, and f has the rounding error of time * steps. The bound is doubled because both Embree and velo
- * round. */
-static void find_doubt(vlWorldInstance *q) {
+/* The bound for an instance at rest, at the worst of the keys, and that of the interpolated matrix: Embree and velo both
+ * compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three rounding errors, and f has
+ * the rounding error of time * steps. The bound is doubled because both Embree and velo round. */
+static void find_error(vlWorldInstance *q) {
   const float eps = 0x1p-24f;
-  float steps = (float)(q->keys - 1);
+  float steps = (float)(q->keys - 1), mixed[4] = {0, 0, 0, 0};
+  memset(q->error, 0, sizeof q->error);
+  for (uint32_t k = 0; k < q->keys; k++) {
+    vlWorldInstance at;
+    vl_instance_move(q, (float)k / steps, &at);
+    vl_instance_error(at.from_group, at.to_group, q->error);
+  }
   for (uint32_t k = 0; k + 1 < q->keys; k++) {
     const float *a = q->path + 12 * (size_t)k, *b = a + 12;
     for (int i = 0; i < 12; i++) {
       float size = fabsf(a[i]) + fabsf(b[i]), error = 2 * eps * (3 * size + 2 * steps * fabsf(b[i] - a[i]));
-      q->doubt[i % 4] = error > q->doubt[i % 4] ? error : q->doubt[i % 4];
+      mixed[i % 4] = error > mixed[i % 4] ? error : mixed[i % 4];
     }
   }
+  for (int i = 0; i < 4; i++) q->error[i] += mixed[i];
 }
 
 static vlResult fill_path(const Motion *motion, float *path, uint32_t steps, vlError *error) {
@@ -180,7 +188,7 @@ vlResult vl_world_add_motion(vlWorld *world, const vlSceneInstance *source, cons
   if (r != VL_OK) return r;
   q->keys = steps + 1;
   q->path = path;
-  find_doubt(q);
+  find_error(q);
   vlWorldInstance start;
   vl_instance_move(q, 0, &start);
   memcpy(q->from_group, start.from_group, sizeof q->from_group);
@@ -196,7 +204,7 @@ void vl_instance_move(const vlWorldInstance *q, float time, vlWorldInstance *mov
   moved->mirrored = q->mirrored;
   moved->keys = 0;
   moved->path = NULL;
-  memcpy(moved->doubt, q->doubt, sizeof moved->doubt);
+  memcpy(moved->error, q->error, sizeof moved->error);
   for (int i = 0; i < 12; i++) m[i] = a[i] * (1.0f - k.part) + b[i] * k.part;
   double x[3] = {m[0], m[4], m[8]}, y[3] = {m[1], m[5], m[9]}, z[3] = {m[2], m[6], m[10]}, rows[3][3];
   vl_cross3(y, z, rows[0]);

@@ -128,6 +128,9 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
   Patch q = load_patch(s, prim);
   double mixed[3], length;
   patch_position(&q, u, v, point->p);
+  double sum = 0; /* the error is along rays, in any direction */
+  for (int i = 0; i < 3; i++) sum += fabs(q.p00[i]) + fabs(q.p10[i]) + fabs(q.p01[i]) + fabs(q.p11[i]);
+  for (int i = 0; i < 3; i++) point->error[i] = VL_SHAPE_ERROR * sum;
   patch_derivatives(&q, u, v, point->dpdu, point->dpdv);
   vl_cross3(point->dpdu, point->dpdv, point->n);
   length = vl_normalize3(point->n);

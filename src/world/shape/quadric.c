@@ -161,11 +161,23 @@ static void quadric_normal(const Quadric *s, const double p[3], double n[3]) {
   n[2] = s->kind == VL_SHAPE_DISK ? 1 : s->kind == VL_SHAPE_SPHERE ? p[2] / s->radius : 0;
 }
 
+/* Rounding errors are those of the numbers that a point is computed from, which may be larger than the point. */
+static void quadric_error(const Quadric *s, double error[3]) {
+  double size = fmax(s->radius, s->kind == VL_SHAPE_DISK ? fabsf(s->height) : fmaxf(fabsf(s->z_min), fabsf(s->z_max)));
+  for (int i = 0; i < 3; i++) {
+    const double *m = s->from_shape + 4 * i;
+    error[i] = fabs(m[3]);
+    for (int j = 0; j < 3; j++) error[i] += fabs(m[j]) * (size + (s->center ? fabs(s->center[j]) : 0));
+    error[i] *= VL_SHAPE_ERROR;
+  }
+}
+
 static void describe(const Quadric *s, const double p[3], vlSurfacePoint *point) {
   double dpdu[3], dpdv[3], n[3];
   quadric_derivatives(s, p, dpdu, dpdv, point->uv);
   quadric_normal(s, p, n);
   from_own(s, p, point->p);
+  quadric_error(s, point->error);
   vl_map_vector(s->from_shape, dpdu, point->dpdu);
   vl_map_vector(s->from_shape, dpdv, point->dpdv);
   vl_map_normal(s->to_shape, n, point->n);
@@ -220,14 +232,16 @@ static void quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, fl
   Quadric quadric = load(shape, prim), *s = &quadric;
   double p[3];
   vlSinCos a = vl_sincos((float)(u * s->phi_max));
+  /* Normalised, because the rounding of floats would put the point off the surface. */
+  double length = sqrt((double)a.cos * a.cos + (double)a.sin * a.sin), x = a.cos / length, y = a.sin / length;
   if (s->kind == VL_SHAPE_DISK) {
     double inner2 = (double)s->inner_radius * s->inner_radius, outer2 = (double)s->radius * s->radius;
     double r = sqrt(inner2 + v * (outer2 - inner2));
-    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = s->height;
+    p[0] = r * x, p[1] = r * y, p[2] = s->height;
   } else {
     double z = s->z_min + v * ((double)s->z_max - s->z_min);
     double r = s->kind == VL_SHAPE_SPHERE ? sqrt(fmax(0, (double)s->radius * s->radius - z * z)) : s->radius;
-    p[0] = r * a.cos, p[1] = r * a.sin, p[2] = z;
+    p[0] = r * x, p[1] = r * y, p[2] = z;
   }
   describe(s, p, point);
   double n[3];

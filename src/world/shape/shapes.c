@@ -256,6 +256,7 @@ static vlResult add_instances(vlWorld *world, const vlScene *scene, vlError *err
     instance->mirrored = vl_mat4_determinant3(m) < 0;
     store_affine_f(&m, instance->from_group);
     store_affine_f(&inverse, instance->to_group);
+    vl_instance_error(instance->from_group, instance->to_group, instance->error);
     if (source->keys == 0) continue;
     const vlWorldGroup *group = &world->groups.items[source->group.index];
     vlResult r = vl_world_add_motion(world, source, group->low, group->high, instance, error);

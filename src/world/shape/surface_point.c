@@ -1,6 +1,7 @@
 /* world/shape/surface_point.c: calls the function of a shape's kind (kinds.h); bounds and area of primitives. */
 #include "world/shape/surface_point.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "velo/schema.h"
@@ -12,6 +13,18 @@ void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) 
     o[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
     d[i] = m[4 * i] * v[0] + m[4 * i + 1] * v[1] + m[4 * i + 2] * v[2];
   }
+}
+
+void vl_instance_error(const float m[12], const float w[12], float error[4]) {
+  const float gamma4 = 4 * 0x1p-24f;
+  float spread = 0; /* the largest sum of a row of |m| |w| */
+  for (int i = 0; i < 3; i++) {
+    float row = 0;
+    for (int k = 0; k < 3; k++)
+      for (int j = 0; j < 3; j++) row += fabsf(m[4 * i + k] * w[4 * k + j]);
+    spread = fmaxf(spread, row);
+  }
+  for (int i = 0; i < 12; i++) error[i % 4] = fmaxf(error[i % 4], gamma4 * spread * fabsf(m[i]));
 }
 
 #define FUNCTIONS(K, k) [VL_SHAPE_##K] = &vl_shape_functions_##k,
@@ -30,12 +43,10 @@ bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o
 }
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
-  memset(point->error, 0, sizeof point->error);
   functions[shape->kind]->point(shape, prim, hit, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
-  memset(point->error, 0, sizeof point->error);
   *pdf = 0;
   functions[shape->kind]->sample(shape, prim, u, v, point, pdf);
 }

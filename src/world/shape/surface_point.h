@@ -8,6 +8,11 @@
 /* Transforms a world-space ray to the space of an instance's group; t is unchanged. */
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
 
+/* Raises vlWorldInstance.error to the bound for these maps: from_group m and its inverse w, both rounded to floats. A
+ * point x of the group is placed at m x; a ray is mapped by w, which puts it at w m x, off by rounding errors of at most
+ * gamma |w| (|m| |x|), and so off by |m| times that in world space. Embree computes its own w, with errors as large. */
+void vl_instance_error(const float m[12], const float w[12], float error[4]);
+
 /* Fills the members of *shape that only its kind has. to_group, from_group: the def's transform and its inverse. */
 vlResult vl_shape_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
                           vlWorldShape *shape, vlError *error);
@@ -31,6 +36,19 @@ static inline bool vl_is_similarity(const double m[12], double *scale) {
   }
   *scale = __builtin_sqrt(l[0]);
   return true;
+}
+
+/* By how much the radius of a unit sphere under a map of vl_is_similarity may deviate from `scale`, relative to it: bound
+ * from the entries of m^T m / scale^2 - 1 (Gershgorin's circles). */
+static inline double vl_similarity_error(const double m[12], double scale) {
+  double most = 0;
+  for (int i = 0; i < 3; i++) {
+    double sum = 0;
+    for (int j = 0; j < 3; j++)
+      sum += __builtin_fabs((m[i] * m[j] + m[4 + i] * m[4 + j] + m[8 + i] * m[8 + j]) / (scale * scale) - (i == j));
+    most = sum > most ? sum : most;
+  }
+  return most;
 }
 
 /* Centre and radius of a full sphere under a similarity, in group space; false for any other shape. */

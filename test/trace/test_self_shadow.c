@@ -1,6 +1,6 @@
 /* test_self_shadow.c: a shape neither hides a point of itself from what is in front of that point, nor catches a ray
- * that leaves it. Checked without statistics: no ray of many may be blocked. The shapes are convex, or plane, so that no
- * blocked ray is right. They touch the origin of the world with points far from their own centre, corners and
+ * that leaves it. Checked without statistics: no ray of many may be blocked. The shapes are convex, or plane, so that
+ * no blocked ray is right. They touch the origin of the world with points far from their own centre, corners and
  * transforms, where numbers are large and their sums small. */
 #include <math.h>
 #include <setjmp.h>
@@ -82,15 +82,28 @@ static void multiply(const double a[16], const double b[16], double m[16]) {
 static void rotation(statRng *rng, double m[16]) {
   double a[3], angle = 6.28 * stat_double(rng), s = sin(angle), c = cos(angle);
   stat_direction(rng, a);
-  const double r[16] = {c + a[0] * a[0] * (1 - c),        a[0] * a[1] * (1 - c) - a[2] * s, a[0] * a[2] * (1 - c) + a[1] * s, 0,
-                        a[1] * a[0] * (1 - c) + a[2] * s, c + a[1] * a[1] * (1 - c),        a[1] * a[2] * (1 - c) - a[0] * s, 0,
-                        a[2] * a[0] * (1 - c) - a[1] * s, a[2] * a[1] * (1 - c) + a[0] * s, c + a[2] * a[2] * (1 - c),        0,
-                        0, 0, 0, 1};
+  const double r[16] = {c + a[0] * a[0] * (1 - c),
+                        a[0] * a[1] * (1 - c) - a[2] * s,
+                        a[0] * a[2] * (1 - c) + a[1] * s,
+                        0,
+                        a[1] * a[0] * (1 - c) + a[2] * s,
+                        c + a[1] * a[1] * (1 - c),
+                        a[1] * a[2] * (1 - c) - a[0] * s,
+                        0,
+                        a[2] * a[0] * (1 - c) - a[1] * s,
+                        a[2] * a[1] * (1 - c) + a[0] * s,
+                        c + a[2] * a[2] * (1 - c),
+                        0,
+                        0,
+                        0,
+                        0,
+                        1};
   memcpy(m, r, sizeof r);
 }
 
 typedef enum Map { SHIFT, TURNED, SMALL, LARGE, STRETCHED, SHEARED, MIRRORED, ALMOST_ROUND, MAPS } Map;
-static const char *const map_names[] = {"shifted", "turned", "small", "large", "stretched", "sheared", "mirrored", "almost round"};
+static const char *const map_names[] = {"shifted",   "turned",  "small",    "large",
+                                        "stretched", "sheared", "mirrored", "almost round"};
 
 static void linear_map(Map map, statRng *rng, double m[16]) {
   double a[16], b[16], scale[16] = {0};

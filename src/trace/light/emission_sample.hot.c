@@ -94,8 +94,7 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
   vlVec2 b01 = vl_warp_triangle(u, v);
   float b[3] = {b01.x, b01.y, 1.0f - b01.x - b01.y};
   vlVec3 corner[3];
-  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]),
-            .weights = {b[0], b[1], b[2]}};
+  Spot r = {.n = vl_vec3(light->direction[0], light->direction[1], light->direction[2]), .weights = {b[0], b[1], b[2]}};
   vlVec3 ns = vl_vec3(0, 0, 0);
   const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
   for (int k = 0; k < 3; k++) {

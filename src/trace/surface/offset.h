@@ -19,10 +19,10 @@ static inline float vl_abs_dot(vlVec3 a, vlVec3 b) {
 
 /* The offset of a point b0 p0 + b1 p1 + b2 p2 of a triangle with normal g. corner_error: bound of the error of each
  * corner's coordinates. The first term is pbrt's bound of the point's error (book 6.8.3), projected on the normal. The
- * second is the error of the distance that a new ray is given to this triangle. Embree and the brute force go from one of
- * its corners, so the error grows with the distance from the corners. And they round its normal, which Embree computes
- * from two edges, those of the largest angle at best: the error of the normal grows with 1 / sine of that angle. (Up to
- * a limit: a triangle so thin is hardly hit.) All are doubled. */
+ * second is the error of the distance that a new ray is given to this triangle. Embree and the brute force go from one
+ * of its corners, so the error grows with the distance from the corners. And they round its normal, which Embree
+ * computes from two edges, those of the largest angle at best: the error of the normal grows with 1 / sine of that
+ * angle. (Up to a limit: a triangle so thin is hardly hit.) All are doubled. */
 static inline float vl_triangle_offset(vlVec3 g, vlVec3 p, vlVec3 p0, vlVec3 p1, vlVec3 p2, float b0, float b1,
                                        float b2, float corner_error) {
   const float most = 1e3f;
@@ -67,8 +67,8 @@ static inline vlVec3 vl_offset_origin(vlVec3 p, vlVec3 g, float offset, vlVec3 w
   vlVec3 d = vl_mul(g, side);
   return vl_vec3(vl_nudge(p.x + d.x, d.x), vl_nudge(p.y + d.y, d.y), vl_nudge(p.z + d.z, d.z));
 }
-/* End of a shadow ray that arrives in direction w at the surface point p, from the point `from`. The ray's direction and
- * its end are rounded in proportion to its length, as are distances to surfaces far from its origin. */
+/* End of a shadow ray that arrives in direction w at the surface point p, from the point `from`. The ray's direction
+ * and its end are rounded in proportion to its length, as are distances to surfaces far from its origin. */
 static inline vlVec3 vl_offset_end(vlVec3 p, vlVec3 g, float offset, vlVec3 w, vlVec3 from) {
   return vl_offset_origin(p, g, offset + 2.0f * VL_GAMMA(5) * vl_abs_dot(g, vl_sub(p, from)), vl_neg(w));
 }

@@ -166,8 +166,8 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   vlVec3 cross = vl_cross(e02, e12);
   vlVec3 g = vl_normalize(near_one(cross));
   r.offset = vl_triangle_offset(g, r.p, p0, p1, p2, b0, b1, b2, corner_error);
-  /* The distance to the triangle's plane. It does not depend on where in the plane p is, which is uncertain in triangles
-   * that are thin and far away. */
+  /* The distance to the triangle's plane. It does not depend on where in the plane p is, which is uncertain in
+   * triangles that are thin and far away. */
   vlVec3 way = vl_sub(r.p, o);
   float along = vl_dot(way, d), steep = vl_dot(g, d), height = vl_dot(g, way);
   r.dist = vl_abs(steep) > 0.01f ? height / steep : along;

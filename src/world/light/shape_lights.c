@@ -88,12 +88,13 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
 }
 
 /* Sets the numbers from which points are sampled, and the bound of the error of such a point: a float's rounding of the
- * centre, of the point and of the normal (some twenty roundings, area.h), and the deviation of a map that is only nearly
- * a similarity. */
+ * centre, of the point and of the normal (some twenty roundings, area.h), and the deviation of a map that is only
+ * nearly a similarity. */
 static void sphere_light(const vlWorldShape *s, vlVec3 center, float radius, vlWorldLight *light) {
   const float round = 0x1p-24f;
   double scale = (double)radius / (double)s->radius;
-  float error = radius * (32 * round + 2 * (float)vl_similarity_error(s->from_shape, scale)) + 4 * round * vl_length(center);
+  float error =
+      radius * (32 * round + 2 * (float)vl_similarity_error(s->from_shape, scale)) + 4 * round * vl_length(center);
   const float q[6] = {center.x, center.y, center.z, radius, s->flip ? -1.0f : 1.0f, error};
   memcpy(light->corners, q, sizeof q);
 }

@@ -24,7 +24,7 @@ typedef struct vlSurfacePoint {
   double ns[3]; /* shading normal: the interpolated vertex normal, or n if there are no vertex normals */
   double dpdu[3], dpdv[3];
   double dndu[3], dndv[3]; /* derivatives of ns; 0 for curves, which are thin */
-  double error[3]; /* bound of the distance between p and the surface that a ray meets, along each axis */
+  double error[3];         /* bound of the distance between p and the surface that a ray meets, along each axis */
   float uv[2];
 } vlSurfacePoint;
 /* Derivative of the unit normal n = m / |m|. On entry d is the derivative of m, on return that of n. length: |m|. The

@@ -135,9 +135,9 @@ static uint32_t choose_steps(const Motion *motion, const float low[3], const flo
   return MOST_STEPS;
 }
 
-/* The bound for an instance at rest, at the worst of the keys, and that of the interpolated matrix: Embree and velo both
- * compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three rounding errors, and f has
- * the rounding error of time * steps. The bound is doubled because both Embree and velo round. */
+/* The bound for an instance at rest, at the worst of the keys, and that of the interpolated matrix: Embree and velo
+ * both compute a (1 - f) + b f, where f is the fractional part of time * steps. The sum has three rounding errors, and
+ * f has the rounding error of time * steps. The bound is doubled because both Embree and velo round. */
 static void find_error(vlWorldInstance *q) {
   const float eps = 0x1p-24f;
   float steps = (float)(q->keys - 1), mixed[4] = {0, 0, 0, 0};

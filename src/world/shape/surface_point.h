@@ -9,8 +9,9 @@
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]);
 
 /* Raises vlWorldInstance.error to the bound for these maps: from_group m and its inverse w, both rounded to floats. A
- * point x of the group is placed at m x; a ray is mapped by w, which puts it at w m x, off by rounding errors of at most
- * gamma |w| (|m| |x|), and so off by |m| times that in world space. Embree computes its own w, with errors as large. */
+ * point x of the group is placed at m x; a ray is mapped by w, which puts it at w m x, off by rounding errors of at
+ * most gamma |w| (|m| |x|), and so off by |m| times that in world space. Embree computes its own w, with errors as
+ * large. */
 void vl_instance_error(const float m[12], const float w[12], float error[4]);
 
 /* Fills the members of *shape that only its kind has. to_group, from_group: the def's transform and its inverse. */
@@ -38,8 +39,8 @@ static inline bool vl_is_similarity(const double m[12], double *scale) {
   return true;
 }
 
-/* By how much the radius of a unit sphere under a map of vl_is_similarity may deviate from `scale`, relative to it: bound
- * from the entries of m^T m / scale^2 - 1 (Gershgorin's circles). */
+/* By how much the radius of a unit sphere under a map of vl_is_similarity may deviate from `scale`, relative to it:
+ * bound from the entries of m^T m / scale^2 - 1 (Gershgorin's circles). */
 static inline double vl_similarity_error(const double m[12], double scale) {
   double most = 0;
   for (int i = 0; i < 3; i++) {

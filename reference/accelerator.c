@@ -14,19 +14,6 @@ struct node {
 
 enum { LEAF = 4, DEPTH = 128 };
 
-static void bound(const world *w, const primitive *p, vector *low, vector *high) {
-  if (!is_triangle(p, w)) {
-    bound_quadric(w, p, low, high);
-    return;
-  }
-  *low = *high = p->corner[0];
-  for (int k = 1; k < 3; k++) {
-    vector c = p->corner[k];
-    *low = make_vector(fmin(low->x, c.x), fmin(low->y, c.y), fmin(low->z, c.z));
-    *high = make_vector(fmax(high->x, c.x), fmax(high->y, c.y), fmax(high->z, c.z));
-  }
-}
-
 static double along(vector v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
@@ -34,10 +21,10 @@ static double along(vector v, int axis) {
 /* ---- building ---------------------------------------------------------------------------------------------------- */
 
 static void bound_all(const world *w, uint32_t first, uint32_t count, vector *low, vector *high) {
-  bound(w, &w->primitives[w->order[first]], low, high);
+  bound_shape(w, &w->primitives[w->order[first]], low, high);
   for (uint32_t i = first + 1; i < first + count; i++) {
     vector l, h;
-    bound(w, &w->primitives[w->order[i]], &l, &h);
+    bound_shape(w, &w->primitives[w->order[i]], &l, &h);
     *low = make_vector(fmin(low->x, l.x), fmin(low->y, l.y), fmin(low->z, l.z));
     *high = make_vector(fmax(high->x, h.x), fmax(high->y, h.y), fmax(high->z, h.z));
   }
@@ -49,7 +36,7 @@ static uint32_t divide(world *w, uint32_t first, uint32_t count, int axis, doubl
   for (uint32_t i = 0; i < count; i++) {
     vector low, high;
     uint32_t index = w->order[first + i];
-    bound(w, &w->primitives[index], &low, &high);
+    bound_shape(w, &w->primitives[index], &low, &high);
     if ((along(low, axis) + along(high, axis)) / 2 >= plane) continue;
     w->order[first + i] = w->order[first + below];
     w->order[first + below++] = index;
@@ -110,15 +97,6 @@ static bool meets_box(const node *n, ray r) {
   return from <= to;
 }
 
-static void surface_of(const world *w, const primitive *p, ray r, double t, shade_record *record) {
-  vector point = add(r.origin, scale(t, r.direction));
-  if (is_triangle(p, w))
-    triangle_surface(w, p, point, record);
-  else
-    quadric_surface(w, p, point, record);
-  record->t = t;
-}
-
 /* Alpha is the share of the surface that is there. */
 static bool is_there(const world *w, const shade_record *record, sampler *s) {
   double alpha = number_at(w, record->where->def->alpha, record);
@@ -126,17 +104,18 @@ static bool is_there(const world *w, const shade_record *record, sampler *s) {
   return alpha > 0 && next_number(s) < alpha;
 }
 
-/* The nearest hit of one primitive that is there; a ray may meet a quadric twice. */
+/* The nearest hit of one primitive that is there; a ray may meet a curved one twice. */
 static bool meet_primitive(const world *w, const primitive *p, ray r, sampler *s, shade_record *hit) {
-  double t;
-  while (is_triangle(p, w) ? meet_triangle(p, r, &t) : meet_quadric(w, p, r, &t)) {
+  meeting m;
+  while (meet_shape(w, p, r, &m)) {
     shade_record record;
-    surface_of(w, p, r, t, &record);
+    shape_surface(w, p, m.a, m.b, &record);
+    record.t = m.t;
     if (is_there(w, &record, s)) {
       *hit = record;
       return true;
     }
-    r.t_min = t;
+    r.t_min = m.t;
   }
   return false;
 }

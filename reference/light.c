@@ -64,9 +64,10 @@ static bool read_surface_light(const world *w, const primitive *p, light *l, vlE
     return false;
   }
   if (!is_set(def->power) || !(def->power > 0)) return true;
-  if (!is_triangle(p, w) || def->texture.index) return refuse(error, def->source, "this emission by power", NULL);
+  if (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index)
+    return refuse(error, def->source, "this emission by power", NULL);
   shade_record center;
-  triangle_surface(w, p, p->corner[0], &center);
+  shape_surface(w, p, 0, 0, &center);
   l->factor *= def->power * center.area_density / (PI * (def->two_sided ? 2 : 1));
   return true;
 }
@@ -138,10 +139,7 @@ double density_of_surface(const world *w, const shade_record *at, vector point) 
 static bool sample_surface(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                            light_sample *result) {
   shade_record at;
-  if (is_triangle(l->what, w))
-    sample_triangle(w, l->what, s, &at);
-  else
-    sample_quadric(w, l->what, s, &at);
+  sample_shape(w, l->what, s, &at);
   vector to_light = subtract(at.point, point);
   result->distance = length(to_light);
   if (result->distance == 0) return false;

@@ -38,7 +38,22 @@ static int roots(double a, double half_b, double c, double t[2]) {
   return 2;
 }
 
-bool meet_quadric(const world *w, const primitive *p, ray r, double *t) {
+/* (u, v) of a point on the shape, in its space. */
+static void uv_at(const vlShapeDef *def, vector p, double *u, double *v) {
+  double radius = (double)def->radius;
+  *u = angle_of(p) / (double)def->phi_max;
+  if (def->kind == VL_SHAPE_CYLINDER) {
+    *v = (p.z - (double)def->z_min) / ((double)def->z_max - (double)def->z_min);
+  } else if (def->kind == VL_SHAPE_DISK) {
+    *v = (radius - sqrt(p.x * p.x + p.y * p.y)) / (radius - (double)def->inner_radius);
+  } else {
+    double theta_min = acos(clamp((double)def->z_min / radius, -1, 1));
+    double theta_max = acos(clamp((double)def->z_max / radius, -1, 1));
+    *v = (acos(clamp(p.z / radius, -1, 1)) - theta_min) / (theta_max - theta_min);
+  }
+}
+
+bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   const placement *where = &w->placements[p->placement];
   const vlShapeDef *def = where->def;
   vector o = transform_point(&where->shape_from_world, r.origin);
@@ -61,8 +76,10 @@ bool meet_quadric(const world *w, const primitive *p, ray r, double *t) {
   }
   for (int i = 0; i < count; i++) {
     if (!(candidates[i] > r.t_min && candidates[i] < r.t_max)) continue;
-    if (!is_kept(def, add(o, scale(candidates[i], d)))) continue;
-    *t = candidates[i];
+    vector point = add(o, scale(candidates[i], d));
+    if (!is_kept(def, point)) continue;
+    m->t = candidates[i];
+    uv_at(def, point, &m->a, &m->b);
     return true;
   }
   return false;
@@ -93,68 +110,26 @@ static vector point_at(const vlShapeDef *def, double u, double v, vector *dpdu, 
   return p;
 }
 
-/* (u, v) of a point on the shape. */
-static void uv_at(const vlShapeDef *def, vector p, double *u, double *v) {
-  double radius = (double)def->radius;
-  *u = angle_of(p) / (double)def->phi_max;
-  if (def->kind == VL_SHAPE_CYLINDER) {
-    *v = (p.z - (double)def->z_min) / ((double)def->z_max - (double)def->z_min);
-  } else if (def->kind == VL_SHAPE_DISK) {
-    *v = (radius - sqrt(p.x * p.x + p.y * p.y)) / (radius - (double)def->inner_radius);
-  } else {
-    double theta_min = acos(clamp((double)def->z_min / radius, -1, 1));
-    double theta_max = acos(clamp((double)def->z_max / radius, -1, 1));
-    *v = (acos(clamp(p.z / radius, -1, 1)) - theta_min) / (theta_max - theta_min);
-  }
-}
-
 /* The surface at (u, v). (u, v) is drawn uniformly from the unit square, so a point has the density 1 / |dp/du x dp/dv|
  * per area: that holds under any transform. */
-static void surface_at_uv(const placement *where, double u, double v, shade_record *record) {
+void quadric_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
+  const placement *where = &w->placements[p->placement];
   const vlShapeDef *def = where->def;
   vector dpdu, dpdv;
-  vector p = point_at(def, u, v, &dpdu, &dpdv);
+  vector point = point_at(def, u, v, &dpdu, &dpdv);
   vector n = cross(dpdu, dpdv);
-  if (length(n) == 0) n = def->kind == VL_SHAPE_SPHERE ? p : make_vector(0, 0, 1); /* a pole */
+  if (length(n) == 0) n = def->kind == VL_SHAPE_SPHERE ? point : make_vector(0, 0, 1); /* a pole */
   n = normalize(transform_normal(&where->shape_from_world, n));
   vector along_u = transform_vector(&where->world_from_shape, dpdu);
   vector along_v = transform_vector(&where->world_from_shape, dpdv);
   double area = length(cross(along_u, along_v));
-  record->point = transform_point(&where->world_from_shape, p);
+  record->point = transform_point(&where->world_from_shape, point);
   record->normal = where->flip ? negate(n) : n;
   record->shading_normal = record->normal;
   record->tangent = along_u;
   record->u = u;
   record->v = v;
   record->area_density = area > 0 ? 1 / area : 0;
+  record->what = p;
   record->where = where;
-}
-
-void quadric_surface(const world *w, const primitive *p, vector point, shade_record *record) {
-  const placement *where = &w->placements[p->placement];
-  double u, v;
-  uv_at(where->def, transform_point(&where->shape_from_world, point), &u, &v);
-  surface_at_uv(where, u, v, record);
-  record->what = p;
-}
-
-void sample_quadric(const world *w, const primitive *p, sampler *s, shade_record *record) {
-  square_point u = sample_unit_square(s);
-  surface_at_uv(&w->placements[p->placement], u.x, u.y, record);
-  record->what = p;
-}
-
-/* The box in the space of the shape, its corners taken to the world. */
-void bound_quadric(const world *w, const primitive *p, vector *low, vector *high) {
-  const placement *where = &w->placements[p->placement];
-  const vlShapeDef *def = where->def;
-  double radius = (double)def->radius, bottom = (double)def->z_min, top = (double)def->z_max;
-  if (def->kind == VL_SHAPE_DISK) bottom = top = (double)def->height;
-  for (int k = 0; k < 8; k++) {
-    vector corner = make_vector(k & 1 ? radius : -radius, k & 2 ? radius : -radius, k & 4 ? top : bottom);
-    vector q = transform_point(&where->world_from_shape, corner);
-    if (k == 0) *low = *high = q;
-    *low = make_vector(fmin(low->x, q.x), fmin(low->y, q.y), fmin(low->z, q.z));
-    *high = make_vector(fmax(high->x, q.x), fmax(high->y, q.y), fmax(high->z, q.z));
-  }
 }

@@ -3,7 +3,7 @@
 
 /* Moeller and Trumbore 1997: the point origin + t direction lies in the plane at corner0 + b1 edge1 + b2 edge2.
  * Cramer's rule gives t, b1 and b2; the point is in the triangle if b1, b2 and 1 - b1 - b2 are not negative. */
-bool meet_triangle(const primitive *p, ray r, double *t) {
+bool meet_triangle(const primitive *p, ray r, meeting *m) {
   vector edge1 = subtract(p->corner[1], p->corner[0]);
   vector edge2 = subtract(p->corner[2], p->corner[0]);
   vector h = cross(r.direction, edge2);
@@ -15,20 +15,8 @@ bool meet_triangle(const primitive *p, ray r, double *t) {
   vector q = cross(from_corner, edge1);
   double b2 = dot(r.direction, q) / d;
   if (b2 < 0 || b1 + b2 > 1) return false;
-  *t = dot(edge2, q) / d;
-  return *t > r.t_min && *t < r.t_max;
-}
-
-/* The weights of the corners at a point of the plane: the areas of the three parts. */
-static void weights_at(const primitive *p, vector point, double b[3]) {
-  vector edge1 = subtract(p->corner[1], p->corner[0]);
-  vector edge2 = subtract(p->corner[2], p->corner[0]);
-  vector n = cross(edge1, edge2);
-  vector from_corner = subtract(point, p->corner[0]);
-  double area = dot(n, n);
-  b[1] = dot(cross(from_corner, edge2), n) / area;
-  b[2] = dot(cross(edge1, from_corner), n) / area;
-  b[0] = 1 - b[1] - b[2];
+  *m = (meeting){dot(edge2, q) / d, b1, b2};
+  return m->t > r.t_min && m->t < r.t_max;
 }
 
 static const double standard_uv[3][2] = {{0, 0}, {1, 0}, {1, 1}};
@@ -52,50 +40,40 @@ static vector tangent_of(const primitive *p, double uv[3][2], vector normal) {
 
 /* Sides: the normal of a mesh is the cross product of its edges in the space of its shape, turned by
  * reverse_orientation; vertex normals, where there are any, decide the side instead. */
-void triangle_surface(const world *w, const primitive *p, vector point, shade_record *record) {
-  const placement *where = &w->placements[p->placement];
+void mesh_normals(const placement *where, const mesh_corner *corners, int count, vector by_edges,
+                  shade_record *record) {
   const vlShapeDef *def = where->def;
-  double b[3], uv[3][2];
-  weights_at(p, point, b);
-  for (int k = 0; k < 3; k++) uv_of_corner(def, p->face, k, uv[k]);
-  vector n = cross(subtract(p->corner[1], p->corner[0]), subtract(p->corner[2], p->corner[0]));
-  double area = 0.5 * length(n);
-  n = normalize(n);
-  if (where->mesh_mirrored) n = negate(n);
-  vector interpolated = n;
-  if (def->normals) {
-    vector corner[3];
-    for (int k = 0; k < 3; k++) {
-      const float *own = def->normals + 3 * (size_t)def->indices[3 * (size_t)p->face + (size_t)k];
-      corner[k] = normalize(transform_normal(&where->shape_from_world, from_floats(own)));
-    }
-    interpolated = blend(corner[0], corner[1], corner[2], b[0], b[1], b[2]);
-    if (length(interpolated) > 0) interpolated = normalize(interpolated);
-    if (length(interpolated) == 0) interpolated = n;
-    if (def->reverse_orientation) interpolated = negate(interpolated);
-    n = face_forward(n, interpolated);
-  } else if (def->reverse_orientation) {
-    n = negate(n);
-    interpolated = n;
-  }
-  record->point = point;
+  vector n = normalize(by_edges);
+  if (where->mesh_mirrored != (def->reverse_orientation && !def->normals)) n = negate(n);
   record->normal = n;
-  record->shading_normal = interpolated;
-  record->u = b[0] * uv[0][0] + b[1] * uv[1][0] + b[2] * uv[2][0];
-  record->v = b[0] * uv[0][1] + b[1] * uv[1][1] + b[2] * uv[2][1];
-  record->tangent = tangent_of(p, uv, n);
-  record->area_density = 1 / area;
-  record->what = p;
-  record->where = where;
+  record->shading_normal = n;
+  if (!def->normals) return;
+  vector sum = make_vector(0, 0, 0);
+  for (int k = 0; k < count; k++) {
+    vector own = from_floats(def->normals + 3 * (size_t)corners[k].vertex);
+    sum = add(sum, scale(corners[k].weight, normalize(transform_normal(&where->shape_from_world, own))));
+  }
+  if (length(sum) == 0) return;
+  record->shading_normal = scale(def->reverse_orientation ? -1 : 1, normalize(sum));
+  record->normal = face_forward(n, record->shading_normal);
 }
 
-/* Folding the unit square on its diagonal makes a uniform point of a triangle. */
-void sample_triangle(const world *w, const primitive *p, sampler *s, shade_record *record) {
-  square_point u = sample_unit_square(s);
-  if (u.x + u.y > 1) {
-    u.x = 1 - u.x;
-    u.y = 1 - u.y;
+void triangle_surface(const world *w, const primitive *p, double b1, double b2, shade_record *record) {
+  const placement *where = &w->placements[p->placement];
+  const vlShapeDef *def = where->def;
+  double b[3] = {1 - b1 - b2, b1, b2}, uv[3][2];
+  mesh_corner corners[3];
+  for (int k = 0; k < 3; k++) {
+    corners[k] = (mesh_corner){def->indices[3 * (size_t)p->face + (size_t)k], b[k]};
+    uv_of_corner(def, p->face, k, uv[k]);
   }
-  vector point = blend(p->corner[0], p->corner[1], p->corner[2], 1 - u.x - u.y, u.x, u.y);
-  triangle_surface(w, p, point, record);
+  vector by_edges = cross(subtract(p->corner[1], p->corner[0]), subtract(p->corner[2], p->corner[0]));
+  mesh_normals(where, corners, 3, by_edges, record);
+  record->point = blend(p->corner[0], p->corner[1], p->corner[2], b[0], b[1], b[2]);
+  record->u = b[0] * uv[0][0] + b[1] * uv[1][0] + b[2] * uv[2][0];
+  record->v = b[0] * uv[0][1] + b[1] * uv[1][1] + b[2] * uv[2][1];
+  record->tangent = tangent_of(p, uv, record->normal);
+  record->area_density = 2 / length(by_edges);
+  record->what = p;
+  record->where = where;
 }

@@ -15,6 +15,7 @@
 static bool check_shape(const vlShapeDef *def, vlError *error) {
   switch (def->kind) {
     case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_BILINEAR:
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER: break;
@@ -72,31 +73,36 @@ static bool place_shape(world *w, const vlShapeDef *def, vlError *error) {
 
 /* ---- primitives -------------------------------------------------------------------------------------------------- */
 
-static void add_triangle(world *w, uint32_t index, uint32_t face) {
+static int corners_of(const vlShapeDef *def) {
+  return def->kind == VL_SHAPE_TRIANGLES ? 3 : def->kind == VL_SHAPE_BILINEAR ? 4 : 0;
+}
+
+/* A face of a mesh. One without area is never met, and emits nothing: it is left out. */
+static void add_face(world *w, uint32_t index, uint32_t face, int corners) {
   const placement *where = &w->placements[index];
   primitive *p = &w->primitives[w->primitive_count++];
   *p = (primitive){.placement = index, .face = face, .light = -1};
-  for (int k = 0; k < 3; k++) {
-    uint32_t vertex = where->def->indices[3 * (size_t)face + (size_t)k];
+  for (int k = 0; k < corners; k++) {
+    uint32_t vertex = where->def->indices[(size_t)corners * face + (size_t)k];
     p->corner[k] = transform_point(&where->world_from_shape, from_floats(where->def->positions + 3 * (size_t)vertex));
   }
-  /* a triangle without area is never met, and emits nothing */
   vector n = cross(subtract(p->corner[1], p->corner[0]), subtract(p->corner[2], p->corner[0]));
-  if (!(length(n) > 0)) w->primitive_count--;
+  if (corners == 3 && !(length(n) > 0)) w->primitive_count--;
 }
 
 static bool add_primitives(world *w, vlError *error) {
   size_t most = 0;
   for (uint32_t i = 0; i < w->placement_count; i++) {
     const vlShapeDef *def = w->placements[i].def;
-    most += def->kind == VL_SHAPE_TRIANGLES ? def->faces : 1;
+    most += corners_of(def) > 0 ? def->faces : 1;
   }
   w->primitives = malloc((most + 1) * sizeof *w->primitives);
   if (!w->primitives) return refuse_memory(error);
   for (uint32_t i = 0; i < w->placement_count; i++) {
     const vlShapeDef *def = w->placements[i].def;
-    if (def->kind != VL_SHAPE_TRIANGLES) w->primitives[w->primitive_count++] = (primitive){.placement = i, .light = -1};
-    for (uint32_t face = 0; def->kind == VL_SHAPE_TRIANGLES && face < def->faces; face++) add_triangle(w, i, face);
+    int corners = corners_of(def);
+    if (corners == 0) w->primitives[w->primitive_count++] = (primitive){.placement = i, .light = -1};
+    for (uint32_t face = 0; corners > 0 && face < def->faces; face++) add_face(w, i, face, corners);
   }
   return true;
 }

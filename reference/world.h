@@ -28,7 +28,7 @@ typedef struct primitive {
   uint32_t placement; /* in the world's list */
   uint32_t face;      /* of a mesh */
   int32_t light;      /* in the world's list of lights; -1: it emits none */
-  vector corner[3];   /* of a triangle, in the world */
+  vector corner[4];   /* of a triangle or a patch, in the world */
 } primitive;
 
 /* The lecture's shade record: all that is known of the point where a ray meets a surface. */
@@ -83,20 +83,33 @@ bool make_accelerator(world *w);
  * probability. */
 bool find_hit(const world *w, ray r, sampler *s, shade_record *hit);
 
-/* triangle.c and quadric.c: one primitive. `t` is set to the distance of a hit within the ray. */
-bool meet_triangle(const primitive *p, ray r, double *t);
-bool meet_quadric(const world *w, const primitive *p, ray r, double *t);
-void triangle_surface(const world *w, const primitive *p, vector point, shade_record *record);
-void quadric_surface(const world *w, const primitive *p, vector point, shade_record *record);
-/* A point of a primitive that emits light, with its density in record->area_density. */
-void sample_triangle(const world *w, const primitive *p, sampler *s, shade_record *record);
-void sample_quadric(const world *w, const primitive *p, sampler *s, shade_record *record);
-/* The box around a primitive. */
-void bound_quadric(const world *w, const primitive *p, vector *low, vector *high);
+/* Where a ray meets a primitive: the distance, and the point in the primitive's own two coordinates. */
+typedef struct meeting {
+  double t;
+  double a, b;
+} meeting;
 
-static inline bool is_triangle(const primitive *p, const world *w) {
-  return w->placements[p->placement].def->kind == VL_SHAPE_TRIANGLES;
-}
+/* shape.c: a primitive of any kind. Each kind is a map from two coordinates, 0 to 1, to points in the world. */
+bool meet_shape(const world *w, const primitive *p, ray r, meeting *m);
+void shape_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
+/* A point of a primitive that emits light, drawn with the density record->area_density. */
+void sample_shape(const world *w, const primitive *p, sampler *s, shade_record *record);
+void bound_shape(const world *w, const primitive *p, vector *low, vector *high);
+
+/* triangle.c, quadric.c, more/patch.c: the kinds. */
+bool meet_triangle(const primitive *p, ray r, meeting *m);
+void triangle_surface(const world *w, const primitive *p, double b1, double b2, shade_record *record);
+bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m);
+void quadric_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
+bool meet_patch(const primitive *p, ray r, meeting *m);
+void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
+
+/* What meshes share: the normal by the rules for sides, and the vertex normals' blend. */
+typedef struct mesh_corner {
+  uint32_t vertex;
+  double weight;
+} mesh_corner;
+void mesh_normals(const placement *where, const mesh_corner *corners, int count, vector by_edges, shade_record *record);
 
 /* The distance below which a new ray does not count hits: it begins on a surface, and rounding must not let it meet
  * that surface again. Double precision leaves 1e-15 of the largest coordinate. */

@@ -23,13 +23,14 @@ bool sample_diffuse(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   return wi.z != 0;
 }
 
-spectrum bsdf_value(const bsdf *b, vector wo, vector wi, double *density) {
+spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
   vector o = to_local(b->frame, wo);
   vector i = to_local(b->frame, wi);
   switch (b->kind) {
     case BSDF_DIFFUSE: return diffuse_value(b, o, i, density);
     case BSDF_CONDUCTOR: return conductor_value(b, o, i, density);
     case BSDF_DIELECTRIC: return dielectric_value(b, o, i, density);
+    case BSDF_COATED_DIFFUSE: return coated_value(b, o, i, s, density);
   }
   *density = 0;
   return gray(0);
@@ -43,6 +44,7 @@ bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
     case BSDF_DIFFUSE: found = sample_diffuse(b, o, s, result); break;
     case BSDF_CONDUCTOR: found = sample_conductor(b, o, s, result); break;
     case BSDF_DIELECTRIC: found = sample_dielectric(b, o, s, result); break;
+    case BSDF_COATED_DIFFUSE: found = sample_coated(b, o, s, result); break;
   }
   if (!found) return false;
   result->wi = normalize(from_local(b->frame, result->wi));

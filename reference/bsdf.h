@@ -6,7 +6,7 @@
 #include "color.h"
 #include "vector.h"
 
-typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC } bsdf_kind;
+typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_COATED_DIFFUSE } bsdf_kind;
 
 typedef struct bsdf {
   bsdf_kind kind;
@@ -15,6 +15,8 @@ typedef struct bsdf {
   spectrum eta, k;         /* conductor: complex index of refraction */
   double ior;              /* dielectric: index inside over index outside */
   double alpha_x, alpha_y; /* roughness along the tangent and across it */
+  double coat_thickness;   /* coated: sigma_t is 1 */
+  uint32_t coat_depth;     /* coated: most surfaces that a walk inside meets */
 } bsdf;
 
 typedef struct bsdf_sample {
@@ -26,7 +28,7 @@ typedef struct bsdf_sample {
 } bsdf_sample;
 
 /* Values and densities for directions in the world. A specular BSDF has value 0: no two given directions fit. */
-spectrum bsdf_value(const bsdf *b, vector wo, vector wi, double *density);
+spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 
 /* The kinds, for directions in the local frame (z is the normal). */
@@ -36,5 +38,12 @@ spectrum conductor_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_conductor(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+/* more/coated.c: values are found by random walks, which draw numbers. */
+spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
+bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+
+/* dielectric.c: Fresnel's and Snell's laws, which the coat needs, too. */
+double reflected_by_glass(double cosine, double eta);
+bool refract(vector wo, vector m, double ior, double *eta, vector *wi);
 
 #endif

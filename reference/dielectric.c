@@ -3,7 +3,7 @@
 
 /* Fresnel's equations for unpolarised light. The cosine is negative on the inside; eta is the index inside over the
  * index outside. */
-static double reflected_by_glass(double cosine, double eta) {
+double reflected_by_glass(double cosine, double eta) {
   if (cosine < 0) {
     cosine = -cosine;
     eta = 1 / eta;
@@ -18,7 +18,7 @@ static double reflected_by_glass(double cosine, double eta) {
 }
 
 /* Snell's law at a mirror's normal m. *eta: the index on the other side over the index on this one. */
-static bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
+bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
   double cosine = dot(wo, m);
   *eta = ior;
   if (cosine < 0) {

@@ -202,14 +202,11 @@ bool sample_light(const world *w, vector point, sampler *s, const wavelengths *l
   return true;
 }
 
-spectrum emitted_by_sky(const world *w, vector direction, const wavelengths *lambda, double *density) {
-  spectrum sum = gray(0);
-  *density = 0;
-  for (uint32_t i = 0; i < w->light_count; i++) {
-    const light *l = &w->lights[i];
-    if (l->kind != LIGHT_SKY) continue;
-    sum = plus(sum, sky_radiance(l, direction, lambda));
-    *density += sky_density(l, direction) / w->light_count;
-  }
-  return sum;
+bool emitted_by_sky(const world *w, uint32_t index, vector direction, const wavelengths *lambda, spectrum *radiance,
+                    double *density) {
+  const light *l = &w->lights[index];
+  if (l->kind != LIGHT_SKY) return false;
+  *radiance = sky_radiance(l, direction, lambda);
+  *density = sky_density(l, direction) / w->light_count;
+  return true;
 }

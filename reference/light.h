@@ -48,8 +48,9 @@ bool sample_light(const world *w, vector point, sampler *s, const wavelengths *l
 spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda);
 /* The density with which sample_light finds the surface at `at` from a point. */
 double density_of_surface(const world *w, const shade_record *at, vector point);
-/* The same for light that a ray finds when it leaves the world. *density: of the whole sky. */
-spectrum emitted_by_sky(const world *w, vector direction, const wavelengths *lambda, double *density);
+/* The same for a light of the sky, which a ray finds when it leaves the world. False: another kind of light. */
+bool emitted_by_sky(const world *w, uint32_t index, vector direction, const wavelengths *lambda, spectrum *radiance,
+                    double *density);
 
 /* sky.c */
 bool read_sky(const world *w, const vlLightDef *def, light *l, vlError *error);

@@ -14,6 +14,7 @@ static bool is_supported(const vlMaterialDef *def, vlError *error) {
     case VL_MATERIAL_DIFFUSE:
     case VL_MATERIAL_CONDUCTOR:
     case VL_MATERIAL_DIELECTRIC:
+    case VL_MATERIAL_COATED_DIFFUSE:
     case VL_MATERIAL_MIX:
     case VL_MATERIAL_INTERFACE: break;
     default: return refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
@@ -21,6 +22,11 @@ static bool is_supported(const vlMaterialDef *def, vlError *error) {
   if (def->displacement.texture.index || def->displacement.value != 0)
     return refuse(error, def->source, "a bump map", NULL);
   if (def->normal_map) return refuse(error, def->source, "a normal map", NULL);
+  bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  vlSpectrum albedo = def->albedo.value;
+  bool clear = !def->albedo.texture.index && albedo.value == 0 && albedo.kind == VL_SPECTRUM_CONSTANT;
+  if (coated && !clear) return refuse(error, def->source, "a coat that scatters light", NULL);
+  if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy", NULL);
   return true;
 }
 
@@ -79,14 +85,21 @@ static void metal_of_reflectance(spectrum r, bsdf *b) {
 bsdf make_bsdf(const world *w, const material *m, const shade_record *at, wavelengths *lambda) {
   const vlMaterialDef *def = &m->def;
   bsdf b = {.frame = make_frame(at->shading_normal, at->tangent)};
-  if (def->kind == VL_MATERIAL_DIFFUSE) {
-    b.kind = BSDF_DIFFUSE;
+  bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  if (def->kind == VL_MATERIAL_DIFFUSE || coated) {
+    b.kind = coated ? BSDF_COATED_DIFFUSE : BSDF_DIFFUSE;
     b.reflectance = spectrum_at(w, def->reflectance, &m->reflectance, VL_PARAMETER_ALBEDO, at, lambda);
     for (int i = 0; i < CHANNELS; i++) b.reflectance.c[i] = clamp(b.reflectance.c[i], 0, 1);
-    return b;
+    if (!coated) return b;
   }
   b.alpha_x = alpha_of(w, m, def->u_roughness, at);
   b.alpha_y = alpha_of(w, m, def->v_roughness, at);
+  if (coated) {
+    b.ior = (double)m->eta.nm[SODIUM_NM - VL_SPECTRUM_FIRST_NM];
+    b.coat_thickness = number_at(w, def->thickness, at);
+    b.coat_depth = def->max_depth;
+    return b;
+  }
   if (def->kind == VL_MATERIAL_DIELECTRIC) {
     b.kind = BSDF_DIELECTRIC;
     if (m->disperses) keep_first_wavelength(lambda);

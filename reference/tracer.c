@@ -61,7 +61,7 @@ static void add_direct_light(const world *w, path *p, vector point, vector wo, c
   spectrum value;
   const medium *inside = p->inside;
   if (b) {
-    value = bsdf_value(b, wo, asked.direction, &density);
+    value = bsdf_value(b, wo, asked.direction, s, &density);
     inside = medium_beyond(w, at, asked.direction, inside);
   } else {
     density = phase(p->inside, wo, asked.direction);
@@ -173,9 +173,11 @@ spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_dep
       }
     }
     if (!found) {
-      double density;
-      spectrum emitted = emitted_by_sky(w, p.r.direction, lambda, &density);
-      add_met_light(&p, emitted, density);
+      for (uint32_t i = 0; i < w->light_count; i++) {
+        double density;
+        spectrum emitted;
+        if (emitted_by_sky(w, i, p.r.direction, lambda, &emitted, &density)) add_met_light(&p, emitted, density);
+      }
       break;
     }
     *met = true;

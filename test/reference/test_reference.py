@@ -85,6 +85,15 @@ def rgb_agrees_with_velo():
 
 
 @case
+def a_scene_of_the_lecture_agrees_with_velo():
+    """Clear coats, the sky twice, a lamp."""
+    path, size = os.path.join(SOURCE, "scenes/lecture/example_1.pbrt"), ("--resolution", "32x24", "--max-depth", "3")
+    z = worst_z(render_velo(path, "lecture.exr", 128, *size),
+                render(path, "lecture_reference.exr", 128, "--tracer", "volpath", *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
 def a_white_furnace_is_white():
     for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
                            ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):

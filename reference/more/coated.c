@@ -2,7 +2,7 @@
  * is scattered by the base, and is reflected between base and coat until it leaves. The coat absorbs; it does not
  * scatter. Walks give values with noise; directions are drawn from a simple density, so that density and value may be
  * asked for any direction. */
-#include "../microfacet.h"
+#include "microfacet.h"
 
 static bsdf coat_of(const bsdf *b) {
   return (bsdf){.kind = BSDF_DIELECTRIC, .ior = b->ior, .alpha_x = b->alpha_x, .alpha_y = b->alpha_y};

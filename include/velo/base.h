@@ -165,6 +165,14 @@ typedef struct vlContextDef {
    * that the caller names (the scene file, cameras, vl_image_read) may be anywhere. Default: no restriction. */
   const char *const *sandbox;
   uint32_t sandbox_count; /**< length of sandbox */
+  /** Whether the context remembers the files that it reads, and no writer replaces one of them: such a write is
+   * VL_ERROR_ARGUMENT. The same file is found by other names, too (links). A film file may be replaced by the film that
+   * continues it. Default false. */
+  bool keep_inputs;
+  /** Asked while a write waits for the other end of a pipe or socket, about ten times a second, on the writing thread.
+   * After it returns true, a write fails that the other end has not taken for a second. Null: writes wait for ever. */
+  vlStopFn *interrupted;
+  void *interrupted_user; /**< passed to interrupted */
 } vlContextDef;
 
 /** The default def. abi: VL_ABI_VERSION of the headers that the program was compiled with. It is stored in the cookie,
@@ -229,9 +237,32 @@ VL_API void vl_context_record_files(vlContext *context, bool on);
 /** Recorded file `index`, from 0, in the order of paths; null past the end. Valid until the next file is read. */
 VL_API const vlFileRecord *vl_context_file(vlContext *context, uint32_t index);
 
+/** Kinds of files that are written. */
+typedef enum vlOutputKind {
+  VL_OUTPUT_PLAIN = 0, /**< any file but a film */
+  VL_OUTPUT_FILM = 1   /**< a film file, which may replace a film file that was read */
+} vlOutputKind;
+/** Remembers a file that the caller reads itself, as the context does with those that it reads (keep_inputs). kind:
+ * VL_OUTPUT_FILM for films. ARGUMENT, IO (there is no such file), MEMORY. Any thread. */
+VL_API vlResult vl_note_input(vlContext *context, const char *path, vlOutputKind kind);
+/** Checks whether a file of this kind can be written to `path`, without writing: long before the write, or just before
+ * it, as all writers do. context may be null. Errors: IO (no such folder, no permission, a folder, a loop of links, a
+ * name that is too long), ARGUMENT (the context has read this file: keep_inputs). Any thread. */
+VL_API vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind, vlError *error);
+/** Which file a path means, whether it exists or not: two paths mean the same file if their ids are equal, through
+ * links and other spellings. */
+typedef struct vlFileId {
+  uint64_t device, inode; /**< of the file; of its folder if there is no such file */
+  char name[256];         /**< the name in the folder; empty if the file exists */
+} vlFileId;
+/** The id of the file at `path`. False, and *id is zero: there is no such folder. Any thread. */
+VL_API bool vl_file_id(const char *path, vlFileId *id);
+
 /** Writes a file whole or not at all: writes a temporary file in the same folder, syncs it and renames it. All writers
- * of the library do this. A symbolic link is followed; a replaced file keeps its permissions. Errors: IO. */
-VL_API vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error);
+ * of the library do this. A symbolic link is followed; a replaced file keeps its permissions. Pipes, sockets (the
+ * writer connects to them), devices and "/dev/stdout" (the process' standard output) are written as streams, when the
+ * data is complete. Errors: IO, ARGUMENT (vlContextDef.keep_inputs), MEMORY. */
+VL_API vlResult vl_write_file(vlContext *context, const char *path, const void *data, size_t size, vlError *error);
 /** Removes the temporary files (.velo-PID-N.tmp) that interrupted writers left in the folder of `path`; if `path` is a
  * symbolic link, in the folder of its target. Files of running processes are kept. */
 VL_API void vl_remove_leftovers(const char *path);

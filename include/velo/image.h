@@ -124,6 +124,7 @@ typedef struct vlWriteDef {
   int quality;     /**< JPEG: 1 to 100, default 95 */
   bool alone; /**< single-threaded, on the calling thread: for writing while the context's workers render; default false
                */
+  const char *format; /**< a suffix that names the format, such as ".png"; default null: the suffix of the path */
 } vlWriteDef;
 /** The default def. */
 VL_API vlWriteDef vl_default_write_def(void);

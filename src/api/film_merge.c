@@ -267,7 +267,7 @@ static vlResult merge_opened(Merge *m, const char *output) {
   m->joined = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->joined);
   char *header = vl_film_header_make(m->context, shape, choose_receipt(m));
   vlResult result = m->sum && m->data && m->ranges && m->joined && header ? VL_OK : vl_fail_memory(m->error);
-  if (result == VL_OK) result = vl_file_open_write(&m->file, output, m->error);
+  if (result == VL_OK) result = vl_file_open_write(&m->file, m->context, output, VL_OUTPUT_FILM, m->error);
   if (result == VL_OK) {
     result = vl_film_put_header(&m->file, header);
     for (uint32_t b = 0; b < m->parts[0].reader.blocks && result == VL_OK && !m->file.failed_errno; b++)

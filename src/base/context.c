@@ -11,6 +11,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/file_input.h"
 #include "base/isa.h"
 #include "base/machine.h"
 #include "base/pool.h"
@@ -23,6 +24,7 @@ struct vlContext {
   pthread_mutex_t log_mutex;
   atomic_uint_fast64_t last_number;
   vlFileRecords files;
+  vlFileInputs inputs;
   char **sandbox; /* def.sandbox_count folders, with symbolic links resolved */
   vlPool pool;
 };
@@ -250,6 +252,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   context->isa = isa;
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
+  pthread_mutex_init(&context->inputs.mutex, NULL);
   r = copy_sandbox(context);
   if (r == VL_OK && !d.parallel_for) r = vl_pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
@@ -274,9 +277,11 @@ void vl_context_destroy(vlContext *context) {
   if (!context->def.parallel_for) vl_pool_stop(&context->pool);
   pthread_mutex_destroy(&context->log_mutex);
   pthread_mutex_destroy(&context->files.mutex);
+  pthread_mutex_destroy(&context->inputs.mutex);
   for (size_t i = 0; i < context->files.files.count; i++)
     vl_free(context, (void *)(uintptr_t)context->files.files.items[i].path);
   vl_free(context, context->files.files.items);
+  vl_file_inputs_free(context, &context->inputs);
   free_sandbox(context);
   context->def.allocator.release(context->def.allocator.user, context);
 }
@@ -295,4 +300,12 @@ uint64_t vl_context_number(vlContext *context) {
 
 vlFileRecords *vl_context_file_records(vlContext *context) {
   return &context->files;
+}
+
+vlFileInputs *vl_context_file_inputs(vlContext *context) {
+  return context->def.keep_inputs ? &context->inputs : NULL;
+}
+
+bool vl_context_interrupted(const vlContext *context) {
+  return context->def.interrupted && context->def.interrupted(context->def.interrupted_user);
 }

@@ -40,6 +40,10 @@ typedef struct vlFileRecords {
   } files;
 } vlFileRecords;
 vlFileRecords *vl_context_file_records(vlContext *context);
+/* The files that were read (file_input.h); null: the context does not keep them. */
+struct vlFileInputs *vl_context_file_inputs(vlContext *context);
+/* Whether writes must no longer wait (vlContextDef.interrupted). */
+bool vl_context_interrupted(const vlContext *context);
 
 /* Logs a message; where may be null. printf-like. */
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...)

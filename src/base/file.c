@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 #include "base/error.h"
+#include "base/file_input.h"
 #include "base/file_record.h"
 #include "base/text.h"
 
@@ -153,8 +154,12 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
     if (error) *error = opening;
     return opening.code;
   }
-  struct stat info;
+  struct stat info = {0};
   if (fstat(fd, &info) != 0) info.st_size = 0;
+  if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
+    close(fd);
+    return vl_fail_memory(error);
+  }
   size_t capacity = info.st_size > 0 ? (size_t)info.st_size : 65536, used = 0;
   char *block = vl_alloc(context, capacity + 1);
   vlResult result = block ? VL_OK : vl_fail_memory(error);
@@ -204,7 +209,7 @@ vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, c
   return read_file(context, path, true, gunzip, data, size, error);
 }
 
-vlResult vl_file_map(const char *path, const char **data, size_t *size, vlError *error) {
+vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size, vlError *error) {
   *data = NULL;
   struct stat info;
   if (stat(path, &info) != 0) return fail_open(path, errno, error);
@@ -212,6 +217,10 @@ vlResult vl_file_map(const char *path, const char **data, size_t *size, vlError 
   int fd = open(path, O_RDONLY | O_CLOEXEC);
   if (fd < 0) return fail_open(path, errno, error);
   if (fstat(fd, &info) != 0) info.st_size = 0;
+  if (!vl_file_input(context, path, &info, VL_OUTPUT_PLAIN)) {
+    close(fd);
+    return vl_fail_memory(error);
+  }
   size_t length = (size_t)info.st_size;
   /* Maps zero pages first, then the file over them: a zero byte follows even if the file fills its last page. */
   char *block = mmap(NULL, length + 1, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

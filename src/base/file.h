@@ -16,30 +16,37 @@ vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, c
                             vlError *error);
 /* Maps a file into memory: pages are read on access; a zero byte follows. Regular files only: for others *data is
  * null and the result is OK. Released with vl_file_unmap. */
-vlResult vl_file_map(const char *path, const char **data, size_t *size, vlError *error);
+vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size, vlError *error);
 void vl_file_unmap(const char *data, size_t size);
 
 /* Atomic writing: bytes go to a temporary file beside the target; commit syncs and renames it; abandon removes it. A
  * failed write is remembered and reported by commit. Symbolic links are followed, and the permissions of a replaced
- * file are kept. A file without write permission is not replaced. */
+ * file are kept. A file without write permission is not replaced, nor is an input of the context (file_input.h).
+ * Whatever is not a regular file gets the bytes by commit: they are gathered in memory, so that every format can be
+ * written to a pipe. */
 typedef struct vlFileWriter {
   int descriptor;
   int failed_errno;
   char path[4096];           /* as given, for messages */
-  char target[4096];         /* the file to replace, with links resolved; empty: written in place */
+  char target[4096];         /* the file to replace, with links resolved */
   char temporary[4096 + 64]; /* empty: no name yet */
   bool replaces;             /* the file exists, with these permissions */
   mode_t mode;
   uid_t owner;
   gid_t group;
-  vlContext *context; /* of a writer to memory; else null */
-  char *memory;       /* its bytes */
+  vlContext *context;
+  bool in_memory; /* the bytes go to memory: a stream, or a writer to memory */
+  char *memory;   /* its bytes, a block of the context */
   size_t memory_size, memory_capacity;
 } vlFileWriter;
-vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error);
+vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path, vlOutputKind kind,
+                            vlError *error);
 /* Starts a writer to memory; name: for messages. It is not committed; the caller takes `memory` and frees it with
  * vl_free. If memory runs out, failed_errno is ENOMEM. */
 void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *name);
+/* Makes the memory of a writer in memory at least this large, so that several threads may write to parts of it. False:
+ * failed_errno is set. */
+bool vl_file_reserve(vlFileWriter *writer, size_t size);
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size);
 /* Writes at an absolute offset (for OpenEXR's callback). */
 void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset);
@@ -48,6 +55,8 @@ void vl_file_abandon(vlFileWriter *writer);
 
 /* Resolves the symbolic links of `path`; the target need not exist. False: errno is set. */
 bool vl_follow_links(const char *path, char *target, size_t size);
+/* Length of the folder's part of a path, including its slash; 0: the current folder. */
+size_t vl_folder_length(const char *path);
 
 double vl_seconds(void); /* seconds of a monotonic clock */
 

@@ -12,16 +12,20 @@ typedef struct vlFileStamp {
   int64_t seconds, nanoseconds; /* time of the last modification */
 } vlFileStamp;
 
+static inline vlFileStamp vl_file_stamp_of(const struct stat *info) {
+  return (vlFileStamp){true,
+                       (uint64_t)info->st_dev,
+                       (uint64_t)info->st_ino,
+                       (uint64_t)info->st_size,
+                       (int64_t)info->st_mtim.tv_sec,
+                       (int64_t)info->st_mtim.tv_nsec};
+}
+
 /* The stamp of the file at `path`, which may be null. */
 static inline vlFileStamp vl_file_stamp(const char *path) {
   struct stat info;
   if (!path || stat(path, &info) != 0) return (vlFileStamp){0};
-  return (vlFileStamp){true,
-                       (uint64_t)info.st_dev,
-                       (uint64_t)info.st_ino,
-                       (uint64_t)info.st_size,
-                       (int64_t)info.st_mtim.tv_sec,
-                       (int64_t)info.st_mtim.tv_nsec};
+  return vl_file_stamp_of(&info);
 }
 
 static inline bool vl_file_stamp_same(const vlFileStamp *a, const vlFileStamp *b) {

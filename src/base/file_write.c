@@ -12,37 +12,17 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/file_lock.h"
+#include "base/file_stream.h"
 
 /* Temporary files are named by the process id alone, so that targets with the longest names can be written. The
  * writer holds a lock on its temporary file: one without a lock belongs to a process that has ended. */
 #define PREFIX ".velo-"
 #define SUFFIX ".tmp"
-enum { MOST_LINKS = 40, MOST_TRIES = 1000 };
-
-/* Length of the folder's part of a path, including its slash; 0: the current folder. */
-static size_t folder_length(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-bool vl_follow_links(const char *path, char *target, size_t size) {
-  char link[4096];
-  if (strlen(path) >= size) return errno = ENAMETOOLONG, false;
-  memcpy(target, path, strlen(path) + 1);
-  for (int i = 0; i < MOST_LINKS; i++) {
-    ssize_t n = readlink(target, link, sizeof link);
-    if (n < 0) return true; /* not a link; other errors are reported when it is opened */
-    size_t folder = n > 0 && link[0] == '/' ? 0 : folder_length(target);
-    if (folder + (size_t)n >= size) return errno = ENAMETOOLONG, false;
-    memcpy(target + folder, link, (size_t)n);
-    target[folder + (size_t)n] = 0;
-  }
-  return errno = ELOOP, false;
-}
+enum { MOST_TRIES = 1000 };
 
 static void name_temporary(vlFileWriter *writer, unsigned number) {
   snprintf(writer->temporary, sizeof writer->temporary, "%.*s" PREFIX "%ld-%u" SUFFIX,
-           (int)folder_length(writer->target), writer->target, (long)getpid(), number);
+           (int)vl_folder_length(writer->target), writer->target, (long)getpid(), number);
 }
 
 /* Opens a file without a name (O_TMPFILE), which disappears with its process. Not every file system supports them. */
@@ -50,7 +30,7 @@ static bool open_nameless(vlFileWriter *writer) {
 #if defined(O_TMPFILE) && defined(AT_SYMLINK_FOLLOW)
   char folder[4096];
   if (access("/proc/self/fd", X_OK) != 0) return false; /* needed to name the file later */
-  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
+  snprintf(folder, sizeof folder, "%.*s.", (int)vl_folder_length(writer->target), writer->target);
   writer->descriptor = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   return writer->descriptor >= 0;
 #else
@@ -102,7 +82,7 @@ static bool is_temporary(const char *name) {
 void vl_remove_leftovers(const char *path) {
   char target[4096], folder[4096];
   if (!path || !vl_follow_links(path, target, sizeof target)) return;
-  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(target), target);
+  snprintf(folder, sizeof folder, "%.*s.", (int)vl_folder_length(target), target);
   DIR *directory = opendir(folder);
   if (!directory) return;
   struct dirent *entry;
@@ -121,25 +101,16 @@ void vl_remove_leftovers(const char *path) {
   closedir(directory);
 }
 
-vlResult vl_file_open_write(vlFileWriter *writer, const char *path, vlError *error) {
-  writer->failed_errno = 0;
-  writer->descriptor = -1;
-  writer->context = NULL;
-  writer->target[0] = writer->temporary[0] = 0;
-  int n = snprintf(writer->path, sizeof writer->path, "%s", path);
-  if (n < 0 || (size_t)n >= sizeof writer->path) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
+vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char *path, vlOutputKind kind,
+                            vlError *error) {
+  vl_file_open_memory(writer, context, path);
+  vlResult result = vl_check_output(context, path, kind, error);
+  if (result != VL_OK || vl_path_is_stream(path)) return result;
   struct stat info;
-  bool there = stat(path, &info) == 0;
-  writer->replaces = there && S_ISREG(info.st_mode);
+  writer->in_memory = false;
+  writer->replaces = stat(path, &info) == 0;
   if (writer->replaces) writer->mode = info.st_mode & 0777, writer->owner = info.st_uid, writer->group = info.st_gid;
-  if (there && S_ISDIR(info.st_mode)) {
-    errno = EISDIR;
-  } else if (there && !S_ISREG(info.st_mode)) { /* a device or pipe cannot be replaced, only written to */
-    writer->descriptor = open(path, O_WRONLY | O_CLOEXEC);
-  } else if ((!writer->replaces || access(path, W_OK) == 0) &&
-             vl_follow_links(path, writer->target, sizeof writer->target)) {
-    open_temporary(writer);
-  }
+  if (vl_follow_links(path, writer->target, sizeof writer->target)) open_temporary(writer);
   if (writer->descriptor >= 0) return VL_OK;
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
 }
@@ -148,25 +119,27 @@ void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *n
   writer->failed_errno = 0;
   writer->descriptor = -1;
   writer->context = context;
+  writer->in_memory = true;
   writer->memory = NULL;
   writer->memory_size = writer->memory_capacity = 0;
+  writer->replaces = false;
   writer->target[0] = writer->temporary[0] = 0;
   snprintf(writer->path, sizeof writer->path, "%s", name);
+}
+
+bool vl_file_reserve(vlFileWriter *writer, size_t size) {
+  if (size <= writer->memory_capacity) return true;
+  char *grown = vl_realloc_array(writer->context, writer->memory, size, 1);
+  if (!grown) return writer->failed_errno = ENOMEM, false;
+  writer->memory = grown;
+  writer->memory_capacity = size;
+  return true;
 }
 
 static void write_memory(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
   size_t end = (size_t)offset + size;
   if (size == 0 || writer->failed_errno) return;
-  if (end > writer->memory_capacity) {
-    size_t capacity = end + end / 2 + 4096;
-    char *grown = vl_realloc_array(writer->context, writer->memory, capacity, 1);
-    if (!grown) {
-      writer->failed_errno = ENOMEM;
-      return;
-    }
-    writer->memory = grown;
-    writer->memory_capacity = capacity;
-  }
+  if (end > writer->memory_capacity && !vl_file_reserve(writer, end + end / 2 + 4096)) return;
   if (offset > writer->memory_size) memset(writer->memory + writer->memory_size, 0, offset - writer->memory_size);
   memcpy(writer->memory + offset, data, size);
   if (end > writer->memory_size) writer->memory_size = end;
@@ -174,7 +147,7 @@ static void write_memory(vlFileWriter *writer, const void *data, size_t size, ui
 
 void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
   const char *bytes = data;
-  if (writer->context) {
+  if (writer->in_memory) {
     write_memory(writer, data, size, writer->memory_size);
     return;
   }
@@ -191,7 +164,7 @@ void vl_file_write(vlFileWriter *writer, const void *data, size_t size) {
 
 void vl_file_write_at(vlFileWriter *writer, const void *data, size_t size, uint64_t offset) {
   const char *bytes = data;
-  if (writer->context) {
+  if (writer->in_memory) {
     write_memory(writer, data, size, offset);
     return;
   }
@@ -218,22 +191,34 @@ static void keep_permissions(const vlFileWriter *writer) {
 /* Makes the new name durable, if the file system can sync a folder. */
 static void sync_folder(const vlFileWriter *writer) {
   char folder[4096];
-  snprintf(folder, sizeof folder, "%.*s.", (int)folder_length(writer->target), writer->target);
+  snprintf(folder, sizeof folder, "%.*s.", (int)vl_folder_length(writer->target), writer->target);
   int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
   fsync(descriptor);
   close(descriptor);
 }
 
+/* Hands the bytes of a stream to its other end. */
+static vlResult commit_stream(vlFileWriter *writer, vlError *error) {
+  if (!writer->failed_errno)
+    writer->failed_errno = vl_stream_write(writer->context, writer->path, writer->memory, writer->memory_size);
+  vl_file_abandon(writer);
+  if (!writer->failed_errno) return VL_OK;
+  if (writer->failed_errno == ENOMEM) return vl_fail_memory(error);
+  if (writer->failed_errno == ENXIO || writer->failed_errno == EAGAIN)
+    return vl_fail(error, VL_ERROR_IO, "cannot write %s: nobody reads it", writer->path);
+  return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
+}
+
 vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
-  bool renames = writer->target[0];
-  if (renames && writer->replaces) keep_permissions(writer);
+  if (writer->in_memory) return commit_stream(writer, error);
+  if (writer->replaces) keep_permissions(writer);
   if (!writer->failed_errno && fsync(writer->descriptor) != 0 && errno != EINVAL && errno != EROFS)
     writer->failed_errno = errno;
-  if (!writer->failed_errno && renames && !writer->temporary[0] && !give_name(writer)) writer->failed_errno = errno;
-  if (!writer->failed_errno && renames && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
+  if (!writer->failed_errno && !writer->temporary[0] && !give_name(writer)) writer->failed_errno = errno;
+  if (!writer->failed_errno && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
   if (writer->failed_errno && writer->temporary[0]) unlink(writer->temporary);
-  if (!writer->failed_errno && renames) sync_folder(writer);
+  if (!writer->failed_errno) sync_folder(writer);
   if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
   writer->descriptor = -1; /* closed last, because closing releases the lock */
   if (!writer->failed_errno) return VL_OK;
@@ -241,16 +226,22 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
 }
 
 void vl_file_abandon(vlFileWriter *writer) {
+  if (writer->in_memory) {
+    vl_free(writer->context, writer->memory);
+    writer->memory = NULL;
+    return;
+  }
   if (writer->descriptor < 0) return;
   if (writer->temporary[0]) unlink(writer->temporary);
   close(writer->descriptor);
   writer->descriptor = -1;
 }
 
-vlResult vl_write_file(const char *path, const void *data, size_t size, vlError *error) {
+vlResult vl_write_file(vlContext *context, const char *path, const void *data, size_t size, vlError *error) {
   vlFileWriter writer;
-  if (!path || (!data && size)) return vl_fail(error, VL_ERROR_ARGUMENT, "file: path or data is null");
-  vlResult result = vl_file_open_write(&writer, path, error);
+  if (!context || !path || (!data && size))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "file: context, path or data is null");
+  vlResult result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
   if (result != VL_OK) return result;
   vl_file_write(&writer, data, size);
   return vl_file_commit(&writer, error);

@@ -301,7 +301,7 @@ static vlResult choose_model(const vlCameraFile *file, const vlCameraDef *d, con
 static vlResult write_text(const vlCameraFile *file, const char *path, const vlCameraText *text) {
   vlFileWriter writer;
   if (text->failed) return vl_fail_memory(file->error);
-  vlResult result = vl_file_open_write(&writer, path, file->error);
+  vlResult result = vl_file_open_write(&writer, file->context, path, VL_OUTPUT_PLAIN, file->error);
   if (result != VL_OK) return result;
   vl_file_write(&writer, text->text.items, text->text.count);
   return vl_file_commit(&writer, file->error);

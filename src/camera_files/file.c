@@ -212,7 +212,7 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   result = format->write(&file, record, &text);
   if (result == VL_OK && text.failed) result = vl_fail_memory(error);
   vlFileWriter writer;
-  if (result == VL_OK) result = vl_file_open_write(&writer, path, error);
+  if (result == VL_OK) result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);
   if (result == VL_OK) {
     vl_file_write(&writer, text.text.items, text.text.count);
     result = vl_file_commit(&writer, error);

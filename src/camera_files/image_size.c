@@ -31,7 +31,7 @@ static bool jpeg_size(FILE *file, uint32_t size[2]) {
   return false;
 }
 
-static bool size_of(const char *path, uint32_t size[2]) {
+static bool size_of(vlContext *context, const char *path, uint32_t size[2]) {
   unsigned char b[24];
   FILE *file = fopen(path, "rb");
   if (!file) return false;
@@ -44,6 +44,7 @@ static bool size_of(const char *path, uint32_t size[2]) {
       found = jpeg_size(file, size);
     }
   }
+  if (found) vl_note_input(context, path, VL_OUTPUT_PLAIN);
   fclose(file);
   return found && size[0] >= 1 && size[0] <= 1 << 24 && size[1] >= 1 && size[1] <= 1 << 24;
 }
@@ -61,7 +62,7 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
       uint32_t size[2];
       int length = snprintf(name, sizeof name, "%s%s", *images, suffixes[i]);
       if (!**images || length < 0 || (size_t)length >= sizeof name) continue;
-      if (!vl_path_join(file->path, name, path, sizeof path) || !size_of(path, size)) continue;
+      if (!vl_path_join(file->path, name, path, sizeof path) || !size_of(file->context, path, size)) continue;
       d->width = size[0], d->height = size[1];
       return VL_OK;
     }

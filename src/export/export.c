@@ -96,7 +96,7 @@ bool vl_export_file(vlExport *x, const char *name, const void *data, size_t size
   char path[4096];
   vlFileWriter writer;
   if (name && !vl_export_path(x, name, path, sizeof path)) return false;
-  vlResult r = vl_file_open_write(&writer, name ? path : x->path, x->error);
+  vlResult r = vl_file_open_write(&writer, x->context, name ? path : x->path, VL_OUTPUT_PLAIN, x->error);
   if (r == VL_OK) {
     vl_file_write(&writer, data, size);
     r = vl_file_commit(&writer, x->error);

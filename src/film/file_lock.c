@@ -1,8 +1,8 @@
 /* film/file_lock.c: locks on film files: one process at a time writes a film. */
 #include <stdlib.h>
-#include <sys/stat.h>
 
 #include "base/error.h"
+#include "base/file_stream.h"
 #include "film/file.h"
 #include "velo/film.h"
 
@@ -14,10 +14,9 @@ vlResult vl_film_lock(vlContext *context, const char *path, vlFilmLock **lock, v
   if (!made) return vl_fail_memory(error);
   made->context = context;
   made->file.descriptor = -1;
-  struct stat info;
   vlLockState state = VL_LOCK_NONE;
   vlResult result = VL_OK;
-  bool is_device = stat(path, &info) == 0 && !S_ISREG(info.st_mode); /* there is nothing to keep */
+  bool is_device = vl_path_is_stream(path); /* there is nothing to keep */
   if (!is_device) result = vl_file_lock(&made->file, path, &state, error);
   if (result == VL_OK && state == VL_LOCK_NONE && !is_device)
     vl_log(context, VL_LOG_WARNING, NULL,

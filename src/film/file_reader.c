@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/file_input.h"
 #include "film/file.h"
 
 static vlResult damaged(const vlFilmReader *r, const char *what, vlError *error) {
@@ -81,6 +82,8 @@ vlResult vl_film_reader_open(vlFilmReader *r, vlContext *context, const char *pa
   else if (!S_ISREG(info.st_mode))
     result = vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path,
                      S_ISDIR(info.st_mode) ? strerror(EISDIR) : "a film is a regular file");
+  else if (!vl_file_input(context, path, &info, VL_OUTPUT_FILM))
+    result = vl_fail_memory(error);
   else
     r->size = (uint64_t)info.st_size;
   if (result == VL_OK) result = read_header(r, error);

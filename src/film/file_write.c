@@ -23,6 +23,7 @@ typedef struct Run {
   char *buffers;     /* of buffer_size bytes, one for each worker */
   size_t buffer_size;
   int descriptor;
+  char *memory; /* of a film that is written as a stream: the whole file; null: it has a descriptor */
   atomic_int failed_errno;
 } Run;
 
@@ -89,6 +90,10 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   memcpy(to, &crc, sizeof crc);
   to += sizeof crc;
   uint64_t at = run->offsets[block];
+  if (run->memory) {
+    memcpy(run->memory + at, buffer, (size_t)(to - buffer));
+    return;
+  }
   for (const char *from = buffer; from < to;) {
     ssize_t n = pwrite(run->descriptor, from, (size_t)(to - from), (off_t)at);
     if (n < 0 && errno == EINTR) continue;
@@ -115,6 +120,8 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
     run->offsets[i] = at;
     at += head_of(run->film, place, samples_of(run->film, place), &head);
   }
+  if (result == VL_OK && writer->file.in_memory && !vl_file_reserve(&writer->file, at)) result = vl_fail_memory(error);
+  if (writer->file.in_memory) run->memory = writer->file.memory, writer->file.memory_size = at;
   if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
   vl_free(writer->context, run->offsets);
   vl_free(writer->context, run->buffers);
@@ -157,7 +164,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   }
   made->context = film->context;
   if (!def->lock) result = vl_film_lock_write(film->context, path, &made->lock, error);
-  if (result == VL_OK) result = vl_file_open_write(&made->file, path, error);
+  if (result == VL_OK) result = vl_file_open_write(&made->file, film->context, path, VL_OUTPUT_FILM, error);
   if (result == VL_OK) {
     Run run = {.film = film, .window = window, .descriptor = made->file.descriptor};
     result = vl_film_put_header(&made->file, header);

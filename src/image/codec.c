@@ -163,7 +163,7 @@ vlResult vl_image_read_header(vlContext *context, const char *path, vlImage **im
   const char *mapped;
   char *data = NULL;
   size_t size;
-  vlResult result = vl_file_map(path, &mapped, &size, error);
+  vlResult result = vl_file_map(context, path, &mapped, &size, error);
   if (result == VL_OK && !mapped) result = vl_file_read_given(context, path, false, &data, &size, error);
   if (result != VL_OK) return result;
   vlImage *header = NULL;
@@ -267,10 +267,10 @@ vlResult vl_image_write(const vlImage *image, const char *path, const vlWriteDef
   vlWriteDef def = write ? *write : vl_default_write_def();
   vlResult result = check_write(image, path, &def, error);
   if (result != VL_OK) return result;
-  const vlCodec *codec = find_codec(path, error);
+  const vlCodec *codec = find_codec(def.format ? def.format : path, error);
   if (!codec) return VL_ERROR_ARGUMENT;
   vlFileWriter writer;
-  result = vl_file_open_write(&writer, path, error);
+  result = vl_file_open_write(&writer, image->context, path, VL_OUTPUT_PLAIN, error);
   if (result != VL_OK) return result;
   return finish_write(&writer, codec->write(image, &def, &writer, error), error);
 }
@@ -320,11 +320,11 @@ vlResult vl_image_write_layers(const vlImage *const *images, uint32_t count, con
   vlResult result = check_write(images[0], path, &def, error);
   if (result == VL_OK) result = check_layers(images, count, error);
   if (result != VL_OK) return result;
-  const vlCodec *codec = codec_of_suffix(path);
+  const vlCodec *codec = codec_of_suffix(def.format ? def.format : path);
   if (!codec || codec->write != vl_exr_write)
     return vl_fail(error, VL_ERROR_ARGUMENT, "cannot write layers to %s: only .exr holds them", path);
   vlFileWriter writer;
-  result = vl_file_open_write(&writer, path, error);
+  result = vl_file_open_write(&writer, images[0]->context, path, VL_OUTPUT_PLAIN, error);
   if (result != VL_OK) return result;
   return finish_write(&writer, vl_exr_write_layers(images, count, &def, &writer, error), error);
 }

@@ -261,9 +261,11 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   (void)state;
   vlFileWriter writer;
   vlError error;
+  vlContext *context = NULL;
+  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
   put_file(in_folder("target"), "before", 6);
   int entries = count_entries();
-  assert_int_equal(vl_file_open_write(&writer, in_folder("target"), &error), VL_OK);
+  assert_int_equal(vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error), VL_OK);
   vl_file_write(&writer, "after!", 6);
   vl_file_abandon(&writer);
   assert_int_equal(count_entries(), entries);
@@ -271,7 +273,7 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   assert_int_equal(stat(in_folder("target"), &info), 0);
   assert_int_equal(info.st_size, 6);
 
-  assert_int_equal(vl_file_open_write(&writer, in_folder("target"), &error), VL_OK);
+  assert_int_equal(vl_file_open_write(&writer, context, in_folder("target"), VL_OUTPUT_PLAIN, &error), VL_OK);
   vl_file_write(&writer, "after", 5);
   vl_file_write_at(&writer, "A", 1, 0);
   assert_int_equal(vl_file_commit(&writer, &error), VL_OK);
@@ -282,15 +284,17 @@ static void files_are_written_whole_or_not_at_all(void **state) {
   fclose(file);
   assert_string_equal(text, "After");
 
-  assert_int_equal(vl_file_open_write(&writer, in_folder("none/target"), &error), VL_ERROR_IO);
-  assert_int_equal(vl_file_open_write(&writer, folder, &error), VL_ERROR_IO);
+  assert_int_equal(vl_file_open_write(&writer, context, in_folder("none/target"), VL_OUTPUT_PLAIN, &error),
+                   VL_ERROR_IO);
+  assert_int_equal(vl_file_open_write(&writer, context, folder, VL_OUTPUT_PLAIN, &error), VL_ERROR_IO);
   /* a full disk: the written bytes cannot be kept, and commit reports an error */
   if (access("/dev/full", W_OK) == 0) {
-    assert_int_equal(vl_file_open_write(&writer, "/dev/full", &error), VL_OK);
+    assert_int_equal(vl_file_open_write(&writer, context, "/dev/full", VL_OUTPUT_PLAIN, &error), VL_OK);
     vl_file_write(&writer, "x", 1);
     assert_int_equal(vl_file_commit(&writer, &error), VL_ERROR_IO);
     assert_non_null(strstr(error.message, "/dev/full"));
   }
+  vl_context_destroy(context);
 }
 
 static void instruction_sets(void **state) {

@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "image/header.h"
 #include "image/image.h"
+#include "render/output_names.h"
 
 const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
                                   {"opencv", VL_CAMERA_DIALECT_OPENCV},
@@ -164,6 +165,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status < 0)
     status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
                          v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &v[CONVERT_SIZE], NULL, &record);
+  if (status < 0) status = output_check(context, out, VL_OUTPUT_PLAIN);
   if (status < 0) {
     vlCameraFileDef def = vl_default_camera_file_def();
     def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;

@@ -12,7 +12,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/lens_options.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum {
@@ -195,6 +195,7 @@ static int run_draw(const Command *command, const Arguments *arguments) {
   memset(&s, 0, sizeof s);
   int status = read_options(&s, arguments);
   if (status < 0) status = load(&s, arguments);
+  if (status < 0) status = output_check(s.in.context, arguments->values[DRAW_OUT].text, VL_OUTPUT_PLAIN);
   if (status < 0) status = draw(&s, arguments->values);
   draw_close(&s.outside);
   draw_forget(&s.seen);

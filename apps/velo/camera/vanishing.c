@@ -12,7 +12,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "image/overlay.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 
 enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINCIPAL, V_SIZE, V_AXES, V_TO };
 
@@ -214,6 +214,7 @@ static int draw_overlay(vlContext *context, const Arguments *arguments, const vl
   if (!output_suffix(v[V_OUT].text, &eight_bit) || !eight_bit)
     return report_usage("-o \"%s\": the drawing is written as .png, .jpg or .tga", v[V_OUT].text);
   int status = image_load(context, v[V_OVERLAY].text, &image);
+  if (status < 0) status = output_check(context, v[V_OUT].text, VL_OUTPUT_PLAIN);
   if (status < 0) status = fit_camera(image, v[V_OVERLAY].text, &camera);
   if (status < 0) {
     Overlay overlay = {0};

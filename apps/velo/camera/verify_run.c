@@ -1,12 +1,13 @@
 /* camera/verify_run.c: poses of the board that cover the image. Each is rendered; its corners are found and compared.
  */
-#include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "camera/verify.h"
 #include "cli/report.h"
+#include "render/output_names.h"
 
 enum { TRIES = 400, ROOM = 4096, MARGIN = 3 };
 
@@ -238,25 +239,46 @@ static int measure_pose(Pose *pose, uint32_t index, Verification *v, vlContext *
   return result == VL_OK ? -1 : report_error(&error, result, v->keep);
 }
 
+/* Checks the names of all files that are kept. Returns -1 or the exit code. */
+static int check_kept(const Verification *v, vlContext *context) {
+  char path[4096];
+  OutputNames names = {0};
+  for (uint32_t i = 0; i <= v->poses; i++) {
+    if (i < v->poses)
+      snprintf(path, sizeof path, "%s/pose_%03u.png", v->keep, i);
+    else
+      snprintf(path, sizeof path, "%s/corners.csv", v->keep);
+    output_names_add(&names, path, VL_OUTPUT_PLAIN);
+  }
+  return output_names_check(&names, context);
+}
+
+/* Writes the table of corners, which was composed in memory. Returns -1 or the exit code. */
+static int keep_table(vlContext *context, const char *folder, const char *text, size_t size) {
+  char path[4096];
+  vlError error = {0};
+  snprintf(path, sizeof path, "%s/corners.csv", folder);
+  vlResult result = text ? vl_write_file(context, path, text, size, &error) : VL_ERROR_MEMORY;
+  return result == VL_OK ? -1 : report_error(&error, result, path);
+}
+
 int verify_run(Verification *v, vlContext *context) {
   Pose pose = {.v = v};
   Random random = {v->seed};
   uint32_t sequence = (uint32_t)(1000.0 * random_unit(&random));
-  FILE *csv = NULL;
-  int status = -1;
-  if (v->keep) {
-    char path[4096];
-    snprintf(path, sizeof path, "%s/corners.csv", v->keep);
-    csv = fopen(path, "w");
-    if (!csv) return report_failure(STATUS_IO, "%s: %s", path, strerror(errno));
-    fprintf(csv, "pose,i,j,x,y,z,found_u,found_v,u,v,valid\n");
-  }
+  char *table = NULL;
+  size_t size = 0;
+  int status = v->keep ? check_kept(v, context) : -1;
+  if (status >= 0) return status;
+  FILE *csv = v->keep ? open_memstream(&table, &size) : NULL;
+  if (csv) fprintf(csv, "pose,i,j,x,y,z,found_u,found_v,u,v,valid\n");
   v->side = target_choose(&v->target, &v->camera);
   for (uint32_t i = 0; i < v->poses && status < 0 && choose_pose(&pose, &sequence, &random); i++) {
     v->placed++;
     status = measure_pose(&pose, i, v, context, csv);
   }
-  if (csv && (fclose(csv) != 0) && status < 0)
-    status = report_failure(STATUS_IO, "%s/corners.csv: %s", v->keep, strerror(errno));
+  bool whole = csv && fclose(csv) == 0;
+  if (v->keep && status < 0) status = keep_table(context, v->keep, whole ? table : NULL, size);
+  free(table);
   return status;
 }

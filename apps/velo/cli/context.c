@@ -1,8 +1,18 @@
 /* cli/context.c: see context.h. */
 #include "cli/context.h"
 
+#include "cli/signals.h"
+
+static bool interrupted(void *user) {
+  (void)user;
+  return signals_pending() > 0;
+}
+
 int context_open(const vlContextDef *def, vlContext **context) {
-  switch (vl_context_create(def, context)) {
+  vlContextDef ours = *def;
+  ours.keep_inputs = true;
+  ours.interrupted = interrupted;
+  switch (vl_context_create(&ours, context)) {
     case VL_OK:
     case VL_CANCELLED: return -1;
     case VL_ERROR_MISSING: return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");

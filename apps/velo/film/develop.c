@@ -7,6 +7,7 @@
 #include "image/image.h"
 #include "render/exposure.h"
 #include "render/job.h"
+#include "render/output_names.h"
 #include "render/outputs.h"
 #include "render/receipt.h"
 
@@ -77,6 +78,7 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   for (int i = 0; i < arguments->text_count; i++) outputs->paths[i] = arguments->texts[i];
   outputs->count = arguments->text_count;
   outputs->half = v[DEVELOP_HALF].given;
+  outputs->to_stdout = true;
   outputs->view = v[DEVELOP_VIEW].given ? (vlView)v[DEVELOP_VIEW].integer : VL_VIEW_STANDARD;
   if (!outputs->count) return report_usage("film develop: give the name of the image with -o");
   int status = exposure_parse(&v[DEVELOP_EXPOSURE], &outputs->exposure, &outputs->meter);
@@ -84,6 +86,7 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   if (status < 0) status = outputs_check_folders(outputs);
   if (status < 0) status = image_context(&d.context);
   if (status < 0) status = develop(&d, arguments->operands[0]);
+  if (status < 0) status = outputs_check_inputs(d.context, outputs);
   if (status < 0) status = outputs_write(d.context, outputs, d.image, vl_film_spp(d.film), OUTPUT_FINISHED);
   vl_image_destroy(d.image);
   vl_image_destroy(d.errors);

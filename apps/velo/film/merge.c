@@ -6,7 +6,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "image/image.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 
 enum { MERGE_OUTPUT, MERGE_OVERWRITE };
 
@@ -14,16 +14,16 @@ static int run_merge(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *output = &arguments->values[MERGE_OUTPUT];
   if (!output->given) return report_usage("film merge: give the name of the result with -o");
-  const Outputs outputs = {.paths = {output->text}, .count = 1};
   vlContext *context = NULL;
   vlError error = {0};
-  int status = outputs_check_folders(&outputs);
+  int status = output_check(NULL, output->text, VL_OUTPUT_FILM);
   if (status < 0) status = image_context(&context);
   if (status >= 0) return status;
+  vl_remove_leftovers(output_opened(output->text));
   vlFilmMergeDef def = vl_default_film_merge_def();
   def.overwrite = arguments->values[MERGE_OVERWRITE].given;
-  vlResult result =
-      vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def, output->text, &error);
+  vlResult result = vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
+                                  output_opened(output->text), &error);
   vl_context_destroy(context);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }

@@ -8,7 +8,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/job.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 
 enum { CONVERT_CROP, CONVERT_VIEW, CONVERT_EXPOSURE, CONVERT_HALF, CONVERT_CHANNEL, CONVERT_SCALE };
 
@@ -159,6 +159,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   Outputs outputs = {.paths = {arguments->operands[1]},
                      .count = 1,
+                     .to_stdout = true,
                      .half = v[CONVERT_HALF].given,
                      .view = v[CONVERT_VIEW].given ? (vlView)v[CONVERT_VIEW].integer : VL_VIEW_STANDARD,
                      .exposure = (float)v[CONVERT_EXPOSURE].number};
@@ -173,11 +174,13 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   output_suffix(outputs.paths[0], &eight_bit);
   status = image_context(&context);
   if (status < 0) status = image_load(context, arguments->operands[0], &image);
+  if (status < 0) status = outputs_check_inputs(context, &outputs);
   if (status < 0) status = prepare_pixels(context, arguments, !eight_bit || viewed, &image);
   if (status < 0 && v[CONVERT_CHANNEL].given) status = take_channel(context, arguments, &image);
   if (status < 0 && eight_bit && !viewed && !is_float(image)) { /* display values stay unchanged */
     vlError error = {0};
-    vlResult result = vl_image_write(image, outputs.paths[0], NULL, &error);
+    const vlImage *one = image;
+    vlResult result = output_write_layers(&one, 1, outputs.paths[0], vl_default_write_def(), &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, outputs.paths[0]);
   }
   if (status < 0) status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);

@@ -8,7 +8,7 @@
 #include "image/denoise.h"
 #include "image/image.h"
 #include "render/job.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 #include "render/progress.h"
 
 enum {
@@ -31,6 +31,7 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   report_setup(false, v[DENOISE_VERBOSE].given ? REPORT_VERBOSE : REPORT_NORMAL);
   if (!arguments->text_count) return report_usage("where to? -o FILE");
   Outputs outputs = {.count = arguments->text_count,
+                     .to_stdout = true,
                      .half = v[DENOISE_HALF].given,
                      .view = v[DENOISE_VIEW].given ? (vlView)v[DENOISE_VIEW].integer : VL_VIEW_STANDARD,
                      .exposure = (float)v[DENOISE_EXPOSURE].number};
@@ -46,6 +47,7 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   vlError error = {0};
   if ((status = context_open(&def, &context)) >= 0) return status;
   status = image_load(context, path, &image);
+  if (status < 0) status = outputs_check_inputs(context, &outputs);
   vlDenoiseDef how = vl_default_denoise_def();
   vlDenoiseStats stats;
   if (v[DENOISE_DENOISER].given) how.denoiser = (vlDenoiser)v[DENOISE_DENOISER].integer;

@@ -7,7 +7,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "image/image.h"
-#include "render/outputs.h"
+#include "render/output_names.h"
 
 enum { DIFF_OUTPUT, DIFF_THRESHOLD, DIFF_JSON };
 
@@ -123,6 +123,7 @@ static int run_diff(const Command *command, const Arguments *arguments) {
   status = image_context(&context);
   if (status < 0) status = image_load(context, arguments->operands[0], &a);
   if (status < 0) status = image_load(context, arguments->operands[1], &b);
+  if (status < 0) status = outputs_check_inputs(context, &heat_file);
   if (status < 0) {
     vlError error = {0};
     vlResult result = vl_image_compare(a, b, &diff, heat_file.count ? &heat : NULL, &error);

@@ -45,9 +45,10 @@ vlResult channels_make_visible(vlContext *context, vlImage **ids);
 /* Copies the header attributes of the layers to the image. */
 vlResult channels_describe(const Channels *c, vlImage *image);
 /* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, the box of each id in the image.
- * `right` (may be null): the other view of the same file, whose ids are included. Returns STATUS_OK or the exit code.
- */
-int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path);
+ * `right` (may be null): the other view of the same file, whose ids are included. Nothing for the standard output.
+ * Returns STATUS_OK or the exit code. */
+int channels_write_ids(const Channels *c, const Channels *right, vlContext *context, const vlWorld *world,
+                       const char *path);
 void channels_free(Channels *c);
 
 #endif

@@ -114,13 +114,14 @@ static bool put_all(FILE *file, const vlWorld *world, const Channels *c, const C
 }
 
 /* Composes the file in memory, then writes it as a whole. */
-int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *world, const char *path) {
+int channels_write_ids(const Channels *c, const Channels *right, vlContext *context, const vlWorld *world,
+                       const char *path) {
   char target[4200];
   const vlImage *ids = c->layers[1];
   if (!ids) return STATUS_OK;
   bool any = vl_image_find_channel(ids, "id.object.Y") >= 0 || vl_image_find_channel(ids, "id.material.Y") >= 0 ||
              vl_image_find_channel(ids, "id.instance.Y") >= 0;
-  if (!any) return STATUS_OK;
+  if (!any || output_is_stdout(path)) return STATUS_OK;
   if (!output_ids_path(path, target, sizeof target))
     return report_failure(STATUS_IO, "cannot write %s.ids.json: %s", path, strerror(ENAMETOOLONG));
   char *text = NULL;
@@ -129,7 +130,7 @@ int channels_write_ids(const Channels *c, const Channels *right, const vlWorld *
   bool good = file && put_all(file, world, c, right, path);
   if (file && fclose(file) != 0) good = false;
   vlError error = {0};
-  vlResult result = good ? vl_write_file(target, text, size, &error) : VL_ERROR_MEMORY;
+  vlResult result = good ? vl_write_file(context, target, text, size, &error) : VL_ERROR_MEMORY;
   free(text);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, target);
 }

@@ -35,6 +35,7 @@ int film_keeper_start(FilmKeeper *k, const FilmPlan *plan, int view, vlContext *
   const vlFilmDef *film = &plan->whole.film;
   snprintf(k->path, sizeof k->path, "%s", claim->path);
   k->lock = claim->lock;
+  k->stream = output_is_stream(claim->path);
   k->every = every->given ? every->number : EVERY;
   k->share = every->given ? 0 : film->errors || film->buckets ? SHARE_WITH_ERRORS : SHARE;
   memcpy(k->window, film->crop, sizeof k->window);
@@ -76,7 +77,7 @@ static void report_checkpoint(FilmKeeper *k, vlResult result) {
 
 void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
   double now = monotonic_seconds(), least = k->share > 0 ? k->cost / k->share : 0;
-  if (!k->path[0] || vl_film_spp(film) == k->written) return;
+  if (!k->path[0] || k->stream || vl_film_spp(film) == k->written) return;
   if (now - k->last < (least > k->every ? least : k->every)) return;
   bool waited = k->running;
   vlResult result = join(k);

@@ -23,6 +23,7 @@ typedef struct FilmPlan {
 typedef struct FilmKeeper {
   char path[4096];    /* path of the film file; empty: none */
   vlFilmLock *lock;   /* of the claim */
+  bool stream;        /* not a regular file: it is written once, at the end */
   double every;       /* seconds between two checkpoints */
   double share;       /* largest fraction of the time for checkpoints; 0: no limit */
   uint32_t window[4]; /* crop window of the whole render */

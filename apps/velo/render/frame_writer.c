@@ -110,7 +110,7 @@ static vlResult write_both(FrameWriter *w, FrameImage *p, const char *path, cons
     }
   layers[0] = both;
   p->renamed = true;
-  if (result == VL_OK) result = vl_image_write_layers(layers, count, path, def, error);
+  if (result == VL_OK) result = output_write_layers(layers, count, path, *def, error);
   vl_image_destroy(both);
   return result;
 }
@@ -133,14 +133,14 @@ static vlResult write_one(FrameWriter *w, FrameImage *p, int view, const char *p
     vlImage *display = NULL;
     vlResult result = display_image(w->context, p->images[view], w->outputs->view, exposure_of(w, p->images[view]),
                                     w->outputs->transparent && output_holds_alpha(path), &display);
-    if (result == VL_OK) result = vl_image_write(display, path, def, error);
+    const vlImage *one = display;
+    if (result == VL_OK) result = output_write_layers(&one, 1, path, *def, error);
     vl_image_destroy(display);
     return result;
   }
   for (int k = 0; k < CHANNEL_LAYERS && output_holds_layers(path); k++)
     if (p->channels[view].layers[k]) layers[count++] = p->channels[view].layers[k];
-  return count > 1 ? vl_image_write_layers(layers, count, path, def, error)
-                   : vl_image_write(layers[0], path, def, error);
+  return output_write_layers(layers, count, path, *def, error);
 }
 
 /* Writes both eyes' files of one pattern, or one file with both. Joined files come last, since layers are renamed for
@@ -158,7 +158,8 @@ static int write_pattern(FrameWriter *w, FrameImage *p, const char *pattern, boo
     if (p->stopped && output_part_path(name, part, sizeof part)) path = part;
     int code = STATUS_OK;
     if (output_holds_layers(path))
-      code = channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->world, path);
+      code =
+          channels_write_ids(&p->channels[view], two && !by_view ? &p->channels[1] : NULL, w->context, w->world, path);
     vlResult result =
         two && !by_view ? write_both(w, p, path, &def, &error) : write_one(w, p, view, path, &def, &error);
     if (result != VL_OK) code = report_error(&error, result, path);

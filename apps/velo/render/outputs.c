@@ -15,7 +15,9 @@
 #include "cli/report.h"
 #include "image/display.h"
 #include "render/exposure.h"
+#include "render/output_names.h"
 
+static const char stdout_path[] = "/dev/stdout";
 enum { LONGEST_NAME = 255 }; /* bytes; of a file name without its directory */
 
 static const struct Suffix {
@@ -25,38 +27,54 @@ static const struct Suffix {
 } suffixes[] = {{"exr", false, 1 << 26}, {"png", true, 1 << 30},  {"jpg", true, 65500}, {"jpeg", true, 65500},
                 {"hdr", false, 1 << 30}, {"pfm", false, 1 << 30}, {"tga", true, 65535}};
 
-bool output_suffix(const char *path, bool *eight_bit) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+bool output_is_stdout(const char *path) {
+  return path[0] == '-' && (!path[1] || path[1] == '.') && !strchr(path, '/');
+}
+
+const char *output_opened(const char *path) {
+  return output_is_stdout(path) ? stdout_path : path;
+}
+
+/* The suffix with its dot; null: the name has none. */
+static const char *suffix_of(const char *path) {
+  if (strcmp(path, "-") == 0) return ".exr";
+  const char *slash = strrchr(path, '/');
+  return strrchr(slash ? slash : path, '.');
+}
+
+static const struct Suffix *find_suffix(const char *path) {
+  const char *dot = suffix_of(path);
   for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
-    if (strcasecmp(dot + 1, suffixes[i].name) == 0) {
-      *eight_bit = suffixes[i].eight_bit;
-      return true;
-    }
-  return false;
+    if (strcasecmp(dot + 1, suffixes[i].name) == 0) return &suffixes[i];
+  return NULL;
+}
+
+bool output_suffix(const char *path, bool *eight_bit) {
+  const struct Suffix *suffix = find_suffix(path);
+  if (suffix) *eight_bit = suffix->eight_bit;
+  return suffix != NULL;
 }
 
 uint32_t output_largest_side(const char *path) {
-  const char *dot = strrchr(path, '.');
-  for (size_t i = 0; dot && i < sizeof suffixes / sizeof *suffixes; i++)
-    if (strcasecmp(dot + 1, suffixes[i].name) == 0) return suffixes[i].largest;
-  return UINT32_MAX;
+  const struct Suffix *suffix = find_suffix(path);
+  return suffix ? suffix->largest : UINT32_MAX;
 }
 
 bool output_holds_alpha(const char *path) {
-  size_t length = strlen(path);
-  return output_holds_layers(path) || (length >= 4 && strcasecmp(path + length - 4, ".png") == 0);
+  const char *dot = suffix_of(path);
+  return output_holds_layers(path) || (dot && strcasecmp(dot, ".png") == 0);
 }
 
 bool output_holds_layers(const char *path) {
-  size_t length = strlen(path);
-  return length >= 4 && strcasecmp(path + length - 4, ".exr") == 0;
+  const char *dot = suffix_of(path);
+  return dot && strcasecmp(dot, ".exr") == 0;
 }
 
 static int fail_suffix(const char *path) {
   const char *names[8];
   int count = 0;
   for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) names[count++] = suffixes[i].name;
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  const char *dot = suffix_of(path);
   const char *near = dot ? did_you_mean(".", dot + 1, names, count) : "";
   return report_usage("output \"%s\": the suffix must be .exr, .png, .jpg, .hdr, .pfm or .tga%s", path, near);
 }
@@ -65,6 +83,11 @@ int outputs_check_names(const Outputs *outputs) {
   bool eight_bit;
   for (int i = 0; i < outputs->count; i++) {
     if (!output_suffix(outputs->paths[i], &eight_bit)) return fail_suffix(outputs->paths[i]);
+    if (output_is_stdout(outputs->paths[i]) && !outputs->to_stdout)
+      return report_usage(
+          "output \"%s\": this command does not write images to the standard output; a file of that "
+          "name is ./%s",
+          outputs->paths[i], outputs->paths[i]);
     for (int j = 0; j < i; j++)
       if (strcmp(outputs->paths[i], outputs->paths[j]) == 0)
         return report_usage("output \"%s\" is given twice", outputs->paths[i]);
@@ -72,37 +95,13 @@ int outputs_check_names(const Outputs *outputs) {
   return -1;
 }
 
-static int fail_write(const char *path, int code) {
-  return report_failure(STATUS_IO, "cannot write %s: %s", path, strerror(code));
-}
-
 int outputs_check_folders(const Outputs *outputs) {
   for (int i = 0; i < outputs->count; i++) {
     const char *path = outputs->paths[i], *slash = strrchr(path, '/');
-    char folder[4096] = ".";
-    size_t length = slash ? (size_t)(slash - path) : 1;
-    if (length >= sizeof folder) return fail_write(path, ENAMETOOLONG);
-    if (slash) snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, path);
-    if (outputs->patterns && strchr(folder, '%')) continue;
-    struct stat info;
-    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return fail_write(path, EISDIR);
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) { /* devices and pipes are written directly */
-      if (access(path, W_OK) != 0) return fail_write(path, errno);
-      continue;
-    }
-    if (stat(path, &info) == 0 && access(path, W_OK) != 0) return fail_write(path, errno);
-    if (strlen(slash ? slash + 1 : path) > LONGEST_NAME) return fail_write(path, ENAMETOOLONG);
-    char target[PATH_MAX]; /* for a link, the directory of its target counts */
-    if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target)) {
-      slash = strrchr(target, '/');
-      snprintf(folder, sizeof folder, "%.*s", slash > target ? (int)(slash - target) : 1, target);
-    }
-    if (stat(folder, &info) != 0)
-      return report_failure(STATUS_IO, "cannot write %s: folder %s: %s", path, folder, strerror(errno));
-    if (!S_ISDIR(info.st_mode)) return fail_write(path, ENOTDIR);
-    if (access(folder, W_OK | X_OK) != 0)
-      return report_failure(STATUS_IO, "cannot write %s: folder %s: %s", path, folder, strerror(errno));
-    vl_remove_leftovers(path);
+    if (outputs->patterns && slash && memchr(path, '%', (size_t)(slash - path))) continue; /* made later */
+    int status = output_check(NULL, path, VL_OUTPUT_PLAIN);
+    if (status >= 0) return status;
+    if (!output_is_stream(path)) vl_remove_leftovers(path);
   }
   return -1;
 }
@@ -120,16 +119,15 @@ static bool name_beside(const char *path, size_t keep, const char *tail, char *r
   return snprintf(result, size, "%.*s%s", (int)keep, path, tail) < (int)size;
 }
 
-/* Only regular files are replaced by renaming another file. */
-static bool is_plain_file(const char *path) {
+bool output_is_stream(const char *path) {
   struct stat info;
-  return stat(path, &info) != 0 || S_ISREG(info.st_mode);
+  return output_is_stdout(path) || strcmp(path, stdout_path) == 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode));
 }
 
 bool output_part_path(const char *path, char *part, size_t size) {
   char target[PATH_MAX], tail[32];
   struct stat info;
-  if (!is_plain_file(path)) return false;
+  if (output_is_stream(path)) return false;
   if (lstat(path, &info) == 0 && S_ISLNK(info.st_mode) && realpath(path, target)) path = target;
   const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
   size_t stem = dot ? (size_t)(dot - path) : strlen(path);
@@ -179,6 +177,14 @@ static void keep_part(Outputs *outputs, int i, const char *part, OutputStage sta
     report_note("%s holds the image of %u samples per pixel", part, outputs->files[i].part_spp);
 }
 
+vlResult output_write_layers(const vlImage *const *images, uint32_t count, const char *path, vlWriteDef def,
+                             vlError *error) {
+  const char *opened = output_opened(path);
+  def.format = suffix_of(path);
+  return count > 1 ? vl_image_write_layers(images, count, opened, &def, error)
+                   : vl_image_write(images[0], opened, &def, error);
+}
+
 static vlResult write_one(const Outputs *outputs, const vlImage *image, bool layers, const char *path, vlError *error) {
   vlWriteDef write = vl_default_write_def();
   write.half = outputs->half;
@@ -186,8 +192,7 @@ static vlResult write_one(const Outputs *outputs, const vlImage *image, bool lay
   uint32_t count = 1;
   for (int k = 0; k < 4 && layers; k++)
     if (outputs->layers[k]) images[count++] = outputs->layers[k];
-  return count > 1 ? vl_image_write_layers(images, count, path, &write, error)
-                   : vl_image_write(images[0], path, &write, error);
+  return output_write_layers(images, count, path, write, error);
 }
 
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage) {

@@ -1,6 +1,6 @@
 /* render/outputs.h: the output files of one render. They are checked before the render and written atomically. While
  * rendering and after an interruption, the image of NAME.EXT is in NAME.part.EXT. Only a finished render replaces
- * NAME.EXT. */
+ * NAME.EXT. The output "-.EXT" is the standard output in that format; "-" is "-.exr". */
 #ifndef APP_RENDER_OUTPUTS_H
 #define APP_RENDER_OUTPUTS_H
 
@@ -19,6 +19,7 @@ typedef struct Outputs {
   const char *paths[MAX_OUTPUTS];
   int count;
   bool half;
+  bool to_stdout;           /* "-" is allowed: the command prints nothing else */
   bool patterns;            /* the names are patterns (pattern.h): directories with a % are made later */
   vlView view;              /* for 8-bit files */
   float exposure;           /* EV, for 8-bit files */
@@ -32,6 +33,12 @@ typedef struct Outputs {
   } files[MAX_OUTPUTS];
 } Outputs;
 
+/* Whether the output is the standard output. */
+bool output_is_stdout(const char *path);
+/* The path that is opened for this output. */
+const char *output_opened(const char *path);
+/* Whether the output is written as a stream: once, when it is complete. */
+bool output_is_stream(const char *path);
 /* Whether the file's format holds more than colours. */
 bool output_holds_layers(const char *path);
 /* Whether the file's format holds an alpha channel. */
@@ -50,6 +57,9 @@ bool output_part_path(const char *path, char *part, size_t size);
 void output_remove_part(const char *path);
 /* Makes the path PATH.ids.json; a name that is too long is shortened. */
 bool output_ids_path(const char *path, char *ids, size_t size);
+/* Writes an image with its layers to one output. */
+vlResult output_write_layers(const vlImage *const *images, uint32_t count, const char *path, vlWriteDef def,
+                             vlError *error);
 /* Writes the image with `spp` samples per pixel to every file, also after one of them failed. Returns STATUS_OK or the
  * exit code of the first failure. */
 int outputs_write(vlContext *context, Outputs *outputs, const vlImage *image, uint32_t spp, OutputStage stage);

@@ -14,6 +14,8 @@
 #include "render/exposure.h"
 #include "render/lens_options.h"
 #include "render/noise.h"
+#include "render/output_names.h"
+#include "render/pattern.h"
 #include "render/race.h"
 #include "render/run.h"
 #include "render/shard.h"
@@ -101,6 +103,19 @@ static void start_receipt(Render *render, const Arguments *arguments) {
   record_files(render, arguments);
 }
 
+/* Tells the context of files that others read: no output may replace them. */
+static int note_inputs(const Render *render, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  const char *const plain[] = {render->again.path,
+                               v[RENDER_DENOISER_LIBRARY].given ? v[RENDER_DENOISER_LIBRARY].text : NULL};
+  vlResult result = VL_OK;
+  for (size_t i = 0; i < sizeof plain / sizeof *plain && result != VL_ERROR_MEMORY; i++)
+    if (plain[i]) result = vl_note_input(render->context, plain[i], VL_OUTPUT_PLAIN);
+  if (render->resumed.path && result != VL_ERROR_MEMORY)
+    result = vl_note_input(render->context, render->resumed.path, VL_OUTPUT_FILM);
+  return result == VL_ERROR_MEMORY ? report_error(NULL, result, NULL) : -1;
+}
+
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given) return report_usage("--quiet and --verbose exclude each other");
@@ -114,6 +129,8 @@ static int prepare(Render *render, const Arguments *arguments) {
                                  .overwrite = v[RENDER_OVERWRITE].given,
                                  .receipt = &render->receipt,
                                  .outputs = &render->outputs};
+  if (render->film_plan.path) render->film_plan.path = output_opened(render->film_plan.path);
+  outputs->to_stdout = true;
   outputs->half = v[RENDER_HALF].given;
   outputs->transparent = v[RENDER_TRANSPARENT].given;
   outputs->view = v[RENDER_VIEW].given ? (vlView)v[RENDER_VIEW].integer : VL_VIEW_STANDARD;
@@ -141,7 +158,37 @@ static int prepare(Render *render, const Arguments *arguments) {
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
   if (!render->context) status = context_open(&def, &render->context);
   if (status < 0) report_memory_of(render->context, def.max_memory);
+  if (status < 0) status = note_inputs(render, arguments);
   return status;
+}
+
+/* Adds the files of each frame and view. */
+static void add_frames(const Render *render, OutputNames *names) {
+  const Frames *frames = &render->frames;
+  char path[4096];
+  for (uint32_t k = 0; k < frames_count(frames); k++) {
+    const Frame frame = frames_at(frames, k);
+    for (int i = 0; i < render->outputs.count; i++) {
+      const char *pattern = render->outputs.paths[i];
+      for (int view = 0; view < (pattern_has(pattern, 'v') ? frames->views : 1); view++)
+        if (frames_path(frames, &frame, pattern, view, path, sizeof path))
+          output_names_add_image(names, path, true, render->channels.bits);
+    }
+    for (int view = 0; view < frames->views && frames->films; view++)
+      if (frames_path(frames, &frame, frames->films->path, view, path, sizeof path))
+        output_names_add(names, path, VL_OUTPUT_FILM);
+  }
+}
+
+/* Checks that no file which this command writes is one that it has read, and that no two are the same. */
+static int check_outputs(const Render *render) {
+  OutputNames names = {0};
+  if (render->many) add_frames(render, &names);
+  for (int i = 0; i < render->outputs.count && !render->many; i++)
+    output_names_add_image(&names, render->outputs.paths[i], true, render->channels.bits);
+  if (render->film_plan.path && !render->many) output_names_add(&names, render->film_plan.path, VL_OUTPUT_FILM);
+  if (render->denoised.outputs.count) output_names_add_image(&names, render->denoised.outputs.paths[0], true, false);
+  return output_names_check(&names, render->context);
 }
 
 /* Checks before the render for outputs that could not be written after it. */
@@ -394,6 +441,7 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
     status = report_usage("%s: too few arguments; usage: velo %s %s", command->name, command->name, command->usage);
   if (status < 0) status = prepare(&render, arguments);
   if (status < 0) status = load_and_build(&render, arguments->operands[0], arguments);
+  if (status < 0) status = check_outputs(&render);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0) status = race_run(&render, arguments);
   if (status < 0) status = reckon_memory(&render, arguments);

@@ -220,7 +220,7 @@ static int write_last(Render *render, OutputStage *stage) {
   for (int i = 0; i < render->outputs.count && status == STATUS_OK; i++) {
     char part[5000];
     if (render->channels.bits && output_holds_layers(render->outputs.paths[i]))
-      written = channels_write_ids(&render->channels, NULL, render->world,
+      written = channels_write_ids(&render->channels, NULL, render->context, render->world,
                                    output_written(&render->outputs, i, *stage, part, sizeof part));
   }
   denoised_share_exposure(&render->denoised, &render->outputs);

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "render/output_names.h"
 #include "scene/scene.h"
 #include "velo/export.h"
 
@@ -62,7 +63,6 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   bool pbrt = ends_with(to, ".pbrt");
   if (!pbrt && !ends_with(to, ".gltf") && !ends_with(to, ".glb"))
     return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
-  if (strcmp(from, to) == 0) return report_usage("%s: a file cannot be converted into itself", to);
   int status = scene_context(&context, arguments, report_log, NULL);
   if (status >= 0) return status;
   vlLoadDef load = vl_default_load_def();
@@ -82,9 +82,9 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     result = vl_scene_complete(scene, NULL, &error);
     if (result == VL_OK) report_note("%s lacks a camera or light: those that velo render would make are written", from);
   }
-  if (result != VL_OK) {
-    status = report_error(&error, result, from);
-  } else {
+  if (result != VL_OK) status = report_error(&error, result, from);
+  if (status < 0) status = output_check(context, to, VL_OUTPUT_PLAIN);
+  if (status < 0) {
     result = vl_scene_save(scene, to, &save, &error);
     status = result == VL_OK ? STATUS_OK : report_error(&error, result, to);
   }

@@ -134,7 +134,7 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
 
 static bool write_text(vlUpgrade *u, const char *path, const char *text) {
   vlFileWriter writer;
-  vlResult r = vl_file_open_write(&writer, path, &u->error);
+  vlResult r = vl_file_open_write(&writer, u->context, path, VL_OUTPUT_PLAIN, &u->error);
   if (r == VL_OK) {
     vl_file_write(&writer, text, strlen(text));
     r = vl_file_commit(&writer, &u->error);

@@ -99,10 +99,13 @@ static void log_message(void *user, vlLogLevel level, const vlError *where, cons
 }
 
 static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
-  static char *names[] = {"threads", "max_memory", NULL};
+  static char *names[] = {"threads", "max_memory", "keep_inputs", NULL};
   vlContextDef def = vl_default_context_def();
   unsigned long long memory = 0;
-  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|IK:Context", names, &def.threads, &memory)) return NULL;
+  int keep_inputs = 0;
+  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|IKp:Context", names, &def.threads, &memory, &keep_inputs))
+    return NULL;
+  def.keep_inputs = keep_inputs != 0;
   if (def.threads > 4096) return raise_usage("threads must be at most 4096");
   def.max_memory = (size_t)memory;
   def.log = log_message;
@@ -124,6 +127,46 @@ static void context_dealloc(Context *self) {
   free_object((PyObject *)self);
 }
 
+typedef vlResult PathCall(vlContext *context, const char *path, vlError *error);
+
+static vlResult note_input(vlContext *context, const char *path, vlError *error) {
+  vlResult result = vl_note_input(context, path, VL_OUTPUT_PLAIN);
+  if (result == VL_ERROR_IO) snprintf(error->message, sizeof error->message, "no such file: %.400s", path);
+  return result;
+}
+
+static vlResult check_output(vlContext *context, const char *path, vlError *error) {
+  return vl_check_output(context, path, VL_OUTPUT_PLAIN, error);
+}
+
+static PyObject *with_path(const Context *self, PyObject *path, PathCall *call) {
+  if (!context_check(self)) return NULL;
+  PyObject *keep = PyList_New(0);
+  const char *file = keep ? keep_path(keep, path) : NULL;
+  vlError error = {0};
+  vlResult result = file ? call(self->context, file, &error) : VL_OK;
+  Py_XDECREF(keep);
+  if (!file) return NULL;
+  if (result != VL_OK) return raise_result(result, &error);
+  Py_RETURN_NONE;
+}
+
+static PyObject *context_note_input(Context *self, PyObject *path) {
+  return with_path(self, path, note_input);
+}
+
+static PyObject *context_check_output(Context *self, PyObject *path) {
+  return with_path(self, path, check_output);
+}
+
+static PyMethodDef context_methods[] = {
+    {"note_input", (PyCFunction)context_note_input, METH_O,
+     "note_input(path): remembers a file that the program reads itself, so that keep_inputs protects it, too."},
+    {"check_output", (PyCFunction)context_check_output, METH_O,
+     "check_output(path): raises the error that writing a file there would raise, without writing."},
+    {NULL, NULL, 0, NULL},
+};
+
 static PyObject *context_memory(Context *self, void *unused) {
   (void)unused;
   if (!context_check(self)) return NULL;
@@ -141,10 +184,12 @@ static PyGetSetDef context_members[] = {
 };
 static PyType_Slot context_slots[] = {
     {Py_tp_doc,
-     "Memory, log and worker threads of all objects. threads: default the processors; max_memory: bytes, 0: no limit."},
+     "Memory, log and worker threads of all objects. threads: default the processors; max_memory: bytes, 0: no limit; "
+     "keep_inputs: files that were read are not overwritten, which is a UsageError."},
     {Py_tp_new, context_new},
     {Py_tp_dealloc, context_dealloc},
     {Py_tp_getset, context_members},
+    {Py_tp_methods, context_methods},
     {0, NULL},
 };
 PyType_Spec context_spec = {"velo._velo.Context", sizeof(Context), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE,

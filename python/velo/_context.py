@@ -20,6 +20,11 @@ def default_context() -> Any:
     return _default
 
 
+def protecting_context() -> Any:
+    """A context that overwrites no file which it has read, with as many workers as the default context."""
+    return _velo.Context(keep_inputs=True, **({"threads": _default.threads} if _default else {}))
+
+
 def set_threads(threads: int) -> None:
     """Gives the default context this many workers. Objects that exist keep the context that they were made from."""
     global _default

@@ -384,6 +384,32 @@ def yaml_recipes_and_shards():
 
 
 @case
+def no_file_that_was_read_is_overwritten():
+    folder = work("inputs")
+    os.makedirs(folder)
+    write_obj(os.path.join(folder, "block.obj"), MESHES["block"])
+    path = os.path.join(folder, "annotations.json")  # what the writer coco calls its table
+    with open(path, "w") as file:
+        json.dump({"models": ["block.obj"], "frames": 1, "spp": 1, "resolution": [32, 24],
+                   "cameras": [{"kind": "around", "distance": [1, 2]}]}, file)
+    before = open(path).read()
+    done = run(path, "-o", folder, "--writers", "coco")
+    assert done.returncode == 2 and "annotations.json" in done.stderr and "overwritten" in done.stderr, done.stderr
+    assert open(path).read() == before
+    context = velo.Context(threads=1, keep_inputs=True)
+    image = velo.read_image(glob.glob(os.path.join(OUT, "**", "*.png"), recursive=True)[0], context=context)
+    copy = work("copy.png")
+    image.write(copy)
+    context.check_output(copy)
+    context.note_input(copy)
+    os.link(copy, work("link.png"))
+    with raises(velo.UsageError, "link.png", "copy.png", "overwritten"):
+        context.check_output(work("link.png"))
+    with raises(velo.UsageError, "copy.png", "overwritten"):
+        image.write(copy)
+
+
+@case
 def errors_of_recipes_name_the_place():
     path = work("wrong.json")
     with open(path, "w") as file:

@@ -1,11 +1,15 @@
 /* cli/report.c: see report.h. */
 #include "cli/report.h"
 
+#include <errno.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "cli/signals.h"
 
 enum { MOST_LOGGED = 100 }; /* limit of warnings: an untrusted file may cause one per line */
 
@@ -60,23 +64,39 @@ int report_terminal_columns(void) {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
+/* Writes to stderr. A signal cannot end a call that blocks, so this waits with poll(): what nobody reads is dropped
+ * once the program is asked to stop. */
+static void put_bytes(const char *data, size_t size) {
+  enum { PIECE = 4096, WAIT_MS = 100, MOST_WAITS = 10 };
+  for (int waits = 0; size && waits < MOST_WAITS;) {
+    struct pollfd one = {.fd = STDERR_FILENO, .events = POLLOUT};
+    int ready = poll(&one, 1, WAIT_MS);
+    if (ready <= 0) waits += signals_pending() > 0;
+    if (ready < 0 && errno != EINTR) return;
+    if (ready <= 0) continue;
+    ssize_t n = write(STDERR_FILENO, data, size < PIECE ? size : PIECE);
+    if (n < 0 && errno != EINTR && errno != EAGAIN) return;
+    if (n > 0) data += n, size -= (size_t)n;
+  }
+}
+
 /* Writes one line by one call, so that lines of several programs do not mix. */
 static void put_line(const char *text) {
-  char line[4200];
+  char line[4096];
   size_t n = 0;
   if (state.line_shown) n = (size_t)snprintf(line, sizeof line, "\r\033[K");
   state.line_shown = false;
   for (const char *s = text; *s && n + 2 < sizeof line; s++)
     line[n++] = (unsigned char)*s < 0x20 || *s == 0x7f ? (*s == '\n' || *s == '\t' ? ' ' : '?') : *s;
   line[n++] = '\n';
-  if (fwrite(line, 1, n, stderr) != n) clearerr(stderr);
-  fflush(stderr);
+  put_bytes(line, n);
 }
 
 void report_status_line(const char *text) {
   if (!state.terminal || state.verbosity == REPORT_QUIET || (!text && !state.line_shown)) return;
-  fprintf(stderr, "\r%s\033[K", text ? text : "");
-  fflush(stderr);
+  char line[700];
+  int n = snprintf(line, sizeof line, "\r%s\033[K", text ? text : "");
+  put_bytes(line, n < (int)sizeof line ? (size_t)n : sizeof line - 1);
   state.line_shown = text != NULL;
 }
 
@@ -92,8 +112,7 @@ void report_json_end(Json *json) {
   json_end(json, '}');
   fputc('\n', json->out);
   if (json->out == stderr) return;
-  if (fclose(json->out) == 0 && fwrite(state.json_text, 1, state.json_size, stderr) != state.json_size)
-    clearerr(stderr);
+  if (fclose(json->out) == 0) put_bytes(state.json_text, state.json_size);
   free(state.json_text);
   state.json_text = NULL;
   fflush(stderr);

@@ -33,13 +33,14 @@ void output_names_add(OutputNames *names, const char *path, vlOutputKind kind) {
 }
 
 void output_names_add_image(OutputNames *names, const char *path, bool part, bool ids) {
-  char other[PATH_MAX + 64], described[PATH_MAX + 160];
+  char other[PATH_MAX + 64], own[PATH_MAX + 160], described[PATH_MAX + 160];
   output_names_add(names, path, VL_OUTPUT_PLAIN);
-  ids = ids && output_holds_layers(path) && !output_is_stdout(path);
-  if (ids && output_ids_path(path, described, sizeof described)) output_names_add(names, described, VL_OUTPUT_PLAIN);
+  ids = ids && output_holds_layers(path) && !output_is_stdout(path) && output_ids_path(path, own, sizeof own);
+  if (ids) output_names_add(names, own, VL_OUTPUT_PLAIN);
   if (!part || !output_part_path(path, other, sizeof other)) return;
   output_names_add(names, other, VL_OUTPUT_PLAIN);
-  if (ids && output_ids_path(other, described, sizeof described)) output_names_add(names, described, VL_OUTPUT_PLAIN);
+  if (ids && output_ids_path(other, described, sizeof described) && strcmp(own, described) != 0) /* cut alike */
+    output_names_add(names, described, VL_OUTPUT_PLAIN);
 }
 
 static int compare(const void *a, const void *b) {
@@ -55,19 +56,21 @@ static bool is_device(const char *path) {
   return !output_is_stdout(path) && stat(path, &info) == 0 && S_ISCHR(info.st_mode);
 }
 
-int output_check(vlContext *context, const char *path, vlOutputKind kind) {
+static int check(vlContext *context, const char *path, vlOutputKind kind, bool frame) {
   vlError error = {0};
-  switch (vl_check_output(context, output_opened(path), kind, &error)) {
-    case VL_OK: return -1;
-    case VL_ERROR_ARGUMENT: return report_usage("%s", error.message);
-    default: return report_failure(STATUS_IO, "%s", error.message);
-  }
+  vlResult result = vl_check_output(context, output_opened(path), kind, &error);
+  if (result == VL_ERROR_ARGUMENT) return report_usage("%s", error.message);
+  return result == VL_OK || frame ? -1 : report_failure(STATUS_IO, "%s", error.message);
+}
+
+int output_check(vlContext *context, const char *path, vlOutputKind kind) {
+  return check(context, path, kind, false);
 }
 
 int output_names_check(OutputNames *names, vlContext *context) {
   int status = names->failed ? report_error(NULL, VL_ERROR_MEMORY, NULL) : -1;
   for (size_t i = 0; i < names->count && status < 0; i++)
-    status = output_check(context, names->items[i].path, names->items[i].kind);
+    status = check(context, names->items[i].path, names->items[i].kind, names->frames);
   if (names->count) qsort(names->items, names->count, sizeof *names->items, compare);
   for (size_t i = 1; i < names->count && status < 0; i++) {
     const OutputName *a = &names->items[i - 1], *b = &names->items[i];

@@ -15,6 +15,7 @@ typedef struct OutputNames {
   OutputName *items;
   size_t count, capacity;
   bool failed; /* out of memory */
+  bool frames; /* what cannot be written is reported then: it must not stop the other frames */
 } OutputNames;
 
 void output_names_add(OutputNames *names, const char *path, vlOutputKind kind);

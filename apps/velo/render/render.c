@@ -182,7 +182,7 @@ static void add_frames(const Render *render, OutputNames *names) {
 
 /* Checks that no file which this command writes is one that it has read, and that no two are the same. */
 static int check_outputs(const Render *render) {
-  OutputNames names = {0};
+  OutputNames names = {.frames = render->many};
   if (render->many) add_frames(render, &names);
   for (int i = 0; i < render->outputs.count && !render->many; i++)
     output_names_add_image(&names, render->outputs.paths[i], true, render->channels.bits);

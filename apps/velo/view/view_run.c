@@ -12,6 +12,9 @@
 #include "cli/signals.h"
 #include "render/film_claim.h"
 #include "render/job.h"
+}
+
+#include "render/output_names.h"
 #include "view/engine.h"
 #include "view/lecture.h"
 #include "view/view.h"
@@ -75,6 +78,16 @@ static int claim_film(FilmClaim *claim, vlContext *context, const Arguments *arg
                                    : -1;
 }
 
+/* Checks the names of the film and of the camera beside it (engine_film.c). */
+static int check_film(vlContext *context, const char *path) {
+  char camera[4200];
+  OutputNames names = {0};
+  engine_film_camera(path, camera, sizeof camera);
+  output_names_add(&names, path, VL_OUTPUT_FILM);
+  output_names_add(&names, camera, VL_OUTPUT_PLAIN);
+  return output_names_check(&names, context);
+}
+
 int view_run(const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   vlContext *context = NULL;
@@ -95,6 +108,7 @@ int view_run(const Arguments *arguments) {
     complete.film_lock = claim.lock;
     status = engine_create(&complete, &engine);
   }
+  if (status < 0 && def.film_path) status = check_film(context, def.film_path);
   if (status < 0) {
     const ServerDef server_def = {.address = v[VIEW_LISTEN].given ? v[VIEW_LISTEN].text : NULL,
                                   .port = v[VIEW_PORT].given ? (int)v[VIEW_PORT].integer : 0,

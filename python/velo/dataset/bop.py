@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy
 
-from velo.dataset.files import write_bytes, write_json
 from velo.dataset.geometry import multiply
 from velo.dataset.models import diameter, ply, triangles
 from velo.dataset.png import png
@@ -29,21 +28,21 @@ class BopWriter(Writer):
         for number, (low, high) in enumerate(stage.boxes):
             size = [(b - a) * MM for a, b in zip(low, high)]
             points, faces = triangles(stage.model(number), stage.recipe.models[number].scale * MM)
-            write_bytes(os.path.join(self.folder, "models", f"obj_{number + 1:06d}.ply"), ply(points, faces))
+            self.write_bytes(os.path.join(self.folder, "models", f"obj_{number + 1:06d}.ply"), ply(points, faces))
             info[str(number + 1)] = {"name": stage.names[number],
                                      "diameter": diameter(points) or sum(s * s for s in size) ** 0.5,
                                      **{f"min_{axis}": value * MM for axis, value in zip("xyz", low)},
                                      **{f"size_{axis}": value for axis, value in zip("xyz", size)}}
-        write_json(os.path.join(self.folder, "models", "models_info.json"), info)
+        self.write_json(os.path.join(self.folder, "models", "models_info.json"), info)
 
     def write(self, frame: Frame, scene: int) -> None:
         folder = os.path.join(self.folder, "train_pbr", f"{scene:06d}")
         name = f"{frame.frame:06d}"
-        write_bytes(os.path.join(folder, "rgb", f"{name}.png"), png(display(frame)))
+        self.write_bytes(os.path.join(folder, "rgb", f"{name}.png"), png(display(frame)))
         steps = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * MM / self.depth_scale)
         known = numpy.isfinite(steps) & (steps > 0) & (steps < 65536)
         depth = numpy.where(known, steps, 0).astype("uint16")
-        write_bytes(os.path.join(folder, "depth", f"{name}.png"), png(depth))
+        self.write_bytes(os.path.join(folder, "depth", f"{name}.png"), png(depth))
         k = numpy.array(frame.camera.K)
         k[0, 2] -= 0.5
         k[1, 2] -= 0.5
@@ -56,8 +55,8 @@ class BopWriter(Writer):
             pose = multiply(camera_from_world, item.world_from_model)
             truths.append({"cam_R_m2c": [value for row in pose[:3] for value in row[:3]],
                            "cam_t_m2c": [row[3] * MM for row in pose[:3]], "obj_id": item.model + 1})
-            write_bytes(os.path.join(folder, "mask", f"{name}_{number:06d}.png"), png(item.whole))
-            write_bytes(os.path.join(folder, "mask_visib", f"{name}_{number:06d}.png"), png(item.mask))
+            self.write_bytes(os.path.join(folder, "mask", f"{name}_{number:06d}.png"), png(item.whole))
+            self.write_bytes(os.path.join(folder, "mask_visib", f"{name}_{number:06d}.png"), png(item.mask))
             whole, seen = int(item.whole.sum()), int(item.mask.sum())
             infos.append({"bbox_obj": box_of(item.whole, (-1, -1, -1, -1)), "bbox_visib": box_of(item.mask, (-1, -1, -1, -1)),
                           "px_count_all": whole, "px_count_valid": int((item.whole & (depth > 0)).sum()),
@@ -76,9 +75,9 @@ class BopWriter(Writer):
             tables["scene_gt_info"][str(number)] = part["info"]
         for scene, tables in scenes.items():
             for name, table in tables.items():
-                write_json(os.path.join(self.folder, "train_pbr", f"{scene:06d}", f"{name}.json"), table)
+                self.write_json(os.path.join(self.folder, "train_pbr", f"{scene:06d}", f"{name}.json"), table)
         if first:
             k = first["camera"]["cam_K"]
-            write_json(os.path.join(self.folder, "camera.json"),
+            self.write_json(os.path.join(self.folder, "camera.json"),
                        {"fx": k[0], "fy": k[4], "cx": k[2], "cy": k[5], "width": first["size"][0], "height": first["size"][1],
                         "depth_scale": self.depth_scale})

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy
 
-from velo.dataset.files import write_bytes, write_json
 from velo.dataset.geometry import transform
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Instance, Stage
@@ -80,7 +79,7 @@ class CocoWriter(Writer):
 
     def write(self, frame: Frame, scene: int) -> None:
         name = f"{frame.frame:06d}_{frame.view}.png"
-        write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
+        self.write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
         width, height = frame.camera.resolution
         annotations = [self._annotation(frame, item) for item in frame.instances if item.mask.any()]
         self.part(frame, {"image": {"file_name": f"images/{name}", "width": width, "height": height}, "annotations": annotations})
@@ -127,5 +126,5 @@ class CocoWriter(Writer):
             images.append({"id": image, **part["image"]})
             for annotation in part["annotations"]:
                 annotations.append({"id": len(annotations) + 1, "image_id": image, **annotation})
-        write_json(os.path.join(self.folder, "annotations.json"),
+        self.write_json(os.path.join(self.folder, "annotations.json"),
                    {"images": images, "annotations": annotations, "categories": categories})

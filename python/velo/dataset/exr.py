@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import os
 
-from velo.dataset.files import write_json
 from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer, box_of
 
@@ -19,7 +18,7 @@ class ExrWriter(Writer):
         name = os.path.join(self.folder, f"{frame.frame:06d}_{frame.view}")
         frame.image.write(name + ".exr")
         ids = frame.image["id.instance"]
-        write_json(name + ".json", {
+        self.write_json(name + ".json", {
             "frame": frame.frame, "view": frame.view, "width": frame.camera.width, "height": frame.camera.height,
             "K": [[float(value) for value in row] for row in frame.camera.K],
             "distortion": frame.camera.get("distortion"), "distortion_coefficients": list(frame.camera.distortion_coefficients),

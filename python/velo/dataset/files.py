@@ -7,12 +7,15 @@ import tempfile
 from typing import Any
 
 
-def write_bytes(path: str, data: bytes) -> None:
-    """Writes a file, and the folders above it. Failures are velo.OutputErrors."""
+def write_bytes(path: str, data: bytes, context: Any = None) -> None:
+    """Writes a file, and the folders above it. Failures are velo.OutputErrors; velo.UsageError where the context has read
+    that file and keeps its inputs."""
     from velo._errors import OutputError
     try:
         folder = os.path.dirname(path)
         os.makedirs(folder, exist_ok=True)
+        if context:
+            context.check_output(path)
         handle, temporary = tempfile.mkstemp(prefix=".velo-", suffix=".tmp", dir=folder)
         try:
             with os.fdopen(handle, "wb") as file:
@@ -26,11 +29,6 @@ def write_bytes(path: str, data: bytes) -> None:
         error = OutputError(f"cannot write: {problem.strerror or problem}")
         error.file = path
         raise error from problem
-
-
-def write_json(path: str, data: Any) -> None:
-    """Writes JSON. Numbers have as many digits as it takes to read the same bits."""
-    write_bytes(path, (json.dumps(data, allow_nan=False) + "\n").encode())
 
 
 def read_json(path: str, default: Any) -> Any:

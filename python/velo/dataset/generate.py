@@ -5,6 +5,7 @@ import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
+from velo._context import protecting_context
 from velo._errors import UsageError
 from velo.dataset.bop import BopWriter
 from velo.dataset.coco import CocoWriter
@@ -33,7 +34,11 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
     """Renders frames and writes them to a folder.
 
     frames: numbers from 0; default all of the recipe. Shards on several machines make different frames of one folder; the
-    tables over all frames are written anew by each, from what is there. progress: called with each finished frame."""
+    tables over all frames are written anew by each, from what is there. A file that was read for the dataset (the recipe,
+    models, cameras, textures) is not overwritten. progress: called with each finished frame."""
+    context = context or protecting_context()
+    if recipe.path:
+        context.note_input(recipe.path)
     stage = Stage(recipe, context=context)
     made = make_writers(stage, os.fspath(folder), writers)
 

@@ -9,7 +9,6 @@ from typing import Any
 import numpy
 
 from velo._errors import UnsupportedError
-from velo.dataset.files import write_bytes, write_json
 from velo.dataset.png import png
 from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer, display
@@ -40,10 +39,10 @@ class NerfstudioWriter(Writer):
 
     def write(self, frame: Frame, scene: int) -> None:
         name = f"{frame.frame:06d}_{frame.view}.png"
-        write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
+        self.write_bytes(os.path.join(self.folder, "images", name), png(display(frame)))
         millimetres = numpy.rint(numpy.asarray(frame.image["Z"], dtype="float64") * 1000)
         known = numpy.isfinite(millimetres) & (millimetres > 0) & (millimetres < 65536)
-        write_bytes(os.path.join(self.folder, "depth", name), png(numpy.where(known, millimetres, 0).astype("uint16")))
+        self.write_bytes(os.path.join(self.folder, "depth", name), png(numpy.where(known, millimetres, 0).astype("uint16")))
         pose = numpy.array(frame.camera.world_from_camera) * [1, -1, -1, 1]  # the axes are columns
         self.part(frame, {"file_path": f"images/{name}", "depth_file_path": f"depth/{name}",
                           "transform_matrix": pose.tolist(), **intrinsics(frame.camera)})
@@ -55,4 +54,4 @@ class NerfstudioWriter(Writer):
         same = all(all(frame.get(name) == value for name, value in shared.items()) for frame in frames)
         if same:
             frames = [{name: value for name, value in frame.items() if name not in shared} for frame in frames]
-        write_json(os.path.join(self.folder, "transforms.json"), {**(shared if same else {}), "frames": frames})
+        self.write_json(os.path.join(self.folder, "transforms.json"), {**(shared if same else {}), "frames": frames})

@@ -155,6 +155,7 @@ class Recipe:
     channels: Sequence[str] = ()  #: further channels of the EXR writer
     occluded: bool = True  #: also find the masks of whole objects, behind what occludes them
     folder: str = ""  #: relative paths are relative to it
+    path: str = ""  #: the recipe's file, if it came from one
 
 
 _KINDS = {"poses": Poses, "on_surface": OnSurface, "in_volume": InVolume, "fixed": Fixed, "around": Around,
@@ -213,4 +214,6 @@ def read_recipe(path: Union[str, "os.PathLike[str]"]) -> Recipe:
         except ImportError:
             raise UsageError("YAML recipes need Python's module yaml (Debian: python3-yaml); JSON ones do not") from None
         data = yaml.safe_load(text)
-    return recipe_from(data, os.path.dirname(os.path.abspath(path)))
+    recipe = recipe_from(data, os.path.dirname(os.path.abspath(path)))
+    recipe.path = os.path.abspath(path)
+    return recipe

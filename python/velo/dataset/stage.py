@@ -103,7 +103,7 @@ class Stage:
         if not recipe.models:
             raise UsageError("the recipe has no models")
         self.recipe = recipe
-        self._context = context
+        self.context = context
         self._world: Any = None  # of the last frame
         self._build = {name: recipe.render[name] for name in ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
                        if name in recipe.render}
@@ -118,7 +118,7 @@ class Stage:
                       for model, solo in zip(recipe.models, self._solo)]
 
     def _load(self, model: Model) -> _Loaded:
-        scene = velo.Scene(context=self._context)
+        scene = velo.Scene(context=self.context)
         group, name, low, high = _load_model(scene, model, self.recipe.folder)
         scene.add_instance(group, place(((1, 0, 0), (0, 1, 0), (0, 0, 1)), (0, 0, 0)))
         return _Loaded(scene, name, low, high, scene.world())
@@ -216,7 +216,7 @@ class Stage:
     def scene(self, plan: Plan) -> velo.Scene:
         """The scene of a plan. Its last instances are the plan's objects, in order."""
         recipe = self.recipe
-        scene = velo.Scene(context=self._context)
+        scene = velo.Scene(context=self.context)
         if recipe.scene:
             scene.load(os.path.join(recipe.folder, recipe.scene))
         scene.camera = plan.views[0].camera

@@ -3,12 +3,13 @@ parts of all shards that are there."""
 from __future__ import annotations
 
 import glob
+import json
 import os
 from typing import Any, Iterator, Sequence
 
 import numpy
 
-from velo.dataset.files import read_json, write_json
+from velo.dataset.files import read_json, write_bytes
 from velo.dataset.stage import Frame, Stage
 
 
@@ -26,9 +27,17 @@ class Writer:
     def finish(self) -> None:
         """Writes what is about all frames."""
 
+    def write_bytes(self, path: str, data: bytes) -> None:
+        """Writes a file whole or not at all, and the folders above it; never over a file that the context has read."""
+        write_bytes(path, data, self.stage.context)
+
+    def write_json(self, path: str, data: Any) -> None:
+        """Writes JSON in the same way. Numbers have as many digits as it takes to read the same bits."""
+        self.write_bytes(path, (json.dumps(data, allow_nan=False) + "\n").encode())
+
     def part(self, frame: Frame, data: Any) -> None:
         """Keeps a frame's annotations for finish."""
-        write_json(os.path.join(self.folder, "parts", f"{frame.frame:06d}_{frame.view}.json"), [frame.frame, data])
+        self.write_json(os.path.join(self.folder, "parts", f"{frame.frame:06d}_{frame.view}.json"), [frame.frame, data])
 
     def parts(self) -> Iterator[tuple[int, Any]]:
         """The annotations of all frames, in order: number of the frame, data."""

@@ -41,7 +41,8 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path, c
     return true;
   }
   char *copy = vl_strdup(context, path);
-  if (!copy || !VL_PUSH(context, &inputs->list)) return vl_free(context, copy), false;
+  const vlFileInput *last = copy ? VL_PUSH(context, &inputs->list) : NULL;
+  if (!last) return vl_free(context, copy), false;
   vlFileInput *place = inputs->list.items + at;
   memmove(place + 1, place, (inputs->list.count - 1 - at) * sizeof *place);
   *place = (vlFileInput){copy, *stamp, other};

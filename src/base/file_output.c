@@ -89,7 +89,7 @@ bool vl_file_id(const char *path, vlFileId *id) {
   if (!there) {
     folder_of(target, folder);
     if (stat(folder, &info) != 0) return false;
-    snprintf(id->name, sizeof id->name, "%s", target + vl_folder_length(target));
+    snprintf(id->name, sizeof id->name, "%.255s", target + vl_folder_length(target));
   }
   id->device = (uint64_t)info.st_dev;
   id->inode = (uint64_t)info.st_ino;

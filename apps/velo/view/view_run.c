@@ -12,8 +12,6 @@
 #include "cli/signals.h"
 #include "render/film_claim.h"
 #include "render/job.h"
-}
-
 #include "render/output_names.h"
 #include "view/engine.h"
 #include "view/lecture.h"

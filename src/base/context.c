@@ -11,7 +11,6 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "base/file_input.h"
 #include "base/isa.h"
 #include "base/machine.h"
 #include "base/pool.h"
@@ -281,7 +280,8 @@ void vl_context_destroy(vlContext *context) {
   for (size_t i = 0; i < context->files.files.count; i++)
     vl_free(context, (void *)(uintptr_t)context->files.files.items[i].path);
   vl_free(context, context->files.files.items);
-  vl_file_inputs_free(context, &context->inputs);
+  for (size_t i = 0; i < context->inputs.list.count; i++) vl_free(context, context->inputs.list.items[i].path);
+  vl_free(context, context->inputs.list.items);
   free_sandbox(context);
   context->def.allocator.release(context->def.allocator.user, context);
 }

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <stdarg.h>
 
+#include "base/file_stamp.h"
 #include "base/pool.h"
 #include "velo/base.h"
 
@@ -40,8 +41,21 @@ typedef struct vlFileRecords {
   } files;
 } vlFileRecords;
 vlFileRecords *vl_context_file_records(vlContext *context);
-/* The files that were read (file_input.h); null: the context does not keep them. */
-struct vlFileInputs *vl_context_file_inputs(vlContext *context);
+/* The files that were read, whatever they contain (file_input.h). */
+typedef struct vlFileInput {
+  char *path; /* as it was opened */
+  vlFileStamp stamp;
+  bool other; /* it was read as another file than a film */
+} vlFileInput;
+typedef struct vlFileInputs {
+  pthread_mutex_t mutex;
+  struct {
+    vlFileInput *items; /* by device and inode */
+    size_t count, capacity;
+  } list;
+} vlFileInputs;
+/* Null: the context does not keep them. */
+vlFileInputs *vl_context_file_inputs(vlContext *context);
 /* Whether writes must no longer wait (vlContextDef.interrupted). */
 bool vl_context_interrupted(const vlContext *context);
 

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/array.h"
+
 static int compare(const vlFileStamp *a, const vlFileStamp *b) {
   if (a->device != b->device) return a->device < b->device ? -1 : 1;
   return a->inode == b->inode ? 0 : a->inode < b->inode ? -1 : 1;
@@ -83,9 +85,4 @@ vlResult vl_note_input(vlContext *context, const char *path, vlOutputKind kind) 
   if (!context || !path) return VL_ERROR_ARGUMENT;
   if (stat(path, &info) != 0) return VL_ERROR_IO;
   return vl_file_input(context, path, &info, kind) ? VL_OK : VL_ERROR_MEMORY;
-}
-
-void vl_file_inputs_free(vlContext *context, vlFileInputs *inputs) {
-  for (size_t i = 0; i < inputs->list.count; i++) vl_free(context, inputs->list.items[i].path);
-  VL_ARRAY_FREE(context, &inputs->list);
 }

@@ -56,21 +56,16 @@ static bool is_device(const char *path) {
   return !output_is_stdout(path) && stat(path, &info) == 0 && S_ISCHR(info.st_mode);
 }
 
-static int check(vlContext *context, const char *path, vlOutputKind kind, bool frame) {
-  vlError error = {0};
-  vlResult result = vl_check_output(context, output_opened(path), kind, &error);
-  if (result == VL_ERROR_ARGUMENT) return report_usage("%s", error.message);
-  return result == VL_OK || frame ? -1 : report_failure(STATUS_IO, "%s", error.message);
-}
-
-int output_check(vlContext *context, const char *path, vlOutputKind kind) {
-  return check(context, path, kind, false);
+/* Whether the name of a frame is one that only the write of that frame reports. */
+static bool is_later(const OutputNames *names, const OutputName *name, vlContext *context) {
+  return names->frames && vl_check_output(context, name->path, name->kind, NULL) == VL_ERROR_IO;
 }
 
 int output_names_check(OutputNames *names, vlContext *context) {
   int status = names->failed ? report_error(NULL, VL_ERROR_MEMORY, NULL) : -1;
   for (size_t i = 0; i < names->count && status < 0; i++)
-    status = check(context, names->items[i].path, names->items[i].kind, names->frames);
+    if (!is_later(names, &names->items[i], context))
+      status = output_check(context, names->items[i].path, names->items[i].kind);
   if (names->count) qsort(names->items, names->count, sizeof *names->items, compare);
   for (size_t i = 1; i < names->count && status < 0; i++) {
     const OutputName *a = &names->items[i - 1], *b = &names->items[i];

@@ -24,8 +24,6 @@ void output_names_add_image(OutputNames *names, const char *path, bool part, boo
 /* Checks all names against each other and against what the context has read, then frees them. Returns -1, or the exit
  * code after reporting the error. */
 int output_names_check(OutputNames *names, vlContext *context);
-/* The same for one file that a command writes. */
-int output_check(vlContext *context, const char *path, vlOutputKind kind);
 /* The same for the images of a command without progress images. */
 int outputs_check_inputs(vlContext *context, const Outputs *outputs);
 

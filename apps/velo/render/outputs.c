@@ -15,7 +15,6 @@
 #include "cli/report.h"
 #include "image/display.h"
 #include "render/exposure.h"
-#include "render/output_names.h"
 
 static const char stdout_path[] = "/dev/stdout";
 enum { LONGEST_NAME = 255 }; /* bytes; of a file name without its directory */
@@ -93,6 +92,13 @@ int outputs_check_names(const Outputs *outputs) {
         return report_usage("output \"%s\" is given twice", outputs->paths[i]);
   }
   return -1;
+}
+
+int output_check(vlContext *context, const char *path, vlOutputKind kind) {
+  vlError error = {0};
+  vlResult result = vl_check_output(context, output_opened(path), kind, &error);
+  if (result == VL_ERROR_ARGUMENT) return report_usage("%s", error.message);
+  return result == VL_OK ? -1 : report_failure(STATUS_IO, "%s", error.message);
 }
 
 int outputs_check_folders(const Outputs *outputs) {

@@ -50,6 +50,9 @@ uint32_t output_largest_side(const char *path);
 /* Both functions return -1, or the exit code after reporting the error. The first does not access the file system. */
 int outputs_check_names(const Outputs *outputs);
 int outputs_check_folders(const Outputs *outputs);
+/* Checks one name against the file system and against what the context, which may be null, has read. Returns -1, or the
+ * exit code after reporting the error. */
+int output_check(vlContext *context, const char *path, vlOutputKind kind);
 /* NAME.part.EXT beside the target of `path`; names that are too long are shortened. False: still too long, or `path` is
  * a device or pipe. */
 bool output_part_path(const char *path, char *part, size_t size);

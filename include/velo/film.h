@@ -37,6 +37,9 @@ typedef struct vlFilmWriteDef {
    * are sides of the window or at multiples of 32 pixels. The other pixels have no samples in this file. All 0
    * (default): the film's crop. */
   uint32_t window[4];
+  /** An image whose attributes are kept in the header for vl_film_file_attributes, read during the call only. Null
+   * (default): none. Films of one render have the same. */
+  const vlImage *attributes;
   /** The lock of this path, if the caller has it: it stays. Null (default): the file is locked while it is written. */
   vlFilmLock *lock;
 } vlFilmWriteDef;
@@ -78,6 +81,9 @@ VL_API const vlFilmDef *vl_film_file_def(const vlFilmFile *file);
 VL_API uint32_t vl_film_file_sequence(const vlFilmFile *file);
 /** The receipt of its render; null: it has none. */
 VL_API const vlReceipt *vl_film_file_receipt(const vlFilmFile *file);
+/** Sets the attributes that the film keeps (vlFilmWriteDef.attributes) on an image, in their order. Errors: ARGUMENT,
+ * MEMORY; SCENE: one of them is wrong. */
+VL_API vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError *error);
 /** Reads the position and the sample ranges of the next block. With `check` it also reads the sums and checks their
  * CRC and their range. After the last block it returns VL_OK and *block has x0 = x1. Errors: SCENE: the file is
  * damaged; IO, MEMORY. */

@@ -16,7 +16,8 @@ struct vlFilmFile {
 
 vlResult vl_film_receipt(const vlFilmReader *reader, vlReceipt **receipt, vlError *error) {
   vlError own = {0};
-  vlResult result = vl_receipt_parse(reader->context, reader->receipt, strlen(reader->receipt), receipt, &own);
+  vlResult result =
+      vl_receipt_parse(reader->context, reader->texts.receipt, strlen(reader->texts.receipt), receipt, &own);
   if (result == VL_OK) return VL_OK;
   if (result == VL_ERROR_MEMORY) return vl_fail_memory(error);
   return vl_fail(error, result, "%s: film file: %s", reader->path, own.message);
@@ -33,7 +34,7 @@ vlResult vl_film_file_open(vlContext *context, const char *path, vlFilmFile **fi
     vl_free(context, made);
     return result;
   }
-  if (made->reader.receipt) result = vl_film_receipt(&made->reader, &made->receipt, error);
+  if (made->reader.texts.receipt) result = vl_film_receipt(&made->reader, &made->receipt, error);
   if (result != VL_OK) {
     vl_film_file_close(made);
     return result;
@@ -60,6 +61,13 @@ uint32_t vl_film_file_sequence(const vlFilmFile *file) {
 }
 const vlReceipt *vl_film_file_receipt(const vlFilmFile *file) {
   return file->receipt;
+}
+
+vlResult vl_film_file_attributes(const vlFilmFile *file, vlImage *image, vlError *error) {
+  vl_error_clear(error);
+  if (!file || !image) return vl_fail(error, VL_ERROR_ARGUMENT, "film file: file or image is null");
+  const vlFilmReader *r = &file->reader;
+  return r->texts.attributes ? vl_film_attributes_set(r->path, r->texts.attributes, image, error) : VL_OK;
 }
 
 static vlResult check_data(vlFilmFile *file, vlError *error) {

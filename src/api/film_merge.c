@@ -63,10 +63,10 @@ static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
   const vlFilmReader *first = &m->parts[0].reader;
   vlReceipt *then = NULL, *now = NULL;
   vlResult result = VL_OK;
-  if (!first->receipt != !r->receipt)
+  if (!first->texts.receipt != !r->texts.receipt)
     return vl_fail(m->error, VL_ERROR_SCENE, "%s and %s are of different renders: one has no receipt", r->path,
                    first->path);
-  if (r->receipt) {
+  if (r->texts.receipt) {
     result = vl_film_receipt(first, &then, m->error);
     if (result == VL_OK) result = vl_film_receipt(r, &now, m->error);
     Difference d = {m->error, r->path, first->path};
@@ -109,12 +109,18 @@ static vlResult open_earlier(Merge *m, const char *output, bool overwrite) {
   return vl_fail(error, result, "%s is not replaced: %s", output, own.message);
 }
 
-/* The first of the parts' receipts in the order of strcmp, so that the header of the result does not depend on the
- * order of the files. */
-static const char *choose_receipt(const Merge *m) {
-  const char *least = m->parts[0].reader.receipt;
-  for (uint32_t i = 1; i < m->count && least; i++)
-    if (strcmp(m->parts[i].reader.receipt, least) < 0) least = m->parts[i].reader.receipt;
+/* The first of the parts' receipts in the order of strcmp, with its attributes, so that the header of the result does
+ * not depend on the order of the files. */
+static const vlFilmTexts *choose_texts(const Merge *m) {
+  const vlFilmTexts *least = &m->parts[0].reader.texts;
+  for (uint32_t i = 1; i < m->count; i++) {
+    const vlFilmTexts *texts = &m->parts[i].reader.texts;
+    int order = least->receipt ? strcmp(texts->receipt, least->receipt) : 0;
+    if (order == 0 && texts->attributes)
+      order = least->attributes ? strcmp(texts->attributes, least->attributes)
+                                : -1; /* films of earlier versions have none */
+    if (order < 0) least = texts;
+  }
   return least;
 }
 
@@ -265,7 +271,7 @@ static vlResult merge_opened(Merge *m, const char *output) {
   m->data = vl_alloc(m->context, size);
   m->ranges = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->ranges);
   m->joined = vl_alloc_array(m->context, VL_FILM_MOST_RANGES, sizeof *m->joined);
-  char *header = vl_film_header_make(m->context, shape, choose_receipt(m));
+  char *header = vl_film_header_make(m->context, shape, choose_texts(m));
   vlResult result = m->sum && m->data && m->ranges && m->joined && header ? VL_OK : vl_fail_memory(m->error);
   if (result == VL_OK) result = vl_file_open_write(&m->file, m->context, output, VL_OUTPUT_FILM, m->error);
   if (result == VL_OK) {

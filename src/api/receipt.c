@@ -143,14 +143,8 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
   return vl_receipt_put(tree, "camera", object);
 }
 
-/* Returns the JSON text of a tree. */
 static char *text_of(vlContext *context, const json_t *tree) {
-  const size_t flags = JSON_COMPACT | JSON_PRESERVE_ORDER;
-  size_t length = json_dumpb(tree, NULL, 0, flags);
-  char *text = length ? vl_alloc(context, length + 1) : NULL;
-  if (!text || json_dumpb(tree, text, length, flags) != length) return vl_free(context, text), NULL;
-  text[length] = 0;
-  return text;
+  return vl_json_text(context, tree, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
 }
 
 static vlResult receipt_of(vlContext *context, json_t *tree, char *text, vlReceipt **receipt, vlError *error) {

@@ -1,6 +1,8 @@
 /* base/json.c: see json.h. */
 #include "base/json.h"
 
+#include <string.h>
+
 enum { SMALL = 1 << 20 };
 
 static void lack_memory(json_error_t *error) {
@@ -35,4 +37,12 @@ json_t *vl_json_parse(const char *text, size_t size, size_t flags, json_error_t 
 
 bool vl_json_lacks_memory(const json_error_t *error) {
   return json_error_code(error) == json_error_out_of_memory;
+}
+
+char *vl_json_text(vlContext *context, const json_t *tree, size_t flags, const char *end) {
+  size_t size = json_dumpb(tree, NULL, 0, flags);
+  char *text = size ? vl_alloc(context, size + strlen(end) + 1) : NULL;
+  if (!text || json_dumpb(tree, text, size, flags) != size) return vl_free(context, text), NULL;
+  memcpy(text + size, end, strlen(end) + 1);
+  return text;
 }

@@ -75,6 +75,13 @@ static size_t utf8_length(const unsigned char *text, size_t length, uint32_t *co
   return *code >= least[n] && *code <= 0x10ffff && *code >> 11 != 0x1b ? n : 0;
 }
 
+bool vl_is_utf8(const char *text) {
+  size_t length = strlen(text), n = 1;
+  uint32_t code;
+  for (size_t at = 0; at < length && n; at += n) n = utf8_length((const unsigned char *)text + at, length - at, &code);
+  return n > 0;
+}
+
 /* Whether a character is a control character, has no width, or changes the direction of writing. */
 static bool is_hidden(uint32_t c) {
   return c < 0x20 || (c >= 0x7f && c < 0xa0) || c == 0xad || (c >= 0x200b && c <= 0x200f) ||

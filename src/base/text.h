@@ -18,6 +18,7 @@ vlShortText vl_short_text_of(const char *text, size_t length);
 /* Replaces the same characters as vl_short_text by "?", but in a whole message and without shortening it, so names
  * of files stay complete. Removes an incomplete UTF-8 sequence at the end. */
 void vl_make_printable(char *message);
+bool vl_is_utf8(const char *text);
 /* Length of one of jansson's messages without its end (" near '...'"), which quotes the file. */
 size_t vl_json_problem_length(const char *message);
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */

@@ -55,11 +55,20 @@ uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
 /* ---- header ------------------------------------------------------------------------------------------------------ */
 
-/* The text of a header; receipt: JSON, may be null. Null: out of memory. */
-char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt);
-/* Reads a header. *receipt: text of its receipt, which the caller frees; null if it has none. Errors: SCENE, MEMORY. */
+/* What a header has beside the shape: JSON texts, each of which may be null. */
+typedef struct vlFilmTexts {
+  char *receipt, *attributes;
+} vlFilmTexts;
+
+/* The text of a header. Null: out of memory. */
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const vlFilmTexts *texts);
+/* Reads a header. The caller frees the texts. Errors: SCENE, MEMORY. */
 vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
-                             char **receipt, vlError *error);
+                             vlFilmTexts *texts, vlError *error);
+/* The attributes of an image as JSON: {"name": ["type", value, ...]}. Null: out of memory. */
+char *vl_film_attributes_make(vlContext *context, const vlImage *image);
+/* Sets the attributes of such a text on an image. Errors: SCENE, MEMORY. */
+vlResult vl_film_attributes_set(const char *path, const char *text, vlImage *image, vlError *error);
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
@@ -70,7 +79,7 @@ typedef struct vlFilmReader {
   uint32_t format;
   char *path;
   vlFilmShape shape;
-  char *receipt; /* text; null: none */
+  vlFilmTexts texts;
   char buffer[4096];
   uint64_t buffer_at; /* place of the buffer's bytes in the file */
   size_t buffered;    /* number of these bytes */

@@ -34,15 +34,6 @@ enum { FIELDS = sizeof fields / sizeof *fields };
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 enum { SPACES = sizeof spaces / sizeof *spaces };
 
-/* The text of a tree, and an end. Null: out of memory. */
-static char *dump(vlContext *context, const json_t *tree, size_t flags, const char *end) {
-  size_t size = json_dumpb(tree, NULL, 0, flags);
-  char *text = size ? vl_alloc(context, size + strlen(end) + 1) : NULL;
-  if (!text || json_dumpb(tree, text, size, flags) != size) return vl_free(context, text), NULL;
-  memcpy(text + size, end, strlen(end) + 1);
-  return text;
-}
-
 static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
 }
@@ -81,13 +72,16 @@ static json_t *film_tree(const vlFilmShape *shape) {
   return film;
 }
 
-char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const char *receipt) {
-  json_t *tree = json_object(), *film = film_tree(shape);
+static bool put_text(json_t *tree, const char *key, const char *text) {
   json_error_t place;
-  bool good = put(tree, "film", film);
-  if (good && receipt)
-    good = put(tree, "receipt", vl_json_parse(receipt, strlen(receipt), JSON_REJECT_DUPLICATES, &place));
-  char *text = good ? dump(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
+  return !text || put(tree, key, vl_json_parse(text, strlen(text), JSON_REJECT_DUPLICATES, &place));
+}
+
+char *vl_film_header_make(vlContext *context, const vlFilmShape *shape, const vlFilmTexts *texts) {
+  json_t *tree = json_object(), *film = film_tree(shape);
+  bool good = put(tree, "film", film) && put_text(tree, "receipt", texts->receipt) &&
+              put_text(tree, "attributes", texts->attributes);
+  char *text = good ? vl_json_text(context, tree, JSON_INDENT(1) | JSON_PRESERVE_ORDER, "\n") : NULL;
   json_decref(tree);
   return text;
 }
@@ -158,27 +152,36 @@ static vlResult take_film(const char *path, const json_t *film, vlFilmShape *sha
   return VL_OK;
 }
 
+/* Takes a member of the header as text; *text null: it has none. */
+static vlResult take_text(vlContext *context, const char *path, const json_t *tree, const char *key, char **text,
+                          vlError *error) {
+  const json_t *held = json_object_get(tree, key);
+  if (!held) return VL_OK;
+  if (!json_is_object(held)) return wrong(path, key, error);
+  *text = vl_json_text(context, held, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
+  return *text ? VL_OK : vl_fail_memory(error);
+}
+
 vlResult vl_film_header_read(vlContext *context, const char *path, const char *text, size_t size, vlFilmShape *shape,
-                             char **receipt, vlError *error) {
-  *receipt = NULL;
+                             vlFilmTexts *texts, vlError *error) {
+  *texts = (vlFilmTexts){NULL, NULL};
   json_error_t place;
   json_t *tree = vl_json_parse(text, size, JSON_REJECT_DUPLICATES, &place);
   if (!tree && vl_json_lacks_memory(&place)) return vl_fail_memory(error);
   if (!tree) return vl_fail(error, VL_ERROR_SCENE, "%s: film file: header, line %d: %s", path, place.line, place.text);
   vlResult result = take_film(path, json_object_get(tree, "film"), shape, error);
-  const json_t *held = json_object_get(tree, "receipt");
-  if (result == VL_OK && held && !json_is_object(held)) result = wrong(path, "receipt", error);
-  if (result == VL_OK && held) {
-    *receipt = dump(context, held, JSON_COMPACT | JSON_PRESERVE_ORDER, "");
-    if (!*receipt) result = vl_fail_memory(error);
-  }
+  if (result == VL_OK) result = take_text(context, path, tree, "receipt", &texts->receipt, error);
+  if (result == VL_OK) result = take_text(context, path, tree, "attributes", &texts->attributes, error);
   json_decref(tree);
-  if (result != VL_OK) return result;
   vlFilm *film = NULL; /* vl_film_create checks the def; it allocates no memory for pixels yet */
-  result = vl_film_create(context, &shape->def, &film);
-  vl_film_destroy(film);
+  if (result == VL_OK) {
+    result = vl_film_create(context, &shape->def, &film);
+    vl_film_destroy(film);
+    if (result != VL_OK) result = result == VL_ERROR_MEMORY ? vl_fail_memory(error) : wrong(path, "film", error);
+  }
   if (result == VL_OK) return VL_OK;
-  vl_free(context, *receipt);
-  *receipt = NULL;
-  return result == VL_ERROR_MEMORY ? vl_fail_memory(error) : wrong(path, "film", error);
+  vl_free(context, texts->receipt);
+  vl_free(context, texts->attributes);
+  *texts = (vlFilmTexts){NULL, NULL};
+  return result;
 }

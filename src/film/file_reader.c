@@ -62,7 +62,7 @@ static vlResult read_header(vlFilmReader *r, vlError *error) {
   result = get(r, text, p.header_size, sizeof p, error);
   if (result == VL_OK && vl_film_crc(0, text, p.header_size) != p.header_crc) result = damaged(r, "its header", error);
   if (result == VL_OK)
-    result = vl_film_header_read(r->context, r->path, text, p.header_size, &r->shape, &r->receipt, error);
+    result = vl_film_header_read(r->context, r->path, text, p.header_size, &r->shape, &r->texts, error);
   vl_free(r->context, text);
   r->format = p.format;
   r->at = sizeof p + p.header_size;
@@ -103,9 +103,10 @@ void vl_film_reader_close(vlFilmReader *r) {
   if (r->descriptor >= 0) close(r->descriptor);
   r->descriptor = -1;
   vl_free(r->context, r->path);
-  vl_free(r->context, r->receipt);
+  vl_free(r->context, r->texts.receipt);
+  vl_free(r->context, r->texts.attributes);
   vl_free(r->context, r->ranges);
-  r->path = r->receipt = NULL;
+  r->path = r->texts.receipt = r->texts.attributes = NULL;
   r->ranges = NULL;
 }
 

@@ -142,6 +142,15 @@ static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char 
   return VL_OK;
 }
 
+static char *make_header(vlContext *context, const vlFilmShape *shape, const vlFilmWriteDef *def) {
+  vlFilmTexts texts = {.attributes = def->attributes ? vl_film_attributes_make(context, def->attributes) : NULL};
+  char *header = NULL;
+  if (def->receipt) texts.receipt = (char *)(uintptr_t)vl_receipt_text(def->receipt); /* is not changed */
+  if (!def->attributes || texts.attributes) header = vl_film_header_make(context, shape, &texts);
+  vl_free(context, texts.attributes);
+  return header;
+}
+
 vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, const char *path, vlFilmWriter **writer,
                              vlError *error) {
   vl_error_clear(error);
@@ -156,7 +165,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   vlFilmShape shape = {film->def, film->sequence.length};
   memcpy(shape.def.crop, window, sizeof shape.def.crop);
   vlFilmWriter *made = vl_alloc_zero(film->context, 1, sizeof *made);
-  char *header = vl_film_header_make(film->context, &shape, def->receipt ? vl_receipt_text(def->receipt) : NULL);
+  char *header = make_header(film->context, &shape, def);
   if (!made || !header) {
     vl_free(film->context, made);
     vl_free(film->context, header);

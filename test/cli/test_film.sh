@@ -59,6 +59,33 @@ same "more files than are open at once" m.film whole.film
 "$VELO" film develop m.film -o d.pfm
 $render scene.pbrt $small --spp 11 -o e.pfm
 same "developed" d.pfm e.pfm
+# The header of a developed image is that of the render's own: camera, lens, motion, settings, receipt.
+# developed NAME WORDS...: the same attributes; the same file, if the film has no sums that the image has not.
+developed() {
+  local name=$1
+  shift
+  rm -f a.exr b.exr
+  $render "$@" --film developed.film --overwrite -o a.exr
+  "$VELO" film develop developed.film -o b.exr
+  "$VELO" image info a.exr | sed '1d; /^channels/d' >a.txt
+  "$VELO" image info b.exr | sed '1d; /^channels/d' >b.txt
+  grep -q velo.worldFromCamera a.txt || : >a.txt
+  same "header of $name" a.txt b.txt
+}
+developed scene scene.pbrt $small --spp 3
+same "file of scene" a.exr b.exr
+developed crop scene.pbrt $small --spp 3 --crop 20,10,60,30 --spectrum 4 --exposure 2
+same "file of crop" a.exr b.exr
+developed lens "$VELO_SOURCE_DIR/scenes/features/lens.pbrt" $small --spp 2
+developed motion "$VELO_SOURCE_DIR/scenes/features/motion.pbrt" $small --spp 2 --channels-time close --focus-pixel 20,20 --lens-radius 0.1
+developed "noise" scene.pbrt $small --noise 10%
+$render scene.pbrt $small --stereo parallel --spp 3 --film side_%v.film -o side_%v.exr
+"$VELO" film develop side_right.film -o b.exr
+same "file of an eye" side_right.exr b.exr
+"$VELO" film develop t1.film -o b.exr
+"$VELO" image info b.exr >part.txt
+check "a part's header has its own window" grep -q 'dataWindow *0 0 31 ' part.txt
+check "a part's header has the camera" grep -q velo.worldFromCamera part.txt
 mkdir bin
 ln -s "$VELO" bin/velo
 "$VELO" film merge s3.film t1.film -o gap.film
@@ -80,7 +107,7 @@ for round in 1 2 3 4 5 6; do
   if "$VELO" film info --check k.film >info.txt 2>&1; then pass "killed $round: the film is whole"; else fail "killed $round: the film is whole"; fi
   identical "killed $round: continued" $render --continue k.film -o b.exr -t $((round % 3 + 1))
 done
-for signal in INT TERM HUP; do
+for signal in INT TERM HUP USR1 USR2; do
   rm -f k.film
   env --default-signal=INT,HUP,TERM "$VELO" render scene.pbrt $small --spp 100000 --film k.film --quiet 2>/dev/null &
   process=$!

@@ -8,7 +8,7 @@ write_scene scene.pbrt
 
 # A shell script's background jobs ignore SIGINT: give it back.
 start() {
-  env --default-signal=INT,HUP,TERM "$VELO" "$@" &
+  env --default-signal=INT,HUP,TERM,USR1,USR2 "$VELO" "$@" &
   process=$!
 }
 samples_of() {
@@ -42,6 +42,8 @@ stopped INT 130
 stopped TERM 143
 stopped HUP 129
 stopped XCPU 152
+stopped USR1 138
+stopped USR2 140
 
 # What was rendered until then is what a render of that many samples gives, bit for bit.
 start render scene.pbrt -o part.exr -o part.pfm --spp 16777216 --quiet

@@ -491,6 +491,78 @@ static void memory_of_json_runs_out(void **state) {
   assert_true(total > 100);
 }
 
+static vlResult attributes_of(const char *path, vlImage *image, vlError *error) {
+  vlFilmFile *file;
+  vlResult result = vl_film_file_open(context, path, &file, error);
+  if (result == VL_OK) result = vl_film_file_attributes(file, image, error);
+  vl_film_file_close(file);
+  return result;
+}
+
+/* Attributes of each type come back as they were, also out of a merged film, and do not depend on the order of its
+ * parts. */
+static void attributes_are_kept(void **state) {
+  (void)state;
+  static const vlAttribute some[] = {
+      {"f", VL_ATTRIBUTE_FLOAT, {(double)0.1f}, NULL},
+      {"d", VL_ATTRIBUTE_DOUBLE, {-0.1}, NULL},
+      {"i", VL_ATTRIBUTE_INT, {-7}, NULL},
+      {"s", VL_ATTRIBUTE_STRING, {0}, "\xc3\xa9 \"\\"},
+      {"list", VL_ATTRIBUTE_STRINGS, {0}, "left\nright"},
+      {"box", VL_ATTRIBUTE_BOX2I, {1, 2, 3, 4}, NULL},
+      {"v", VL_ATTRIBUTE_V2F, {1e-30, 5e30}, NULL},
+      {"m", VL_ATTRIBUTE_M44D, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 1.0 / 3}, NULL}};
+  enum { COUNT = sizeof some / sizeof *some };
+  vlImageDef image_def = vl_default_image_def(1, 1, 1);
+  vlImage *from, *to;
+  vlError error = {0};
+  assert_int_equal(vl_image_create(context, &image_def, &from), VL_OK);
+  for (int i = 0; i < COUNT; i++) assert_int_equal(vl_image_set_attribute(from, &some[i]), VL_OK);
+  const vlAttribute lost[2] = {{"nan", VL_ATTRIBUTE_FLOAT, {NAN}, NULL}, {"bytes", VL_ATTRIBUTE_STRING, {0}, "\xff"}};
+  for (int i = 0; i < 2; i++) assert_int_equal(vl_image_set_attribute(from, &lost[i]), VL_OK);
+  const char *paths[3] = {path_of("one.film"), path_of("two.film"), path_of("both.film")};
+  for (uint32_t i = 0; i < 2; i++) {
+    vlFilm *film = make_film(context, PLAIN, NULL, 4 * i, 4 * i + 4);
+    vlFilmWriteDef def = vl_default_film_write_def();
+    def.attributes = i ? from : NULL; /* a film of an earlier version has none */
+    assert_int_equal(vl_film_write(film, &def, paths[i], &error), VL_OK);
+    vl_film_destroy(film);
+  }
+  for (int turn = 0; turn < 2; turn++) {
+    const char *const parts[2] = {paths[turn], paths[1 - turn]};
+    assert_int_equal(merge(parts, 2, paths[2], &error), VL_OK);
+    for (int k = 1; k < 3; k++) {
+      assert_int_equal(vl_image_create(context, &image_def, &to), VL_OK);
+      assert_int_equal(attributes_of(paths[k], to, &error), VL_OK);
+      assert_int_equal(vl_image_attribute_count(to), COUNT);
+      for (uint32_t i = 0; i < COUNT; i++) {
+        vlAttribute a;
+        assert_int_equal(vl_image_attribute(to, i, &a), VL_OK);
+        assert_string_equal(a.name, some[i].name);
+        assert_int_equal(a.type, some[i].type);
+        if (some[i].string) assert_string_equal(a.string, some[i].string);
+        if (!some[i].string) assert_memory_equal(a.numbers, some[i].numbers, sizeof a.numbers);
+      }
+      vl_image_destroy(to);
+    }
+  }
+  vl_image_destroy(from);
+  /* wrong ones */
+  static const char *const texts[] = {"{\"a\": 1}",
+                                      "{\"a\": [\"int\"]}",
+                                      "{\"a\": [\"int\", 1, 2]}",
+                                      "{\"a\": [\"int\", \"1\"]}",
+                                      "{\"a\": [\"string\", 1]}",
+                                      "{\"a\": [\"thing\", 1]}",
+                                      "{\"\": [\"int\", 1]}"};
+  assert_int_equal(vl_image_create(context, &image_def, &to), VL_OK);
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    assert_int_equal(vl_film_attributes_set("x.film", texts[i], to, &error), VL_ERROR_SCENE);
+    assert_non_null(strstr(error.message, "x.film: film file: the attribute \""));
+  }
+  vl_image_destroy(to);
+}
+
 /* A lock is one for all names of a file; who writes without it is refused. A leftover of a killed process locks
  * nothing. */
 static void one_writer_at_a_time(void **state) {
@@ -566,6 +638,7 @@ int main(void) {
                                      cmocka_unit_test(no_damage_goes_unseen),
                                      cmocka_unit_test(impossible_sums_are_refused),
                                      cmocka_unit_test(files_that_cannot_be_written),
+                                     cmocka_unit_test(attributes_are_kept),
                                      cmocka_unit_test(one_writer_at_a_time),
                                      cmocka_unit_test(a_merge_loses_nothing),
                                      cmocka_unit_test(memory_runs_out),

@@ -49,7 +49,11 @@ static void use(vlContext *context, const char *path) {
     vl_film_file_close(file);
   }
   if (vl_film_read(context, path, true, &film, &error) == VL_OK) {
-    if (vl_film_develop(film, NULL, &image) == VL_OK) vl_image_destroy(image);
+    if (vl_film_develop(film, NULL, &image) == VL_OK) {
+      if (vl_film_file_open(context, path, &file, &error) == VL_OK) vl_film_file_attributes(file, image, &error);
+      vl_film_file_close(file);
+      vl_image_destroy(image);
+    }
     if (vl_film_errors(film, NULL, &image) == VL_OK) vl_image_destroy(image);
     if (vl_film_spectrum(film, &image) == VL_OK) vl_image_destroy(image);
     vl_film_destroy(film);

@@ -17,7 +17,7 @@ Shape "trianglemesh" "point3 P" [0 0 0  1 0 0  0 1 0] "integer indices" [0 1 2]
 # Films that commands read; made once.
 FILMS = {"first.film": ["--spp", "2"], "part_1.film": ["--spp", "4", "--shard", "1/2"], "part_2.film": ["--spp", "4", "--shard", "2/2"],
          "tile_1.film": ["--spp", "4", "--shard", "1/2", "--shard-by", "tiles"], "whole.film": ["--spp", "4"],
-         "errors.film": ["--spp", "4", "--channels", "error"]}
+         "errors.film": ["--spp", "4", "--channels", "error"], "seed.film": ["--spp", "4", "--seed", "7"]}
 
 
 class Output:

@@ -103,7 +103,7 @@ def step_other(film):
     process = film.start() if trial.draw.random() < 0.5 else None
     before = film.bytes()
     if trial.draw.random() < 0.3:
-        command = ["film", "merge", os.path.join(film.tool.films, "whole.film"), "-o", film.name]
+        command = ["film", "merge", os.path.join(film.tool.films, "seed.film"), "-o", film.name]
         codes = {3, 5}
     else:
         command = ["render", *film.words, *trial.draw.choice(OTHERS), "--quiet"]

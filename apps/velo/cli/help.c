@@ -46,7 +46,7 @@ const ExitStatus exit_statuses[] = {
     {"3", "wrong scene or image"},
     {"4", "missing file"},
     {"5", "reading or writing failed"},
-    {"128 + signal", "stopped by it: 129 SIGHUP, 130 Ctrl-C, 143 SIGTERM"},
+    {"128 + signal", "stopped by it: 129 SIGHUP, 130 Ctrl-C, 138 SIGUSR1, 140 SIGUSR2, 143 SIGTERM, 152 SIGXCPU"},
     {NULL, NULL}};
 
 void options_print_exit_statuses(void) {

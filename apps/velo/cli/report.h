@@ -7,7 +7,8 @@
 #include "cli/json.h"
 #include "velo/velo.h"
 
-/* Exit codes of velo. After SIGHUP, SIGINT, SIGXCPU or SIGTERM: 128 + signal (129, 130, 152, 143). */
+/* Exit codes of velo. After SIGHUP, SIGINT, SIGUSR1, SIGUSR2, SIGTERM or SIGXCPU: 128 + signal (129, 130, 138, 140,
+ * 143, 152). */
 enum {
   STATUS_OK = 0,      /* success: every file was written completely */
   STATUS_OTHER = 1,   /* image diff: a threshold was exceeded; any command: out of memory */

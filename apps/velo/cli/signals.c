@@ -39,7 +39,7 @@ static void handle(int number) {
 
 void signals_install(void) {
   on_terminal = isatty(STDERR_FILENO) != 0;
-  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+  static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGUSR1, SIGUSR2};
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
     struct sigaction action, before;
     memset(&action, 0, sizeof action);

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "image/image.h"
+#include "render/attributes.h"
 #include "render/exposure.h"
 #include "render/job.h"
 #include "render/output_names.h"
@@ -22,10 +23,19 @@ typedef struct Develop {
   Outputs outputs;
 } Develop;
 
-static vlResult set_header(Develop *d, const vlReceipt *receipt) {
+/* The attributes of the render's own image. Where the film has a part of the pixels, the data window is its own. */
+static vlResult take_attributes(Develop *d, vlError *error) {
+  vlAttribute window;
+  bool is_part = vl_image_find_attribute(d->image, "dataWindow", &window) == VL_OK;
+  vlResult result = vl_film_file_attributes(d->file, d->image, error);
+  return result == VL_OK && is_part ? vl_image_set_attribute(d->image, &window) : result;
+}
+
+static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error) {
   uint32_t spp = vl_film_spp(d->film);
   const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
-  vlResult result = vl_image_set_attribute(d->image, &samples);
+  vlResult result = take_attributes(d, error);
+  if (result == VL_OK) result = vl_image_set_attribute(d->image, &samples);
   if (!receipt || !spp || result != VL_OK) return result;
   if (d->uneven && !(vl_receipt_noise(receipt) > 0)) return result; /* no command makes this image */
   vlReceipt *own = NULL;
@@ -62,9 +72,12 @@ static int develop(Develop *d, const char *path) {
   const vlFilmDef *film = vl_film_file_def(d->file);
   if (receipt) def.exposure = vl_receipt_exposure(receipt);
   result = vl_film_develop(d->film, &def, &d->image);
-  if (result == VL_OK) result = set_header(d, receipt);
+  if (result == VL_OK) result = set_header(d, receipt, &error);
+  if (result != VL_OK && error.message[0]) return report_error(&error, result, path);
   if (result == VL_OK && film->errors) result = vl_film_errors(d->film, &def, &d->errors);
   if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
+  if (result == VL_OK) result = attributes_add_layer(d->image, d->errors);
+  if (result == VL_OK) result = attributes_add_layer(d->image, d->spectrum);
   d->outputs.layers[0] = d->errors, d->outputs.layers[1] = d->spectrum;
   return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
 }

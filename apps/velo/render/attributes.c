@@ -249,3 +249,20 @@ vlResult attributes_set_eye(vlImage *image, const char *view) {
   set_text(&header, "view", view);
   return header.result;
 }
+
+vlResult attributes_add_layer(vlImage *image, const vlImage *layer) {
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; layer && i < vl_image_attribute_count(layer) && result == VL_OK; i++) {
+    vlAttribute attribute;
+    result = vl_image_attribute(layer, i, &attribute);
+    if (result == VL_OK) result = vl_image_set_attribute(image, &attribute);
+  }
+  return result;
+}
+
+vlResult attributes_make(vlContext *context, const Job *job, const char *eye, vlImage **image) {
+  vlImageDef def = vl_default_image_def(1, 1, 1);
+  vlResult result = vl_image_create(context, &def, image);
+  if (result == VL_OK) result = attributes_set(*image, job, job->defs->render.spp);
+  return result == VL_OK && eye ? attributes_set_eye(*image, eye) : result;
+}

@@ -12,5 +12,10 @@ vlResult attributes_set_view(vlImage *image, const Job *job, const char *view);
 vlResult attributes_set_frame(vlImage *image, uint32_t number, const char *name, double time);
 /* Adds OpenEXR's attribute "view" to the image of one eye. */
 vlResult attributes_set_eye(vlImage *image, const char *view);
+/* Makes an image that has only attributes, those that a film keeps: of the image of the whole render, or of an eye.
+ * *image is destroyed by the caller, also after an error. */
+vlResult attributes_make(vlContext *context, const Job *job, const char *eye, vlImage **image);
+/* Copies the attributes of a further layer, or of null, to the first image of a file, whose header describes all. */
+vlResult attributes_add_layer(vlImage *image, const vlImage *layer);
 
 #endif

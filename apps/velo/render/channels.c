@@ -8,6 +8,7 @@
 #include "camera/camera.h"
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "render/attributes.h"
 #include "render/gbuffer.h"
 
 const Choice channel_mode_choices[] = {{"centre", VL_CHANNEL_MODE_CENTRE},
@@ -198,12 +199,7 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
   vlResult result = VL_OK;
-  for (int k = 0; k < CHANNEL_LAYERS; k++)
-    for (uint32_t i = 0; c->layers[k] && i < vl_image_attribute_count(c->layers[k]) && result == VL_OK; i++) {
-      vlAttribute attribute;
-      result = vl_image_attribute(c->layers[k], i, &attribute);
-      if (result == VL_OK) result = vl_image_set_attribute(image, &attribute);
-    }
+  for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) result = attributes_add_layer(image, c->layers[k]);
   if (!c->bits || result != VL_OK) return result;
   const vlAttribute mode = {
       .name = "velo.channels", .type = VL_ATTRIBUTE_STRING, .string = choice_name(channel_mode_choices, (int)c->mode)};

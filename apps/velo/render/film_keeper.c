@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "render/attributes.h"
 #include "render/progress.h"
 
 enum { EVERY = 30 };
@@ -21,8 +22,11 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
                               .outputs = plan->outputs->paths,
                               .output_count = (uint32_t)plan->outputs->count};
   vl_receipt_destroy(k->receipt);
+  vl_image_destroy(k->attributes);
   k->receipt = NULL;
+  k->attributes = NULL;
   vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
+  if (result == VL_OK) result = attributes_make(context, &whole, eye, &k->attributes);
   return result == VL_OK ? -1 : report_reason(result, k->path, "the film's receipt cannot be made");
 }
 
@@ -61,6 +65,7 @@ static vlResult begin_write(FilmKeeper *k, const vlFilm *film) {
   vlFilmWriteDef def = vl_default_film_write_def();
   def.receipt = k->receipt;
   def.lock = k->lock;
+  def.attributes = k->attributes;
   memcpy(def.window, k->window, sizeof def.window);
   k->written = vl_film_spp(film);
   return vl_film_write_begin(film, &def, k->path, &k->writer, &k->error);
@@ -109,5 +114,7 @@ int film_keeper_finish(FilmKeeper *k, const vlFilm *film) {
 void film_keeper_free(FilmKeeper *k) {
   join(k);
   vl_receipt_destroy(k->receipt);
+  vl_image_destroy(k->attributes);
   k->receipt = NULL;
+  k->attributes = NULL;
 }

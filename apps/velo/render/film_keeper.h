@@ -28,9 +28,10 @@ typedef struct FilmKeeper {
   double share;       /* largest fraction of the time for checkpoints; 0: no limit */
   uint32_t window[4]; /* crop window of the whole render */
   vlReceipt *receipt;
-  double last, cost; /* time of the last checkpoint; seconds it took */
-  uint32_t written;  /* samples in the file */
-  pthread_t thread;  /* the thread that syncs and renames the file */
+  vlImage *attributes; /* those of the render's own image; its pixels are not used */
+  double last, cost;   /* time of the last checkpoint; seconds it took */
+  uint32_t written;    /* samples in the file */
+  pthread_t thread;    /* the thread that syncs and renames the file */
   bool running, failing;
   vlFilmWriter *writer;
   vlResult result;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "render/attributes.h"
 #include "render/lens_options.h"
 #include "render/receipt.h"
 #include "view/engine_parts.h"
@@ -51,8 +52,9 @@ static int take_camera(const Engine *e, FilmCommand *c) {
   return -1;
 }
 
-/* Makes the receipt; null if the scene's files have changed since the image began. Returns -1, or the exit code. */
-static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt) {
+/* Makes the receipt and the header attributes; null if the scene's files have changed since the image began. Returns
+ * -1, or the exit code. */
+static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt, vlImage **attributes) {
   Job job = e->model.job;
   vlSceneDefs defs = engine_present_defs(e);
   const uint32_t *crop = e->now.crop;
@@ -83,6 +85,7 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt) {
   job.raced = true; /* the command names the tracer */
   const ReceiptImage which = {.samples = defs.render.spp};
   vlResult result = receipt_make(&plan, e->def.context, &job, &which, receipt);
+  if (result == VL_OK) result = attributes_make(e->def.context, &job, NULL, attributes);
   return result == VL_OK ? -1 : report_reason(result, e->def.film_path, "the film's receipt cannot be made");
 }
 
@@ -90,15 +93,18 @@ int engine_write_film(Engine *e) {
   static FilmCommand command;
   const char *path = e->def.film_path;
   vlReceipt *receipt = NULL;
+  vlImage *attributes = NULL;
   vlError error = {0};
   if (!e->film || !vl_film_spp(e->film))
     return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", path);
-  int status = make_receipt(e, &command, &receipt);
-  if (status >= 0) return status;
+  int status = make_receipt(e, &command, &receipt, &attributes);
   vlFilmWriteDef def = vl_default_film_write_def();
   def.receipt = receipt;
   def.lock = e->def.film_lock;
-  vlResult result = vl_film_write(e->film, &def, path, &error);
+  def.attributes = attributes;
+  vlResult result = status < 0 ? vl_film_write(e->film, &def, path, &error) : VL_OK;
   vl_receipt_destroy(receipt);
-  return result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+  vl_image_destroy(attributes);
+  if (status < 0) status = result == VL_OK ? STATUS_OK : report_error(&error, result, path);
+  return status;
 }

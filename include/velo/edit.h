@@ -75,6 +75,15 @@ VL_API vlResult vl_scene_show_instance(vlScene *scene, vlInstanceId id, bool sho
 /** Removes an instance for good; its id is not given again. */
 VL_API vlResult vl_scene_remove_instance(vlScene *scene, vlInstanceId id, vlError *error);
 
+/** Moves, turns and scales everything that the scene describes, so that a camera that is moved in the same way
+ * (vl_camera_move with world_from_scene times its pose, which also scales its lens) sees the same image: shapes,
+ * instances, lights, portals, media, textures. Lengths are scaled, coefficients of media and of subsurface materials
+ * are divided by the scale, intensities and powers are multiplied by its square. The scene's own camera and the lengths
+ * in vlSceneDefs stay. world_from_scene: a rotation, a uniform scale above 0 and a translation. If it scales, float
+ * textures are added for the heights of bump maps. Errors: ARGUMENT: it is another matrix, or as above;
+ * MEMORY: the scene is changed in part, and vl_scene_result reports it. */
+VL_API vlResult vl_scene_transform(vlScene *scene, const double world_from_scene[16], vlError *error);
+
 #ifdef __cplusplus
 }
 #endif

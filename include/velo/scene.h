@@ -535,9 +535,9 @@ typedef struct vlShapeDef {
    * cannot emit light. */
   const float *positions_close, *normals_close;
   double times[2]; /**< seconds; default 0, 1 */
-  /** Triangles at rest: a float texture displaces the vertices along their normals, in scene units (texture index 0:
-   * none). Before that the triangles are subdivided until no edge is longer than edge_length. More than 2^24 triangles
-   * are an error of vl_world_build. */
+  /** Triangles at rest: a float texture displaces the vertices along their normals, in units of shape space (texture
+   * index 0: none). Before that the triangles are subdivided until no edge is longer than edge_length. More than 2^24
+   * triangles are an error of vl_world_build. */
   vlFloatInput displacement;
   float edge_length; /**< largest length of an edge, group space; default 1 */
   /** Sphere, disk, cylinder: pbrt's parameters (book 6.2-6.4). The shape's axis is z in shape space; phi_max is in

@@ -1,0 +1,162 @@
+/* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene, and with themselves when
+ * the whole scene is shifted, turned and scaled. */
+#include "scene/verify.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/commands.h"
+#include "cli/context.h"
+#include "cli/report.h"
+#include "cli/signals.h"
+#include "image/image.h"
+#include "render/lens_options.h"
+#include "velo/edit.h"
+
+/* Options of this command, behind those of `velo render`, of which it has some. */
+enum { VERIFY_RAYS = RENDER_OPTIONS, VERIFY_JSON, VERIFY_OPTIONS };
+_Static_assert((int)VERIFY_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
+
+enum { LONGER_SIDE = 64 };
+#define DEFAULT_RAYS 60 /* millions */
+
+/* Messages of the library during the many renders are the same each time. */
+static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
+  Verify *v = user;
+  if (!v->drowned) {
+    report_log(NULL, level, where, message);
+  } else if (strstr(message, ": volpath is used")) {
+    snprintf(v->fell_back, sizeof v->fell_back, "%s", message);
+  }
+}
+
+static int open_scene(Verify *v, const Arguments *arguments) {
+  const OptionValue *o = arguments->values;
+  vlContextDef def = vl_default_context_def();
+  vlError error = {0};
+  vlWorld *world = NULL;
+  def.log = logged, def.log_user = v;
+  if (o[RENDER_THREADS].given) def.threads = (uint32_t)o[RENDER_THREADS].integer;
+  int status = context_open(&def, &v->context);
+  if (status < 0) status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
+  if (status < 0) status = job_make(&v->job, v->context, v->scene, v->path, arguments);
+  if (status >= 0) return status;
+  vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, &error);
+  status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world) : report_error(&error, result, v->path);
+  vl_world_destroy(world);
+  return status;
+}
+
+/* The camera at a small size, unless --resolution gives one. */
+static vlResult make_camera(Verify *v, const Arguments *arguments) {
+  const vlFilmDef *film = &v->job.defs->film;
+  const double longer = fmax(film->width, film->height);
+  const double k = arguments->values[RENDER_RESOLUTION].given || longer < LONGER_SIDE ? 1 : LONGER_SIDE / longer;
+  v->width = (uint32_t)fmax(1, k * film->width + 0.5);
+  v->height = (uint32_t)fmax(1, k * film->height + 0.5);
+  return vl_camera_resize(&v->job.camera, v->width, v->height, &v->camera);
+}
+
+/* Remembers which shapes emit light. */
+static vlResult list_lights(Verify *v) {
+  while (vl_scene_shape(v->scene, (vlShapeId){v->shapes + 1})) v->shapes++;
+  while (vl_scene_light(v->scene, (vlLightId){v->light_count + 1})) v->light_count++;
+  v->emissions = calloc((size_t)v->shapes + 1, sizeof *v->emissions);
+  if (!v->emissions) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < v->shapes; i++) v->emissions[i] = vl_scene_shape(v->scene, (vlShapeId){i + 1})->emission;
+  return VL_OK;
+}
+
+static int verify(Verify *v, const Arguments *arguments) {
+  vlError error = {0};
+  signals_remember();
+  vlResult result = make_camera(v, arguments);
+  if (result == VL_OK) result = list_lights(v);
+  if (result == VL_OK) result = verify_prepare(v, &error);
+  if (result == VL_OK) verify_plan(v);
+  if (result == VL_OK) result = verify_measure(v, &error);
+  if (result == VL_OK) result = verify_render(v, 0, &error);
+  if (result == VL_OK) result = verify_first(v);
+  if (result == VL_OK && v->mark_count) result = verify_render(v, 1, &error);
+  if (result == VL_OK) verify_second(v);
+  if (result == VL_CANCELLED && signals_pending()) return report_failure(128 + signals_pending(), "interrupted");
+  return result == VL_OK ? -1 : report_error(&error, result, v->path);
+}
+
+static void close_all(Verify *v) {
+  for (int i = 0; i < v->run_count; i++)
+    for (int look = 0; look < 2; look++) free(v->runs[i].values[look]);
+  free(v->emissions);
+  free(v->cells);
+  free(v->block_of);
+  free(v->material_of);
+  free(v->marks);
+  vl_scene_destroy(v->scene);
+  vl_context_destroy(v->context);
+}
+
+static int run_verify(const Command *command, const Arguments *arguments) {
+  (void)command;
+  static Verify v;
+  const OptionValue *o = arguments->values;
+  v.path = arguments->operands[0];
+  v.budget = 1e6 * (o[VERIFY_RAYS].given ? o[VERIFY_RAYS].number : DEFAULT_RAYS);
+  v.seed = o[RENDER_SEED].given ? (uint32_t)o[RENDER_SEED].integer : 0;
+  int status = open_scene(&v, arguments);
+  if (status < 0) status = verify(&v, arguments);
+  if (status < 0) {
+    if (o[VERIFY_JSON].given)
+      verify_print_json(&v);
+    else
+      verify_print(&v);
+    status = image_finish_output(verify_count(&v) ? STATUS_OTHER : STATUS_OK);
+  }
+  close_all(&v);
+  return status;
+}
+
+static const Option options[] = {
+    {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M", "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0, 1048575, NULL},
+    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "number of threads; default: one per processor core", 1, 1024,
+     NULL},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
+     "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer side", 1, 4096, NULL},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
+    {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 4096, NULL},
+    {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
+     color_choices},
+    {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
+     "parts of the scene that velo does not understand are warnings, not errors", 0, 0, NULL},
+    {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
+     "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+
+static const Section sections[] = {
+    {VERIFY_RAYS, "the check"}, {RENDER_RESOLUTION, "the image, as in `velo render`"}, {0, NULL}};
+
+const Command scene_verify_command = {
+    .name = "scene verify",
+    .usage = "FILE [options]",
+    .summary = "check that the tracers agree about the light of a scene",
+    .text =
+        "Renders the scene at a small size with each unbiased tracer that claims its light, and with the\n"
+        "whole scene shifted, turned and scaled, 32 times each, and compares the means of the image, of\n"
+        "blocks of 8 x 8 pixels, of the pixels of each material, and of each kind of light. What differs is\n"
+        "rendered again with other seeds and four times the samples; it counts only if it differs again.\n"
+        "One run in a thousand or fewer reports a difference where there is none (docs/verify.md).\n\n"
+        "exit codes: 0 all agree; 1 a difference beyond chance",
+    .examples =
+        "velo scene verify room.pbrt\n"
+        "velo scene verify room.pbrt --rays 5 --json",
+    .options = options,
+    .sections = sections,
+    .min_operands = 1,
+    .max_operands = 1,
+    .run = run_verify,
+};

@@ -1,0 +1,131 @@
+/* scene/verify.h: the parts of `velo scene verify`: which tracers claim the light of a scene, the renders of the scene
+ * and of its moved copies, the comparisons, and their report. docs/verify.md describes the method. */
+#ifndef APP_SCENE_VERIFY_H
+#define APP_SCENE_VERIFY_H
+
+#include "render/job.h"
+#include "render/scene_options.h"
+#include "scene/verify_statistics.h"
+
+/* Replicates of each run: images with different seeds. Samples per pixel of the second look, relative to the first. */
+enum { VERIFY_REPLICATES = 32, VERIFY_SECOND = 4 };
+enum { VERIFY_MOST_RUNS = 24, VERIFY_MOST_MATERIALS = 32, VERIFY_MOST_NOTES = 16 };
+
+/* ---- verify_plan.c: what is rendered, and what is compared with what --------------------------------------------- */
+
+/* Where the scene is: as in its file; shifted, turned, scaled; or all of these. Its camera is always moved with it. */
+typedef enum VerifyPlace {
+  VERIFY_AS_IT_IS,
+  VERIFY_SHIFTED,
+  VERIFY_TURNED,
+  VERIFY_SCALED,
+  VERIFY_MOVED,
+  VERIFY_PLACES
+} VerifyPlace;
+/* Which lights the scene has. A light is small if a ray cannot meet it: point, spot, distant and so on. */
+typedef enum VerifyLights { VERIFY_ALL, VERIFY_NOT_SMALL, VERIFY_SMALL, VERIFY_SURFACES, VERIFY_SKY } VerifyLights;
+
+/* Renders of one tracer: VERIFY_REPLICATES images. */
+typedef struct VerifyRun {
+  const char *name; /* "bidirectional, scaled" */
+  vlTracer tracer;
+  VerifyPlace place;
+  VerifyLights lights;
+  bool evenly;   /* lights are chosen with equal probability; else as the scene asks */
+  int against;   /* the run with which it is compared, a lower index; -1: none */
+  bool apart;    /* a biased tracer: its means are reported, but not judged */
+  bool left_out; /* another tracer would replace this one */
+  double rays;   /* rays per sample per pixel, counted in a trial render */
+  uint32_t spp[2];
+  double *values[2]; /* of both looks: VERIFY_REPLICATES rows of means, VERIFY_CHANNELS for each cell */
+  uint64_t dropped;  /* samples that were not finite */
+  bool again;        /* takes part in the second look */
+  uint32_t marked;   /* values that were significant in the first look */
+  uint32_t differs;  /* of these, those that were in the second look as well */
+} VerifyRun;
+
+/* A part of the image. */
+typedef struct VerifyCell {
+  VerifyFamily family;
+  uint32_t pixels;
+  uint32_t index; /* blocks: column + columns * row; materials: id.material, 0: nothing is seen */
+} VerifyCell;
+
+/* A value that was significant in the first look. */
+typedef struct VerifyMark {
+  int run;
+  uint32_t value; /* VERIFY_CHANNELS * cell + channel */
+  VerifyDifference first, second;
+  bool differs; /* both looks agree */
+} VerifyMark;
+
+typedef struct Verify {
+  const char *path;
+  vlContext *context;
+  vlScene *scene;
+  SceneOpening opening;
+  Job job;
+  vlCamera camera; /* at the size of the renders */
+  uint32_t width, height, columns, rows;
+  double budget; /* rays of the first look */
+  uint32_t seed;
+  bool drowned;        /* messages of the library are not reported */
+  char fell_back[200]; /* message by which a tracer said that another one replaces it; empty: none */
+
+  double matrix[VERIFY_PLACES][16]; /* world of the copy from the world of the file */
+  VerifyPlace place;                /* the scene's state */
+  VerifyLights lights;
+  vlEmissionId *emissions; /* of each shape, as in the file */
+  uint32_t shapes, light_count;
+
+  VerifyRun runs[VERIFY_MOST_RUNS];
+  int run_count;
+  char notes[VERIFY_MOST_NOTES][240]; /* what is not compared, and why */
+  int note_count;
+
+  VerifyCell *cells;
+  uint32_t cell_count, families;
+  uint32_t *block_of, *material_of; /* cell of each pixel; 0: none (cell 0 is the whole image) */
+
+  VerifyMark *marks;
+  uint32_t mark_count, compared; /* values that were compared in the first look */
+} Verify;
+
+/* Adds the runs and the notes. */
+void verify_plan(Verify *v);
+void verify_note(Verify *v, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Whether a light is in the group. */
+bool verify_has_light(VerifyLights lights, vlLightKind kind);
+/* Whether emissive surfaces are in the group. */
+bool verify_has_surfaces(VerifyLights lights);
+
+/* ---- verify_run.c: renders the runs ------------------------------------------------------------------------------ */
+
+/* Finds where the scene's copies are, and the cells: renders ground truth. */
+vlResult verify_prepare(Verify *v, vlError *error);
+/* Counts rays and sets the samples of each run. Runs of tracers that another one replaces are left out, with a note. */
+vlResult verify_measure(Verify *v, vlError *error);
+/* Renders a look: 0, of all runs; 1, of those with `again`. VL_CANCELLED after a signal. */
+vlResult verify_render(Verify *v, int look, vlError *error);
+
+/* ---- verify_compare.c -------------------------------------------------------------------------------------------- */
+
+/* Whether the cell is compared for this run. Runs with a part of the lights have one cell, the image, which then counts
+ * in the family of lights. */
+bool verify_uses_cell(const Verify *v, const VerifyRun *run, uint32_t cell);
+VerifyFamily verify_family(const VerifyRun *run, const VerifyCell *cell);
+/* The difference of a value in a look, between a run and the one that it is compared with. */
+VerifyDifference verify_difference(const Verify *v, const VerifyRun *run, int look, uint32_t value);
+/* Marks the values that are significant in the first look, and the runs that take part in the second. MEMORY. */
+vlResult verify_first(Verify *v);
+/* Judges the marks by the second look. */
+void verify_second(Verify *v);
+
+/* ---- verify_report.c --------------------------------------------------------------------------------------------- */
+
+void verify_print(const Verify *v);
+void verify_print_json(const Verify *v);
+/* The number of runs that differ beyond chance. */
+int verify_count(const Verify *v);
+
+#endif

@@ -1,0 +1,358 @@
+/* scene/verify_run.c: renders the scene and its moved copies by each run's tracer, and takes the means of the cells. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/signals.h"
+#include "scene/verify.h"
+#include "velo/edit.h"
+
+enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096 };
+
+/* ---- places ------------------------------------------------------------------------------------------------------ */
+
+static void multiply(const double a[16], const double b[16], double result[16]) {
+  double product[16];
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      double sum = 0;
+      for (int k = 0; k < 4; k++) sum += a[4 * i + k] * b[4 * k + j];
+      product[4 * i + j] = sum;
+    }
+  memcpy(result, product, sizeof product);
+}
+
+/* p' = scale * turn(p) + shift. turn: about the axis (1, 2, 3), by `angle`. */
+static void make_similarity(double scale, double angle, const double shift[3], double m[16]) {
+  const double n = sqrt(14.0), axis[3] = {1 / n, 2 / n, 3 / n}, c = cos(angle), s = sin(angle);
+  memset(m, 0, 16 * sizeof *m);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      const double cross = (j - i + 3) % 3 == 1 ? -axis[(i + 2) % 3] : (j - i + 3) % 3 == 2 ? axis[(i + 1) % 3] : 0;
+      m[4 * i + j] = scale * ((1 - c) * axis[i] * axis[j] + (i == j ? c : 0) + s * cross);
+    }
+    m[4 * i + 3] = shift[i];
+  }
+  m[15] = 1;
+}
+
+static void invert_similarity(const double m[16], double inverse[16]) {
+  double square = 0;
+  for (int k = 0; k < 3; k++) square += m[4 * k] * m[4 * k];
+  memset(inverse, 0, 16 * sizeof *inverse);
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      inverse[4 * i + j] = m[4 * j + i] / square;
+      inverse[4 * i + 3] -= inverse[4 * i + j] * m[4 * j + 3];
+    }
+  inverse[15] = 1;
+}
+
+/* centre, distance: of what the camera sees. A scene at the origin is moved away from it, another one to it. The scale
+ * is small: an offset that does not follow it would be seen. */
+static void choose_places(Verify *v, const double centre[3], double distance) {
+  const double none[3] = {0, 0, 0}, way[3] = {0.66, 0.53, -0.53};
+  const bool near = hypot(centre[0], hypot(centre[1], centre[2])) < 3 * distance;
+  double shift[3];
+  for (int i = 0; i < 3; i++) shift[i] = near ? 5 * distance * way[i] : -centre[i];
+  make_similarity(1, 0, none, v->matrix[VERIFY_AS_IT_IS]);
+  make_similarity(1, 0, shift, v->matrix[VERIFY_SHIFTED]);
+  make_similarity(1, 1, none, v->matrix[VERIFY_TURNED]);
+  make_similarity(0.02, 0, none, v->matrix[VERIFY_SCALED]);
+  multiply(v->matrix[VERIFY_SHIFTED], v->matrix[VERIFY_TURNED], v->matrix[VERIFY_MOVED]);
+  multiply(v->matrix[VERIFY_SCALED], v->matrix[VERIFY_MOVED], v->matrix[VERIFY_MOVED]);
+}
+
+static vlResult move_scene(Verify *v, VerifyPlace place, vlError *error) {
+  double back[16], change[16];
+  if (place == v->place) return VL_OK;
+  invert_similarity(v->matrix[v->place], back);
+  multiply(v->matrix[place], back, change);
+  v->place = place;
+  return vl_scene_transform(v->scene, change, error);
+}
+
+static vlResult move_camera(const Verify *v, VerifyPlace place, vlCamera *camera, vlError *error) {
+  double open[16], close[16];
+  *camera = v->camera;
+  if (place == VERIFY_AS_IT_IS) return VL_OK;
+  multiply(v->matrix[place], v->camera.world_from_camera, open);
+  if (!v->camera.moves) return vl_camera_move(&v->camera, open, camera, error);
+  multiply(v->matrix[place], v->camera.world_from_camera_close, close);
+  return vl_camera_travel(&v->camera, open, close, v->camera.pose_times, camera, error);
+}
+
+/* ---- lights ------------------------------------------------------------------------------------------------------ */
+
+static vlResult choose_lights(Verify *v, VerifyLights lights, vlError *error) {
+  vlResult result = VL_OK;
+  if (lights == v->lights) return VL_OK;
+  v->lights = lights;
+  for (uint32_t i = 1; result == VL_OK && i <= v->light_count; i++) {
+    const vlLightDef *light = vl_scene_light(v->scene, (vlLightId){i});
+    result = vl_scene_show_light(v->scene, (vlLightId){i}, verify_has_light(lights, light->kind), error);
+  }
+  for (uint32_t i = 0; result == VL_OK && i < v->shapes; i++) {
+    const vlEmissionId own = v->emissions[i], none = {0};
+    if (!own.index) continue;
+    result = vl_scene_set_shape_emission(v->scene, (vlShapeId){i + 1}, verify_has_surfaces(lights) ? own : none, error);
+  }
+  return result;
+}
+
+/* ---- worlds ------------------------------------------------------------------------------------------------------ */
+
+typedef struct Set {
+  vlWorld *world;
+  vlCamera camera;
+  VerifyPlace place;
+  VerifyLights lights;
+  bool evenly;
+} Set;
+
+/* Builds the world of a run, if *set is of another place or of other lights. */
+static vlResult build_set(Verify *v, const VerifyRun *run, Set *set, vlError *error) {
+  const bool same = run->place == set->place && run->lights == set->lights && run->evenly == set->evenly;
+  if (set->world && same) return VL_OK;
+  vlBuildDef build = v->job.defs->build;
+  if (run->evenly) build.light_sampler = VL_LIGHT_SAMPLER_UNIFORM;
+  build.regularize = false; /* it changes the materials, and not all tracers know it */
+  vl_world_destroy(set->world);
+  *set = (Set){.place = run->place, .lights = run->lights, .evenly = run->evenly};
+  vlResult result = move_scene(v, run->place, error);
+  if (result == VL_OK) result = choose_lights(v, run->lights, error);
+  if (result == VL_OK) result = move_camera(v, run->place, &set->camera, error);
+  if (result == VL_OK) result = vl_world_build(v->scene, &build, &set->world, error);
+  return result;
+}
+
+/* ---- cells ------------------------------------------------------------------------------------------------------- */
+
+static void make_blocks(Verify *v) {
+  for (uint32_t y = 0; y < v->height; y++)
+    for (uint32_t x = 0; x < v->width; x++) {
+      const uint32_t column = x * v->columns / v->width, row = y * v->rows / v->height;
+      const uint32_t cell = 1 + column + v->columns * row;
+      v->cells[cell].pixels++;
+      v->block_of[x + v->width * y] = cell;
+    }
+}
+
+/* The materials with the most pixels get a cell each. */
+static void make_materials(Verify *v, const vlImage *ids, uint32_t *pixels_of, uint32_t materials) {
+  const size_t pixels = (size_t)v->width * v->height, step = vl_image_channels(ids);
+  const uint32_t *id = vl_image_const_pixels(ids);
+  for (size_t i = 0; i < pixels; i++) pixels_of[id[i * step]]++;
+  for (uint32_t k = 0; k < VERIFY_MOST_MATERIALS; k++) {
+    uint32_t most = 0;
+    for (uint32_t m = 0; m <= materials; m++)
+      if (pixels_of[m] > pixels_of[most]) most = m;
+    if (pixels_of[most] < LEAST_PIXELS) break;
+    const uint32_t cell = v->cell_count++;
+    v->cells[cell] = (VerifyCell){.family = VERIFY_MATERIAL, .pixels = pixels_of[most], .index = most};
+    pixels_of[most] = 0;
+    for (size_t i = 0; i < pixels; i++)
+      if (id[i * step] == most) v->material_of[i] = cell;
+  }
+}
+
+static vlResult make_cells(Verify *v, const vlWorld *world, const vlImage *ids) {
+  const size_t pixels = (size_t)v->width * v->height;
+  const uint32_t blocks = v->columns * v->rows, materials = vl_world_id_count(world, VL_ID_MATERIAL);
+  uint32_t *pixels_of = calloc((size_t)materials + 1, sizeof *pixels_of);
+  v->cells = calloc((size_t)1 + blocks + VERIFY_MOST_MATERIALS, sizeof *v->cells);
+  v->block_of = calloc(pixels, sizeof *v->block_of);
+  v->material_of = calloc(pixels, sizeof *v->material_of);
+  if (pixels_of && v->cells && v->block_of && v->material_of) {
+    v->cells[0] = (VerifyCell){.family = VERIFY_IMAGE, .pixels = (uint32_t)pixels};
+    for (uint32_t i = 0; i < blocks; i++) v->cells[1 + i] = (VerifyCell){.family = VERIFY_BLOCK, .index = i};
+    v->cell_count = 1 + blocks;
+    make_blocks(v);
+    make_materials(v, ids, pixels_of, materials);
+  }
+  free(pixels_of);
+  return v->cells && v->material_of && v->block_of ? VL_OK : VL_ERROR_MEMORY;
+}
+
+/* The mean point that the camera sees, and the mean distance to it. */
+static void find_centre(const vlImage *floats, const vlCamera *camera, double centre[3], double *distance) {
+  const size_t pixels = (size_t)vl_image_width(floats) * vl_image_height(floats), step = vl_image_channels(floats);
+  const float *value = vl_image_const_pixels(floats);
+  double seen = 0, sum[4] = {0, 0, 0, 0};
+  for (size_t i = 0; i < pixels; i++) {
+    const float *at = value + i * step; /* distance, then the position */
+    if (!isfinite(at[0])) continue;
+    const double weight = 1 / fmax(1e-30, (double)at[0]); /* a few far points do not count much */
+    seen += weight;
+    sum[0] += weight * (double)at[0];
+    for (int k = 0; k < 3; k++) sum[1 + k] += weight * (double)at[1 + k];
+  }
+  *distance = seen > 0 ? sum[0] / seen : 1;
+  for (int k = 0; k < 3; k++) centre[k] = seen > 0 ? sum[1 + k] / seen : camera->world_from_camera[4 * k + 3];
+}
+
+vlResult verify_prepare(Verify *v, vlError *error) {
+  vlWorld *world = NULL;
+  vlImage *floats = NULL, *ids = NULL;
+  double centre[3], distance;
+  v->columns = (v->width + BLOCK / 2) / BLOCK, v->rows = (v->height + BLOCK / 2) / BLOCK;
+  v->columns += v->columns == 0, v->rows += v->rows == 0;
+  vlChannelsDef def = vl_default_channels_def(v->width, v->height);
+  def.channels = VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_ID_MATERIAL;
+  vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, error);
+  if (result == VL_OK) result = vl_render_channels(world, &v->camera, &def, &floats, &ids, error);
+  if (result == VL_OK) result = make_cells(v, world, ids);
+  if (result == VL_OK) {
+    find_centre(floats, &v->camera, centre, &distance);
+    choose_places(v, centre, distance);
+  }
+  vl_image_destroy(floats);
+  vl_image_destroy(ids);
+  vl_world_destroy(world);
+  return result;
+}
+
+/* ---- renders ----------------------------------------------------------------------------------------------------- */
+
+static bool on_progress(void *user, const vlProgress *now) {
+  (void)user, (void)now;
+  return !signals_pending();
+}
+
+/* A box filter and pixels with samples of their own: so that each sample counts in one pixel with the weight 1, and
+ * a replicate's mean is unbiased for any number of samples. */
+static vlFilmDef film_of(const Verify *v) {
+  const vlFilmDef *own = &v->job.defs->film;
+  vlFilmDef film = vl_default_film_def(v->width, v->height);
+  film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  film.space = own->space, film.white_balance = own->white_balance, film.sensor = own->sensor;
+  return film;
+}
+
+static vlRenderDef render_of(const Verify *v, const VerifyRun *run, uint32_t spp, uint32_t seed) {
+  vlRenderDef def = vl_default_render_def();
+  def.tracer = run->tracer;
+  def.spp = spp;
+  def.seed = seed;
+  def.max_depth = v->job.defs->render.max_depth;
+  def.share_samples = false;
+  def.progress = on_progress;
+  return def;
+}
+
+/* Adds the pixels of an image to the cells, and divides by their number. */
+static void take_means(const Verify *v, const vlImage *image, double *row) {
+  const size_t pixels = (size_t)v->width * v->height, step = vl_image_channels(image);
+  const float *value = vl_image_const_pixels(image);
+  memset(row, 0, v->cell_count * VERIFY_CHANNELS * sizeof *row);
+  for (size_t i = 0; i < pixels; i++) {
+    const uint32_t cells[3] = {0, v->block_of[i], v->material_of[i]};
+    const int count = v->material_of[i] ? 3 : 2;
+    for (int k = 0; k < count; k++)
+      for (int c = 0; c < VERIFY_CHANNELS; c++)
+        row[VERIFY_CHANNELS * cells[k] + (uint32_t)c] += (double)value[i * step + (size_t)c];
+  }
+  for (uint32_t k = 0; k < v->cell_count; k++)
+    for (int c = 0; c < VERIFY_CHANNELS; c++) row[VERIFY_CHANNELS * k + (uint32_t)c] /= v->cells[k].pixels;
+}
+
+/* Renders one replicate into a film. row, stats: may be null. */
+static vlResult shoot(const Verify *v, const VerifyRun *run, const Set *set, vlFilm *film, uint32_t spp, uint32_t seed,
+                      double *row, vlRenderStats *stats, vlError *error) {
+  const vlRenderDef def = render_of(v, run, spp, seed);
+  vlImage *image = NULL;
+  vl_film_clear(film);
+  vlResult result = vl_render(set->world, &set->camera, film, &def, stats, error);
+  if (result == VL_OK && row) result = vl_film_develop(film, NULL, &image);
+  if (result == VL_OK && row) take_means(v, image, row);
+  vl_image_destroy(image);
+  return result;
+}
+
+/* Seeds are the same for all runs of a replicate: common random numbers make their differences smaller. */
+static uint32_t seed_of(const Verify *v, int look, uint32_t replicate) {
+  return v->seed * 4096 + (uint32_t)look * 1024 + replicate;
+}
+
+static vlResult render_run(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, int look, vlError *error) {
+  const size_t row = (size_t)v->cell_count * VERIFY_CHANNELS;
+  if (!run->values[look]) run->values[look] = malloc(VERIFY_REPLICATES * row * sizeof(double));
+  if (!run->values[look]) return VL_ERROR_MEMORY;
+  vlResult result = VL_OK;
+  for (uint32_t r = 0; r < VERIFY_REPLICATES && result == VL_OK; r++) {
+    vlRenderStats stats;
+    result = shoot(v, run, set, film, run->spp[look], seed_of(v, look, r), run->values[look] + r * row, &stats, error);
+    if (result == VL_OK) run->dropped += stats.not_finite;
+  }
+  return result;
+}
+
+vlResult verify_render(Verify *v, int look, vlError *error) {
+  Set set = {0};
+  vlFilm *film = NULL;
+  const vlFilmDef def = film_of(v);
+  vlResult result = vl_film_create(v->context, &def, &film);
+  v->drowned = true;
+  for (int i = 0; i < v->run_count && result == VL_OK; i++) {
+    VerifyRun *run = &v->runs[i];
+    if (run->left_out || (look && !run->again)) continue;
+    result = build_set(v, run, &set, error);
+    if (result == VL_OK) result = render_run(v, run, &set, film, look, error);
+  }
+  v->drowned = false;
+  vl_world_destroy(set.world);
+  vl_film_destroy(film);
+  return result;
+}
+
+/* ---- samples ----------------------------------------------------------------------------------------------------- */
+
+/* Counts the rays of one sample per pixel. */
+static vlResult count_rays(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, vlError *error) {
+  vlRenderStats stats;
+  v->fell_back[0] = 0;
+  vlResult result = shoot(v, run, set, film, 1, seed_of(v, 3, 0), NULL, &stats, error);
+  if (result != VL_OK) return result;
+  run->rays = (double)(stats.camera_rays + stats.bounce_rays + stats.shadow_rays);
+  if (!v->fell_back[0]) return VL_OK;
+  run->left_out = true;
+  verify_note(v, "%s is not compared: %s", run->name, v->fell_back);
+  return VL_OK;
+}
+
+/* Each tracer gets the same share of the budget; its runs have the same samples, so that they can be compared by pairs.
+ * Powers of two suit the sampler. */
+static void share_budget(Verify *v) {
+  int runs = 0;
+  for (int i = 0; i < v->run_count; i++) runs += !v->runs[i].left_out;
+  for (int i = 0; i < v->run_count; i++) {
+    double most = 1, spp = 1;
+    for (int k = 0; k < v->run_count; k++)
+      if (v->runs[k].tracer == v->runs[i].tracer) most = fmax(most, v->runs[k].rays);
+    const double share = v->budget / (runs * VERIFY_REPLICATES * most);
+    while (2 * spp <= share && spp < MOST_SPP) spp *= 2;
+    v->runs[i].spp[0] = (uint32_t)spp;
+    v->runs[i].spp[1] = (uint32_t)spp * VERIFY_SECOND;
+  }
+}
+
+vlResult verify_measure(Verify *v, vlError *error) {
+  Set set = {0};
+  vlFilm *film = NULL;
+  const vlFilmDef def = film_of(v);
+  vlResult result = vl_film_create(v->context, &def, &film);
+  v->drowned = true;
+  for (int i = 0; i < v->run_count && result == VL_OK; i++) {
+    VerifyRun *run = &v->runs[i];
+    if (run->place != VERIFY_AS_IT_IS) continue; /* as many rays as at its own place */
+    result = build_set(v, run, &set, error);
+    if (result == VL_OK) result = count_rays(v, run, &set, film, error);
+  }
+  for (int i = 0; i < v->run_count; i++)
+    if (v->runs[i].against >= 0 && v->runs[v->runs[i].against].left_out) v->runs[i].left_out = true;
+  v->drowned = false;
+  vl_world_destroy(set.world);
+  vl_film_destroy(film);
+  if (result == VL_OK) share_budget(v);
+  return result;
+}

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# velo scene verify: quiet on a scene on which the tracers agree, exit 1 where they do not; the same bytes for any number
+# of threads; JSON; what is not compared is said.
+. "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
+cd "$work" || exit 1
+
+head='LookAt 0 -4 1.5  0 0 0.4  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+WorldBegin
+AttributeBegin AreaLightSource "diffuse" "rgb L" [9 8 7]
+Translate -1 -1 2.5 ReverseOrientation Shape "disk" "float radius" 0.5 AttributeEnd
+Translate 0 0 0.1'
+body='Shape "bilinearmesh" "point3 P" [-2 -2 0 2 -2 0 -2 2 0 2 2 0]
+AttributeBegin Material "diffuse" "rgb reflectance" [.7 .3 .2] Translate 0 0 .6
+Shape "sphere" "float radius" 0.5 AttributeEnd'
+verify() { "$VELO" scene verify "$@" --rays 0.4; }
+
+printf '%s\n' "$head" "$body" >plain.pbrt
+check agrees verify plain.pbrt --threads 2
+for run in bidirectional lightpath randomwalk 'merging .*not judged' 'volpath, shifted' 'volpath, turned' 'volpath, scaled' \
+  'bidirectional, moved'; do
+  if grep -q "^$run" <<<"$out"; then pass "row_of_$run"; else fail "row_of_$run"; fi
+done
+expect_text says_so '0 of 7 comparisons differ beyond chance'
+cp .out two
+check one_thread verify plain.pbrt --threads 1
+if cmp -s .out two; then pass same_bytes; else fail same_bytes; fi
+check other_seed verify plain.pbrt --seed 5
+if cmp -s .out two; then fail seed_counts; else pass seed_counts; fi
+check json verify plain.pbrt --json
+if "$VELO" scene verify plain.pbrt --rays 0.4 --json | python3 -c '
+import json, sys
+d = json.load(sys.stdin)
+assert d["differ"] == 0 and len(d["runs"]) == 8 and d["replicates"] == 32
+assert {r["run"] for r in d["runs"] if not r["judged"]} == {"merging"}
+assert all(abs(c["mean"] / c["against"] - 1) < .1 for r in d["runs"] for c in r["image"])'; then
+  pass json_content
+else
+  fail json_content
+fi
+
+# Fog that begins at a wall on the way of camera paths and not on that of light paths (docs/tracers.md): the tracers do not
+# agree, and cannot.
+{
+  printf '%s\n' "$head" 'MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [.5 .5 .5] "rgb sigma_a" [.2 .2 .2]'
+  echo 'MediumInterface "" "fog"'
+  printf '%s\n' "$body"
+} >fog.pbrt
+expect_code 1 disagrees verify fog.pbrt
+expect_text names_it 'bidirectional, image, '
+expect_text row_says_so 'DIFFERS'
+expect_code 1 disagrees_json verify fog.pbrt --json
+expect_text json_says_so '"differs": true'
+
+# Mirrors: no light paths alone, and between tracers no small lights.
+printf '%s\n' "$head" 'LightSource "point" "point3 from" [1 -1 2]' 'Material "conductor" "float roughness" 0' "$body" >mirror.pbrt
+check mirror verify mirror.pbrt
+expect_text mirror_lightpath 'lightpath and randomwalk are not compared: smooth surfaces'
+expect_text mirror_small_lights 'only light paths find them through smooth surfaces'
+if grep -q '^lightpath  ' <<<"$out"; then fail mirror_has_no_lightpath; else pass mirror_has_no_lightpath; fi
+
+# A tracer that volpath replaces is not compared with volpath.
+printf '%s\n' "$head" 'Material "subsurface"' "$body" >solid.pbrt
+check subsurface verify solid.pbrt
+expect_text subsurface_says_so 'bidirectional is not compared'
+if grep -q '^bidirectional' <<<"$(grep -v 'not compared' <<<"$out")"; then fail subsurface_left_out; else pass subsurface_left_out; fi
+
+expect_code 2 no_rays verify plain.pbrt --rays 0
+expect_code 4 no_file verify none.pbrt
+echo 'WorldBegin Shape "spere"' >wrong.pbrt
+expect_code 3 wrong_scene verify wrong.pbrt
+finish

@@ -84,7 +84,7 @@ def perfect_samples(base, reference, threshold, most, folder):
     film, image = os.path.join(folder, "perfect.film"), os.path.join(folder, "perfect.pfm")
     perfect = numpy.full(blocks(reference, reference).shape, numpy.inf)
     for n in schedule(8, 128):
-        velo(*(base + ["--spp", "8", "--film", film] if n == 8 else
+        velo(*(base + ["--spp", "8", "--overwrite", "--film", film] if n == 8 else
                ["render", "--continue", film, "--quiet", "--spp", str(n)]), "-o", image)
         perfect[(blocks(read(image), reference) < threshold) & numpy.isinf(perfect)] = n
     for row, column in numpy.argwhere(numpy.isinf(perfect)):
@@ -92,7 +92,7 @@ def perfect_samples(base, reference, threshold, most, folder):
         part = reference[y:y + BLOCK, x:x + BLOCK]
         crop = "%d,%d,%d,%d" % (x, y, x + part.shape[1], y + part.shape[0])
         for n in schedule(192, most):
-            velo(*(base + ["--spp", "192", "--crop", crop, "--film", film] if n == 192 else
+            velo(*(base + ["--spp", "192", "--crop", crop, "--overwrite", "--film", film] if n == 192 else
                    ["render", "--continue", film, "--quiet", "--spp", str(n)]), "-o", image)
             perfect[row, column] = n
             if blocks(read(image), part)[0, 0] < threshold:
@@ -110,7 +110,7 @@ def measure(name, scene, size, options, folder):
     means, below, counts, perfect = [], [], [], []
     for seed in range(options.seeds):
         film, image = path("-%d.film" % seed), path("-%d.pfm" % seed)
-        velo(*base, "--seed", str(seed), "--noise", "%g%%" % options.noise, "--film", film, "-o", image)
+        velo(*base, "--seed", str(seed), "--noise", "%g%%" % options.noise, "--overwrite", "--film", film, "-o", image)
         means.append(read(image)[counted].mean() / reference[counted].mean())
         errors = blocks(read(image), reference)
         below.append((errors < threshold).mean())

@@ -67,7 +67,7 @@ completes "second words" "check convert denoise diff info" velo image ""
 completes "one second word" "denoise diff" velo image d
 completes "options" "--tiles --time" velo render scene.pbrt --ti
 completes "options of a command of two words" "--threshold" velo image diff --thr
-completes "letters" "--help --output -h -o" velo film merge a.film -
+completes "letters" "--help --output --overwrite -h -o" velo film merge a.film -
 completes "no option as the value of an option" "" velo film merge -o --o
 completes "names of a tracer" "path" velo render --tracer pa
 completes "names after =" "zsobol" velo render --sampler = zs

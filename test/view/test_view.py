@@ -540,6 +540,10 @@ def main():
     test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
     check("film", info.returncode == 0, info.stderr)
+    before = open(film, "rb").read()
+    refused = subprocess.run([VELO, "view", SCENE, "--no-open", "--film", film], capture_output=True, text=True, timeout=60)
+    check("film_is_kept", refused.returncode == 2 and "is a film already; --overwrite" in refused.stderr, refused.stderr)
+    check("film_is_unchanged", open(film, "rb").read() == before)
     shutil.rmtree(folder)
 
 

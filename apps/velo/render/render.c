@@ -476,7 +476,7 @@ const Command render_command = {
         "Renders FILE. Options override the settings in the file. After the first pass, and then about every\n"
         "ten seconds, the unfinished image is written to NAME.part.EXT; at the end it becomes NAME.EXT.\n"
         "Ctrl-C ends the render; the samples so far are in NAME.part.EXT, and in the film file of --film,\n"
-        "which --continue continues.",
+        "which the same command again continues, or --continue.",
     .examples =
         "velo render room.pbrt -o room.exr -o room.png --spp 256\n"
         "velo render model.glb --resolution 1280x720 --time 5m -o model.png",

@@ -53,15 +53,14 @@ static int set_lock(int descriptor) {
 }
 
 /* Whether the name still leads to this file: its owner removes it when it releases the lock. It is opened, since an NFS
- * client looks up a name anew only then. */
+ * client looks up a name anew only then; where no descriptor is left, a look-up must do. */
 static bool is_named(int descriptor, int folder, const char *name) {
   struct stat mine, named;
   int other = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (other < 0) return false;
-  bool same = fstat(descriptor, &mine) == 0 && fstat(other, &named) == 0 && mine.st_nlink > 0 &&
-              mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
-  close(other);
-  return same;
+  bool there = other >= 0 ? fstat(other, &named) == 0 : fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0;
+  if (other >= 0) close(other);
+  return there && fstat(descriptor, &mine) == 0 && mine.st_nlink > 0 && mine.st_ino == named.st_ino &&
+         mine.st_dev == named.st_dev;
 }
 
 /* Opens the lock's file, or makes it; any user may lock it, since its owner may have been killed. -1: errno is set,

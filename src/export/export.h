@@ -51,7 +51,9 @@ typedef struct vlExport {
   bool dry; /* nothing is written; only losses are collected */
   vlLoss losses[VL_EXPORT_LOSSES];
   uint32_t loss_count;
-  char stem[200]; /* the scene's file name without suffix; names of further files start with it */
+  VL_ARRAY(char *) made;   /* paths of the files beside the scene file that were written */
+  VL_ARRAY(char *) passed; /* paths of other files that had their names */
+  char stem[200];          /* the scene's file name without suffix; names of further files start with it */
   VL_ARRAY(vlExportImage) images;
   /* glTF */
   bool binary;
@@ -69,8 +71,11 @@ void vl_export_lose(vlExport *x, const char *format, ...) __attribute__((format(
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) __attribute__((format(printf, 3, 4)));
 void vl_bytes_put(vlContext *context, vlBytes *bytes, const void *data, size_t size);
 void vl_bytes_print(vlContext *context, vlBytes *bytes, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Writes a whole file to the folder of the scene file; a null name means the scene file itself. */
-bool vl_export_file(vlExport *x, const char *name, const void *data, size_t size);
+/* Writes the scene file, which comes last: until then the earlier one and its files are as they were. */
+bool vl_export_main(vlExport *x, const void *data, size_t size);
+/* Writes a file beside the scene file. No file is overwritten: where another has the name, `name` becomes a free one
+ * ("room-2.bin"). A file that has these bytes already is taken as it is. */
+bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size);
 /* Path of a file in the folder of the scene file. */
 bool vl_export_path(vlExport *x, const char *name, char *path, size_t size);
 /* The decoded image of a texture. */

@@ -71,8 +71,30 @@ static bool says_linear(Png *p) {
          png_get_gAMA_fixed(p->png, p->info, &gamma) && gamma == 100000;
 }
 
+/* libpng allocates what a chunk promises before it reads it. This checks that the file holds the chunks. The image data
+ * may be cut off: its header is still read. */
+static const char *check_chunks(const vlImageFile *file) {
+  for (size_t at = 8; at + 12 <= file->size;) {
+    const uint8_t *c = file->data + at;
+    uint64_t length = (uint64_t)c[0] << 24 | (uint64_t)c[1] << 16 | (uint64_t)c[2] << 8 | c[3];
+    if (memcmp(c + 4, "IDAT", 4) == 0 || memcmp(c + 4, "IEND", 4) == 0) return NULL;
+    if (length > file->size - at - 12) return "a chunk is longer than the file";
+    at += 12 + (size_t)length;
+  }
+  return NULL;
+}
+
+/* Texts, profiles and the like are skipped: only what tells the encoding of the values is read. */
+static void ignore_chunks(Png *p) {
+  static const png_byte wanted[] = "gAMA\0sRGB\0iCCP";
+  png_set_keep_unknown_chunks(p->png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+  png_set_keep_unknown_chunks(p->png, PNG_HANDLE_CHUNK_AS_DEFAULT, wanted, 3);
+}
+
 static vlResult decode(Png *p) {
   const vlImageFile *file = p->file;
+  const char *broken = check_chunks(file);
+  if (broken) return vl_codec_broken(file, "PNG", broken);
   if (setjmp(png_jmpbuf(p->png)))
     return p->stopped  ? VL_CANCELLED
            : p->memory ? vl_fail_memory(file->error)
@@ -80,6 +102,8 @@ static vlResult decode(Png *p) {
   png_set_read_fn(p->png, p, on_read);
   png_set_user_limits(p->png, 0x7fffffff, 0x7fffffff); /* the size is checked below against the file's size */
   png_set_chunk_malloc_max(p->png, 8u << 20);
+  png_set_chunk_cache_max(p->png, 16);
+  ignore_chunks(p);
   png_read_info(p->png, p->info);
   uint32_t width = png_get_image_width(p->png, p->info), height = png_get_image_height(p->png, p->info);
   int depth = png_get_bit_depth(p->png, p->info), kind = png_get_color_type(p->png, p->info);

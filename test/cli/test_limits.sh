@@ -194,6 +194,33 @@ late late_with_denoise 2 scene.pbrt --resolution 1600x1200 --denoise clean.exr
 check late_film "$V" render scene.pbrt --resolution 1600x1200 --spp 16 --tracer raycast --quiet --film late.film
 late late_continue 1 --continue late.film --spp 1000000
 
+# PNG files of 57 bytes whose chunks promise a gigabyte: the memory is not taken.
+python3 - <<'PY'
+import struct, zlib
+def chunk(kind, data, length=None):
+    return struct.pack(">I", len(data) if length is None else length) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+head = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
+for kind in "eXIf hIST iCCP iTXt pCAL sCAL sPLT tEXt zTXt tRNS PLTE vpAg".split():
+    open("huge_%s.png" % kind, "wb").write(head + chunk(kind.encode(), b"abcdefghijkl", 0x3fffffff))
+# a text that unpacks to 64 MB, in a file that is whole
+bomb = b"name\0\0" + zlib.compress(bytes(64 << 20), 9)
+rest = chunk(b"IDAT", zlib.compress(b"\0abc")) + chunk(b"IEND", b"")
+open("text.png", "wb").write(head + chunk(b"zTXt", bomb) + rest)
+open("profile.png", "wb").write(head + chunk(b"iCCP", bomb) + rest)
+PY
+worst=0
+for file in huge_*.png; do
+  run_measured "$V" image info "$file"
+  [ "$code" = 3 ] || { fail "$file (exit code $code)"; show "$file"; }
+  [ "$kilobytes" -gt "$worst" ] && worst=$kilobytes
+done
+if is_plain_build; then [ "$worst" -lt 60000 ] && pass chunks_of_a_png || fail "chunks_of_a_png ($worst kB)"; fi
+for file in text.png profile.png; do
+  run_measured "$V" image info "$file"
+  [ "$code" = 0 ] && pass "$file" || { fail "$file"; show "$file"; }
+  if is_plain_build; then [ "$kilobytes" -lt 60000 ] && pass "memory_of_$file" || fail "memory_of_$file ($kilobytes kB)"; fi
+done
+
 # A camera farther away than Embree's largest coordinate sees nothing of the scene, in a medium too.
 sed 's/^Camera /MakeNamedMedium "fog" "string type" "homogeneous"\nMediumInterface "" "fog"\nTransform [1 0 0 0  0 1 0 0  0 0 1 0  0 1e20 0 1]\nCamera /' scene.pbrt >far.pbrt
 grep -q 1e20 far.pbrt || fail far_camera_scene

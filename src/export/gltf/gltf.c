@@ -322,6 +322,7 @@ static bool write_files(vlExport *x) {
   vl_bytes_put(x->context, &x->buffer, "\0\0\0", (4 - x->buffer.data.count % 4) % 4);
   size_t size = x->buffer.data.count;
   snprintf(name, sizeof name, "%.200s.bin", x->stem);
+  if (size && !x->binary && !vl_export_data(x, name, x->buffer.data.items, size)) return false;
   if (size) {
     json_t *buffer = json_pack("{s:I}", "byteLength", (json_int_t)size);
     if (!x->binary) json_object_set_new(buffer, "uri", json_string(name));
@@ -351,10 +352,10 @@ static bool write_files(vlExport *x) {
       vl_bytes_put(x->context, &file, x->buffer.data.items, size);
     }
     fine = file.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
-                     : vl_export_file(x, NULL, file.data.items, file.data.count);
+                     : vl_export_main(x, file.data.items, file.data.count);
     VL_ARRAY_FREE(x->context, &file.data);
   } else {
-    fine = (!size || vl_export_file(x, name, x->buffer.data.items, size)) && vl_export_file(x, NULL, text, length);
+    fine = vl_export_main(x, text, length);
   }
   vl_free(x->context, text);
   return fine;

@@ -69,6 +69,11 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   }
   json_t *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
   unlink(path);
+  if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
+  if (r == VL_ERROR_IO || (r == VL_OK && !tree)) {
+    json_decref(tree);
+    return vl_export_fail(x, VL_ERROR_IO, "the camera cannot be written to a temporary file beside %.300s", x->path);
+  }
   json_t *camera = json_array_get(json_object_get(tree, "cameras"), 0),
          *node = json_array_get(json_object_get(tree, "nodes"), 0);
   if (camera && node) {

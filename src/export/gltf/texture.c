@@ -16,6 +16,10 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
   } else {
     char uri[900], *to = uri;
     snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, json_array_size(json_object_get(x->root, "images")), suffix);
+    if (!vl_export_data(x, name, bytes, size)) {
+      json_decref(image);
+      return -1;
+    }
     for (const char *p = name; *p; p++) { /* escapes blanks and other characters not allowed in uris */
       bool plain =
           (*p >= 'a' && *p <= 'z') || (*p >= 'A' && *p <= 'Z') || (*p >= '0' && *p <= '9') || strchr("-._~", *p);
@@ -23,10 +27,6 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
     }
     *to = 0;
     json_object_set_new(image, "uri", json_string(uri));
-    if (!vl_export_file(x, name, bytes, size)) {
-      json_decref(image);
-      return -1;
-    }
   }
   return vl_gltf_put(x, "images", image);
 }
@@ -90,7 +90,7 @@ json_t *vl_gltf_texture_info(vlExport *x, const vlTextureDef *t, bool linear) {
   json_int_t image = put_image(x, t);
   if (image < 0) {
     vl_export_lose(x, "images that cannot be read: left out");
-    x->result = x->result == VL_ERROR_MEMORY ? x->result : VL_OK;
+    if (x->result != VL_ERROR_MEMORY && x->result != VL_ERROR_IO) x->result = VL_OK;
     return NULL;
   }
   bool nearest = t->filter == VL_FILTER_POINT;

@@ -46,7 +46,7 @@ static bool put_nanovdb(vlExport *x, const vlMediumDef *m) {
   vl_error_clear(&error);
   snprintf(name, sizeof name, "%.200s-medium%zu.nvdb", x->stem, index);
   vlResult r = vl_file_read(x->context, m->path, false, &data, &size, &error);
-  bool fine = r == VL_OK ? vl_export_file(x, name, data, size) : vl_export_fail(x, r, "%s", error.message);
+  bool fine = r == VL_OK ? vl_export_data(x, name, data, size) : vl_export_fail(x, r, "%s", error.message);
   vl_free(x->context, data);
   PUT(" \"string filename\" \"%s\"", name);
   return fine;

@@ -91,6 +91,7 @@ static bool put_camera(vlExport *x) {
   if (r == VL_OK) r = vl_file_read(x->context, path, false, &text, &size, &error);
   unlink(path);
   if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
+  if (r == VL_ERROR_IO || r == VL_ERROR_MISSING) return vl_export_fail(x, VL_ERROR_IO, "%s", error.message);
   if (r == VL_OK) {
     put_head(x, text, size);
   } else {
@@ -229,5 +230,5 @@ bool vl_export_pbrt(vlExport *x) {
     if (!s->shapes.items[i].group.index && !vl_pbrt_shape(x, i)) return false;
   if (!put_groups(x)) return false;
   if (x->text.full) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-  return vl_export_file(x, NULL, x->text.data.items, x->text.data.count);
+  return vl_export_main(x, x->text.data.items, x->text.data.count);
 }

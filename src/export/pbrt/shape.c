@@ -51,7 +51,7 @@ static bool put_ply(vlExport *x, const vlShapeDef *d, size_t index) {
   char name[300];
   snprintf(name, sizeof name, "%.200s-mesh%zu.ply", x->stem, index + 1);
   bool fine = b.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")
-                     : vl_export_file(x, name, b.data.items, b.data.count);
+                     : vl_export_data(x, name, b.data.items, b.data.count);
   VL_ARRAY_FREE(x->context, &b.data);
   PUT("  Shape \"plymesh\" \"string filename\" \"%s\"", name);
   return fine;

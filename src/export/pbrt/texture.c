@@ -26,8 +26,9 @@ static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, co
   if (!slot) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   const void *data = t->data ? t->data : (const void *)t->image;
   *slot = (vlExportImage){.data = data, .path = data ? NULL : t->path, .variant = variant};
+  bool fine = vl_export_data(x, name, bytes, size);
   memcpy(slot->name, name, sizeof slot->name);
-  return vl_export_file(x, name, bytes, size);
+  return fine;
 }
 
 /* Whether pbrt reads files of this name. (velo recognises images by their content.) */

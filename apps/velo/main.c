@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
@@ -59,9 +60,42 @@ static const Command *find_command(int argc, char **argv, int *words) {
   return NULL;
 }
 
+/* For the second word alone (velo convert): lists the commands that end with it. */
+static bool is_second_word(const char *word, char *list, size_t size) {
+  list[0] = 0;
+  for (int i = 0; i < COMMANDS; i++) {
+    const char *space = strchr(commands[i]->name, ' ');
+    if (!space || strcmp(space + 1, word) != 0) continue;
+    size_t n = strlen(list);
+    snprintf(list + n, size - n, "%s\"velo %s\"", n ? " or " : "", commands[i]->name);
+  }
+  return list[0];
+}
+
+/* The command for a file without one (velo model.glb); null: the word is no file's name. */
+static const char *command_for_file(const char *word) {
+  static const char *const kinds[][2] = {
+      {".pbrt", "render"},    {".pbrt.gz", "render"}, {".gltf", "render"},      {".glb", "render"},
+      {".obj", "render"},     {".ply", "render"},     {".stl", "render"},       {".off", "render"},
+      {".film", "film info"}, {".exr", "image info"}, {".png", "image info"},   {".jpg", "image info"},
+      {".hdr", "image info"}, {".pfm", "image info"}, {".obj.gz", "render"},    {".ply.gz", "render"},
+      {".stl.gz", "render"},  {".off.gz", "render"},  {".yaml", "camera info"}, {".json", "camera info"}};
+  const size_t length = strlen(word);
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    const size_t n = strlen(kinds[i][0]);
+    if (length > n && strcasecmp(word + length - n, kinds[i][0]) == 0) return kinds[i][1];
+  }
+  return NULL;
+}
+
 static int unknown_command(int argc, char **argv) {
   const char *names[COMMANDS + 3];
+  char whole[200];
   int count;
+  if (command_for_file(argv[0]))
+    return report_usage("a command comes first; did you mean \"velo %s %s\"?", command_for_file(argv[0]), argv[0]);
+  if (is_second_word(argv[0], whole, sizeof whole))
+    return report_usage("unknown command \"%s\"; did you mean %s?", argv[0], whole);
   if (is_family(argv[0], names, &count)) {
     char list[200] = "";
     for (int i = 0; i < count; i++) {
@@ -87,9 +121,11 @@ static int unknown_command(int argc, char **argv) {
 }
 
 /* Values of the options of `velo help`. */
-enum { HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
+enum { HELP_ALL, HELP_MAN, HELP_COMPLETION, HELP_COMMANDS };
 
 static const Option help_options[] = {
+    {HELP_ALL, 0, "all", OPTION_FLAG, NULL, "print all options, where the page of COMMAND has the most used only", 0, 0,
+     NULL},
     {HELP_MAN, 0, "man", OPTION_FLAG, NULL, "print the manual page of COMMAND, or of velo, in the format of man(7)", 0,
      0, NULL},
     {HELP_COMPLETION, 0, "completion", OPTION_CHOICE, "SHELL", "print the completion script of a shell:", 0, 0,
@@ -102,27 +138,28 @@ static const Command help_command = {
     .usage = "[COMMAND] [options]",
     .summary = "print the options of a command",
     .text =
-        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections,\n"
-        "and examples. For image, scene, camera or film, prints this for each command of that group.",
-    .examples = "velo help render\nvelo help image diff\nvelo help --man render | man -l -",
+        "Without COMMAND, lists all commands. With COMMAND, prints what it does, its options in sections\n"
+        "(of render the most used ones, --all prints all), and examples. For image, scene, camera or film, prints "
+        "this for each command of that group.",
+    .examples = "velo help render\nvelo help render --all\nvelo help image diff\nvelo help --man render | man -l -",
     .options = help_options,
     .max_operands = MAX_OPERANDS,
 };
 
 /* Prints the help pages of one command or of a group of commands. */
-static int print_help(int argc, char **argv) {
+static int print_help(int argc, char **argv, bool all) {
   int words, count;
   const char *names[COMMANDS];
   const Command *command = find_command(argc, argv, &words);
   if (!command && argc == 1 && strcmp(argv[0], "help") == 0) command = &help_command;
   if (command) {
-    options_print_help(command);
+    options_print_help(command, all);
   } else if (argc == 0) {
     print_overview();
   } else if (argc == 1 && is_family(argv[0], names, &count)) {
     for (int i = 0; i < COMMANDS; i++) {
       if (strncmp(commands[i]->name, argv[0], strlen(argv[0])) != 0) continue;
-      if (count-- < (int)(sizeof names / sizeof *names)) options_print_help(commands[i]);
+      if (count-- < (int)(sizeof names / sizeof *names)) options_print_help(commands[i], all);
       if (count) printf("\n");
     }
   } else {
@@ -158,7 +195,7 @@ static int help(int argc, char **argv) {
     if (!command) return unknown_command(argc, argv);
     manual_print_command(command);
   } else {
-    return print_help(argc, argv);
+    return print_help(argc, argv, v[HELP_ALL].given);
   }
   return STATUS_OK;
 }
@@ -201,7 +238,7 @@ static int run(int argc, char **argv) {
   int words;
   const Command *command = find_command(argc - 1, argv + 1, &words);
   if (!command && argc == 3 && (strcmp(argv[2], "--help") == 0 || strcmp(argv[2], "-h") == 0))
-    return print_help(1, argv + 1);
+    return print_help(1, argv + 1, false);
   if (!command) return unknown_command(argc - 1, argv + 1);
   static Arguments arguments;
   int status = options_parse(command, argc - 1 - words, argv + 1 + words, &arguments);
@@ -231,7 +268,5 @@ int main(int argc, char **argv) {
   for (int i = 1; i < argc; i++) json |= strcmp(argv[i], "--log-json") == 0;
   report_setup(json, REPORT_NORMAL);
   int status = run(argc, argv);
-  if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
-    status = report_failure(STATUS_IO, "cannot write to stdout");
-  return status;
+  return status == STATUS_OK ? report_stdout(status) : status;
 }

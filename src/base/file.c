@@ -144,6 +144,52 @@ static int open_file(vlContext *context, const char *path, bool given, vlError *
   return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what), -1;
 }
 
+/* The text that Git stores in place of a large file. */
+static bool is_lfs_pointer(const char *data, size_t size) {
+  static const char begin[] = "version https://git-lfs.github.com/spec/";
+  return size < 1024 && size >= sizeof begin && memcmp(data, begin, sizeof begin - 1) == 0;
+}
+
+static vlResult fail_lfs_pointer(const char *path, vlError *error) {
+  return vl_fail(error, VL_ERROR_MISSING, "%s is a Git LFS pointer, not the file itself: git lfs pull fetches it",
+                 path);
+}
+
+/* Turns UTF-16 with a byte order mark into UTF-8, where the text begins with ASCII (binary files may begin with the
+ * mark's bytes). */
+static vlResult utf16_to_utf8(vlContext *context, char **data, size_t *size, vlError *error) {
+  enum { LOOK = 8 };
+  const unsigned char *from = (const unsigned char *)*data;
+  const bool big = *size >= 2 && from[0] == 0xfe && from[1] == 0xff;
+  if (!big && !(*size >= 2 && from[0] == 0xff && from[1] == 0xfe)) return VL_OK;
+  for (size_t i = 2; i + 1 < *size && i < 2 + 2 * LOOK; i += 2)
+    if (from[i + !big] != 0 || from[i + big] == 0 || from[i + big] > 0x7e) return VL_OK;
+  char *to = vl_alloc_array(context, *size / 2 + 1, 3);
+  if (!to) return vl_fail_memory(error);
+  size_t used = 0;
+  for (size_t i = 2; i + 1 < *size; i += 2) {
+    uint32_t c = (uint32_t)from[i + big] | (uint32_t)from[i + !big] << 8, next = 0;
+    if (i + 3 < *size) next = (uint32_t)from[i + 2 + big] | (uint32_t)from[i + 2 + !big] << 8;
+    if (c >= 0xd800 && c < 0xdc00 && next >= 0xdc00 && next < 0xe000) {
+      c = 0x10000 + ((c - 0xd800) << 10) + (next - 0xdc00);
+      i += 2;
+    }
+    if (c >= 0xd800 && c < 0xe000) c = 0xfffd; /* half of a pair */
+    if (c < 0x80) {
+      to[used++] = (char)c;
+      continue;
+    }
+    const int more = c < 0x800 ? 1 : c < 0x10000 ? 2 : 3; /* bytes after the first */
+    to[used++] = (char)((0xf00 >> (more + 1) & 0xff) | c >> 6 * more);
+    for (int k = more - 1; k >= 0; k--) to[used++] = (char)(0x80 | (c >> 6 * k & 0x3f));
+  }
+  to[used] = 0;
+  vl_free(context, *data);
+  *data = to;
+  *size = used;
+  return VL_OK;
+}
+
 static vlResult read_file(vlContext *context, const char *path, bool given, bool gunzip, char **data, size_t *size,
                           vlError *error) {
   *data = NULL;
@@ -190,6 +236,8 @@ static vlResult read_file(vlContext *context, const char *path, bool given, bool
     if (!vl_file_record(context, path, block, used)) result = vl_fail_memory(error);
     if (result == VL_OK && gunzip && used >= 2 && (unsigned char)block[0] == 0x1f && (unsigned char)block[1] == 0x8b)
       result = gunzip_all(context, path, &block, &used, error);
+    if (result == VL_OK && gunzip) result = utf16_to_utf8(context, &block, &used, error);
+    if (result == VL_OK && is_lfs_pointer(block, used)) result = fail_lfs_pointer(path, error);
   }
   if (result != VL_OK) {
     vl_free(context, block);
@@ -232,6 +280,10 @@ vlResult vl_file_map(vlContext *context, const char *path, const char **data, si
   int code = errno;
   close(fd);
   if (!good) return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, strerror(code));
+  if (is_lfs_pointer(block, length)) {
+    vl_file_unmap(block, length);
+    return fail_lfs_pointer(path, error);
+  }
   *data = block;
   *size = length;
   return VL_OK;

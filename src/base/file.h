@@ -7,9 +7,10 @@
 #include "base/context.h"
 
 /* Reads a whole file into one block, followed by a zero byte (not counted in size). gunzip: a gzip file (by its
- * first bytes) is decompressed. For files that a scene names: pipes, sockets, devices and files outside of the
- * context's sandbox are refused. The caller releases *data with vl_free. Errors: MISSING (with the nearest name in
- * that folder, if there is one), IO, MEMORY. */
+ * first bytes) is decompressed, and UTF-16 with a byte order mark becomes UTF-8. For files that a scene names: pipes,
+ * sockets, devices and files outside of the context's sandbox are refused. The caller releases *data with vl_free.
+ * Errors: MISSING (with the nearest name in that folder, if there is one; a Git LFS pointer counts as a missing file),
+ * IO, MEMORY. */
 vlResult vl_file_read(vlContext *context, const char *path, bool gunzip, char **data, size_t *size, vlError *error);
 /* The same for files that the caller names: pipes are allowed, and the sandbox does not apply. */
 vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, char **data, size_t *size,

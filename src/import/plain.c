@@ -93,10 +93,9 @@ vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef 
   vlContext *context = scene->context;
   bool ok = true;
   if (!m->vertices) {
-    vlError where = {0};
-    strncpy(where.file, path, sizeof where.file - 1);
-    vl_log(context, VL_LOG_WARNING, &where, "it has no faces and draws nothing");
     free_mesh(context, m);
+    vl_scene_fail(scene, VL_ERROR_SCENE, (vlSource){.file = path},
+                  "it has no faces and no points: there is nothing to draw");
     return vl_scene_result(scene, error);
   }
   if (!m->triangles) ok = vl_import_points(context, path, m);

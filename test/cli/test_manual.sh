@@ -18,7 +18,7 @@ for command in "${commands[@]}"; do
   grep -qx "\.BR velo.*${command//* /} (1)" velo.1 || missing="$missing $command"
   # each option of the help page stands in the manual page
   # shellcheck disable=SC2086
-  for option in $("$VELO" help $command | grep -oE '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+'); do
+  for option in $("$VELO" help $command --all | grep -oE '^ +(-[a-zA-Z], )?--[a-z0-9-]+' | grep -oE -- '--[a-z0-9-]+'); do
     grep -qF -- "\\fB${option//-/\\-}\\fR" "$page" || missing="$missing $command:$option"
   done
 done

@@ -33,6 +33,11 @@ usage spp_negative 'from 1 to' render scene.pbrt --spp -4
 usage spp_with_rest '"12x"' render scene.pbrt --spp 12x
 usage spp_fraction '"1.5"' render scene.pbrt --spp 1.5
 usage spp_huge 'from 1 to' render scene.pbrt --spp 99999999999999999999
+usage file_without_command 'did you mean "velo render Duck.glb"?' Duck.glb
+usage film_without_command 'did you mean "velo film info a.film"?' a.film
+usage second_word 'did you mean "velo scene convert" or "velo image convert"' convert
+usage width 'did you mean "--resolution WxH"?' render scene.pbrt --width 100
+usage integrator 'did you mean "--tracer' render scene.pbrt --integrator path
 usage spp_empty 'from 1 to' render scene.pbrt --spp=
 usage threads_zero 'from 1 to' render scene.pbrt -t 0
 usage resolution 'WIDTHxHEIGHT' render scene.pbrt --resolution 64
@@ -65,12 +70,12 @@ check help "$VELO" help
 wide=$(awk 'length($0) > 80' pages.txt)
 for command in render 'scene info' 'scene check' 'scene convert' 'scene upgrade' 'scene kinds' 'image info' 'image diff' 'image convert' 'image check' 'image denoise' 'camera project' \
   'camera unproject' 'camera info' 'camera convert' 'camera verify' 'camera vanishing' 'film info' 'film merge' 'film develop' help; do
-  run "$VELO" help $command
+  run "$VELO" help $command --all
   wide="$wide$(printf '%s\n' "$out" | awk 'length($0) > 80')"
   [ "$code" = 0 ] && [ "$(printf '%s\n' "$out" | sed '1,/^examples:/d' | grep -c '^  velo ')" -ge 2 ] && pass "help_$command" || { fail "help_$command"; show help; }
 done
 [ -z "$wide" ] && pass help_in_80_columns || fail "help_in_80_columns ($wide)"
-expect_code 0 help_render_sections "$VELO" help render
+expect_code 0 help_render_sections "$VELO" help render --all
 expect_text help_render_has_sections 'ground truth beside the image (.exr):'
 # At the start of a trajectory no remaining time is printed. The first line about script/render's scene does not name pbrt.
 printf 'eye_x,eye_y,eye_z,lookat_x,lookat_y,lookat_z\n0,1.2,4,0,0.6,0\n1,1,4,0,0.6,0\n' >poses.csv
@@ -110,8 +115,25 @@ case $code in
   *) fail narrow_terminal; show narrow ;;
 esac
 check help_render "$VELO" help render
+check help_render_begins_with_an_example grep -q "^  velo render room.pbrt -o room.png" <(printf '%s\n' "$out" | head -3)
+check help_render_is_short test "$(printf '%s\n' "$out" | wc -l)" -le 25
+check help_render_fits test "$(printf '%s\n' "$out" | wc -L)" -le 80
+"$VELO" help render --all >all_options
+for option in $(printf '%s\n' "$out" | grep -oE -- '--[a-z]+' | sort -u); do
+  [ "$option" = --all ] || grep -qE "^ .*$option( |\$)" all_options || fail "help_render_names $option"
+done
+check help_render_all "$VELO" help render --all
 expect_text help_render_lists_options "--cropwindow"
 check render_help "$VELO" render --help
+# A reader that has seen enough is no error; a full disk is.
+check head bash -c 'set -o pipefail; "$0" help render --all | head -n 1 >/dev/null' "$VELO"
+check head_of_info bash -c 'set -o pipefail; "$0" scene kinds materials | head -n 1 >/dev/null' "$VELO"
+[ ! -w /dev/full ] || expect_code 5 full_stdout bash -c '"$0" help render --all >/dev/full' "$VELO"
+# Threads beyond four for each processor are not started, and the image is the same.
+check many_threads "$VELO" render scene.pbrt --spp 1 --threads 1000 -o many.pfm
+expect_text many_threads_says '4 for each processor'
+check one_thread "$VELO" render scene.pbrt --spp 1 --threads 1 -o one.pfm --quiet
+check many_threads_same cmp many.pfm one.pfm
 check help_image "$VELO" help image
 check help_image_diff "$VELO" help image diff
 expect_text help_keeps_the_columns_of_tables "  mse        mean squared error"

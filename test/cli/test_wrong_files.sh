@@ -117,6 +117,48 @@ check warnings_end test "$(printf '%s\n' "$err" | wc -l)" = 101
 printf '%s\n' 'format unknown' >scene.obj2
 wrong 3 unknown_suffix '.*scene\.obj2' scene.obj2
 
+# A Git LFS pointer stands for a file that is not there; an image of that name stays.
+pointer='version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n'
+for name in pointer.glb pointer.obj pointer.ply pointer.pbrt pointer.png; do printf "$pointer" >"$name"; done
+for name in glb obj ply pbrt; do wrong 4 "lfs_$name" ".*pointer\\.$name is a Git LFS pointer" "pointer.$name"; done
+scene lfs_image.pbrt 'LightSource "infinite" "string filename" "pointer.png"' "$sphere"
+wrong 4 lfs_image '.*pointer\.png is a Git LFS pointer' lfs_image.pbrt
+expect_code 4 lfs_info "$VELO" image info pointer.png
+echo old >kept.png
+expect_code 4 lfs_keeps "$VELO" render pointer.glb -o kept.png
+check lfs_kept test "$(cat kept.png)" = old
+# Files that have nothing to draw.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\n' >vertices.obj
+wrong 3 obj_without_faces '.*vertices\.obj: it has no faces, points \(p\) or lines \(l\)' vertices.obj
+printf 'solid a\nendsolid a\n' >empty.stl
+wrong 3 stl_without_faces '.*empty\.stl: it has no faces' empty.stl
+# What other programs write: it is read.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\nusemtl a\nl 1/1 2/1 -1\nl 2 3\n' >marks.obj
+check marks "$VELO" render marks.obj --spp 1 --resolution 16x16 -o marks.exr
+expect_text marks_say 'its points and lines are balls and tubes'
+check marks_shapes sh -c '"$0" scene info marks.obj | grep -q "2: 1 sphere, 1 curve"' "$VELO"
+printf 'v 0 0 0\nv 1 0 0\np 4\n' >marks_bad.obj
+wrong 3 marks_bad '.*marks_bad\.obj:3:[0-9]+: "4" is none of the 2 vertices' marks_bad.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\no caf\303\251\nf 1 2 3\n' >plain.obj
+for form in UTF-16 UTF-16BE UTF-16LE UTF-8; do
+  /usr/bin/python3 - "$form" <<'PY'
+import sys
+text = open("plain.obj", encoding="utf-8").read()
+mark = "" if sys.argv[1] == "UTF-16" else "\ufeff"
+open("coded.obj", "wb").write((mark + text).encode(sys.argv[1]))
+PY
+  check "obj_$form" sh -c '"$0" scene info coded.obj | sed s/coded/plain/ >coded.txt && "$0" scene info plain.obj | cmp - coded.txt' "$VELO"
+done
+printf 'ply\nformat ascii 1.0\nCreated by Blender3D 2.48 - www.blender.org, source file: a.blend\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >blender.ply
+check old_blender "$VELO" render blender.ply --spp 1 --resolution 16x16 -o blender.exr --quiet
+sed 's/^Created by/Made by/' blender.ply >word.ply
+wrong 3 unknown_word '.*word\.ply:3:1: PLY: unknown word "Made"' word.ply
+for name in KHR_materials_scatter KHR_materials_retroreflection; do
+  printf '{"asset": {"version": "2.0"}, "extensionsUsed": ["%s"], "scenes": [{"nodes": []}]}' $name >extension.gltf
+  run "$VELO" scene info extension.gltf
+  expect_text "names_$name" "$name"
+done
+
 # What is not there yet: an error with its place, or a warning.
 scene medium.pbrt 'Shape "heightfield" "integer nu" 3' "$sphere"
 wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*heightfield' medium.pbrt

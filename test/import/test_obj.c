@@ -288,7 +288,7 @@ static void missing(void **state) {
   assert_int_equal(l.result, VL_OK);
   assert_non_null(strstr(l.log, "t.obj:1:1: mtllib: there is no file \"none.mtl\""));
   assert_non_null(strstr(l.log, "no library has a material \"what\""));
-  assert_non_null(strstr(l.log, "points and lines are not drawn"));
+  assert_non_null(strstr(l.log, "points and lines are balls and tubes"));
   end_load(&l);
   write_text("p.mtl", "newmtl a\nmap_Kd -s 2 2 C:\\away\\a b.png\n");
   load_obj(&l, "mtllib p.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");

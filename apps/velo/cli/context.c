@@ -3,15 +3,23 @@
 
 #include "cli/signals.h"
 
+enum { MOST_PER_PROCESSOR = 4 }; /* more threads wait for each other: 1000 on two processors take seconds */
+
 static bool interrupted(void *user) {
   (void)user;
   return signals_pending() > 0;
 }
 
 int context_open(const vlContextDef *def, vlContext **context) {
+  const uint32_t most = MOST_PER_PROCESSOR * vl_default_context_def().threads;
   vlContextDef ours = *def;
   ours.keep_inputs = true;
   ours.interrupted = interrupted;
+  if (ours.threads > most) {
+    ours.threads = most;
+    report_note("--threads %u: %u are used, %d for each processor (the image is the same)", def->threads, most,
+                MOST_PER_PROCESSOR);
+  }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:
     case VL_CANCELLED: return -1;
@@ -25,5 +33,5 @@ int context_open(const vlContextDef *def, vlContext **context) {
     case VL_ERROR_MEMORY: break;
   }
   return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
-                        def->threads);
+                        ours.threads);
 }

@@ -92,10 +92,16 @@ static void print_examples(const char *text) {
   }
 }
 
-void options_print_help(const Command *command) {
+void options_print_help(const Command *command, bool all) {
   int column = printf("usage: velo %s", command->name);
   print_wrapped(command->usage, column + 1, column);
   printf("\n");
+  if (command->brief && !all) {
+    int count = 1; /* --help */
+    for (const Option *o = command->options; o->name; o++) count++;
+    printf("%s\nAll %d options: velo help %s --all\n", command->brief, count, command->name);
+    return;
+  }
   print_wrapped(command->text, 0, 0);
   if (!command->sections) printf("\noptions:\n");
   for (const Option *o = command->options; o->name; o++) {

@@ -53,7 +53,32 @@ const char *did_you_mean(const char *prefix, const char *wrong, const char *cons
   return text;
 }
 
+/* Names of other programs' options, and velo's. The first that the command has is suggested. */
+static const char *const synonyms[][3] = {{"width", "resolution", "size"}, {"height", "resolution", "size"},
+                                          {"size", "resolution", NULL},    {"dimensions", "resolution", NULL},
+                                          {"samples", "spp", NULL},        {"pixelsamples", "spp", NULL},
+                                          {"integrator", "tracer", NULL},  {"nthreads", "threads", NULL},
+                                          {"jobs", "threads", NULL},       {"cores", "threads", NULL},
+                                          {"outfile", "output", NULL},     {"out", "output", NULL},
+                                          {"bounces", "max-depth", NULL},  {"depth", "max-depth", NULL},
+                                          {"force", "overwrite", NULL},    {"silent", "quiet", NULL},
+                                          {"timeout", "time", NULL},       {"envmap", "environment", NULL},
+                                          {"hdri", "environment", NULL},   {"background", "environment", NULL},
+                                          {"tonemap", "view", NULL}};
+
+static const Option *find_synonym(const Command *command, const char *name) {
+  for (size_t i = 0; i < sizeof synonyms / sizeof *synonyms; i++)
+    for (int k = 1; k < 3 && strcmp(synonyms[i][0], name) == 0; k++)
+      for (const Option *o = command->options; o->name; o++)
+        if (synonyms[i][k] && strcmp(o->name, synonyms[i][k]) == 0) return o;
+  return NULL;
+}
+
 static int unknown_option(const Command *command, const char *name, const char *prefix) {
+  const Option *synonym = strcmp(prefix, "--") == 0 ? find_synonym(command, name) : NULL;
+  if (synonym)
+    return report_usage("unknown option \"--%s\"; did you mean \"--%s%s%s\"?", name, synonym->name,
+                        synonym->value ? " " : "", synonym->value ? synonym->value : "");
   const char *names[MAX_OPTIONS + 1] = {"help"};
   int count = 1;
   for (const Option *o = command->options; o->name; o++) names[count++] = o->name;
@@ -255,7 +280,7 @@ static int parse_option(const Command *command, char ***rest, char **end, Argume
   const char *word = **rest;
   bool is_long = word[1] == '-';
   if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-    options_print_help(command);
+    options_print_help(command, false);
     return STATUS_OK;
   }
   const char *name = word + (is_long ? 2 : 1);

@@ -74,6 +74,8 @@ typedef struct Command {
   const char *examples; /* lines after the options */
   const Option *options;
   const Section *sections; /* null: the options are one section */
+  const char *brief; /* for long pages: what `velo help` prints without --all between usage and hint, lines of at most
+                        80 columns with examples and the most used options; null: the page is printed whole */
   int min_operands, max_operands;
   int (*run)(const struct Command *command, const Arguments *arguments);
 } Command;
@@ -81,7 +83,8 @@ typedef struct Command {
 /* Parses argv without the names of program and command. Returns -1 to continue, otherwise the exit code after reporting
  * (0 after --help). */
 int options_parse(const Command *command, int argc, char **argv, Arguments *arguments);
-void options_print_help(const Command *command);
+/* all: also of a command with a brief page everything. */
+void options_print_help(const Command *command, bool all);
 
 typedef struct ExitStatus {
   const char *code; /* null ends the list */

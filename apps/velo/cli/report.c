@@ -189,6 +189,13 @@ static int status_of(vlResult result) {
   return STATUS_OTHER;
 }
 
+int report_stdout(int status) {
+  if (fflush(stdout) == 0 && !ferror(stdout)) return status;
+  struct pollfd out = {.fd = STDOUT_FILENO};
+  if (poll(&out, 1, 0) == 1 && out.revents & POLLERR) return status; /* the pipe's reader has gone */
+  return report_failure(STATUS_IO, "cannot write to stdout");
+}
+
 int report_error(const vlError *error, vlResult result, const char *file) {
   int status = status_of(result);
   const char *message = error && error->message[0] ? error->message : vl_result_name(result);

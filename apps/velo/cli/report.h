@@ -39,6 +39,9 @@ void report_usage_of(const char *file);
 int report_failure(int status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /* Reports "velo: file:line:column: message". `file` is used when the library's error has no place; may be null. */
 int report_error(const vlError *error, vlResult result, const char *file);
+/* Flushes stdout at the end of a command that prints text. Returns `status`, or STATUS_IO after reporting that it
+ * cannot be written. A reader that has seen enough (velo help render | head) is no error. */
+int report_stdout(int status);
 void report_warning(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* Reports a result that has no vlError: "FILE: WHAT: out of memory". Returns the exit code. */
 int report_reason(vlResult result, const char *file, const char *what);

@@ -24,9 +24,7 @@ int image_load(vlContext *context, const char *path, vlImage **image) {
 }
 
 int image_finish_output(int status) {
-  if (fflush(stdout) != 0 || ferror(stdout))
-    return report_failure(STATUS_IO, "cannot write to stdout: %s", strerror(errno));
-  return status;
+  return report_stdout(status);
 }
 
 /* The format by the first bytes, as the library chooses its reader. */

@@ -482,6 +482,27 @@ const Command render_command = {
         "velo render model.glb --resolution 1280x720 --time 5m -o model.png",
     .options = render_options,
     .sections = render_sections,
+    .brief =
+        "  velo render room.pbrt -o room.png              as the scene's file says\n"
+        "  velo render model.glb --resolution 1280x720 --time 5m -o model.png\n"
+        "  velo render room.pbrt --spp 256 -o room.exr -o room.png\n"
+        "  velo render room.pbrt --noise 1% --film room.film -o room.exr  stop, go on\n"
+        "\n"
+        "  -o, --output FILE       .exr .hdr .pfm (linear), .png .jpg .tga (display); several\n"
+        "      --spp N             samples per pixel\n"
+        "      --time TIME         time limit: 30s, 5m, 1h30m\n"
+        "      --noise PERCENT     sample until the noise is below this, such as 1%\n"
+        "      --resolution WxH    image size in pixels\n"
+        "      --denoise FILE      also write a denoised copy\n"
+        "      --film FILE         keep the samples; the same command again goes on\n"
+        "      --channels LIST     depth, normals, ids and more in the .exr\n"
+        "      --exposure EV       brightness of .png and .jpg in stops, or auto\n"
+        "      --environment FILE  light of a model: studio, sky, white or an image\n"
+        "      --camera FILE       another camera; --trajectory FILE: many poses\n"
+        "  -t, --threads N         default: all processors\n"
+        "\n"
+        "Options override the settings in the file. Ctrl-C ends the render and keeps\n"
+        "the image so far.",
     .min_operands = 0, /* --again and --continue need none */
     .max_operands = 1,
     .run = run_render,

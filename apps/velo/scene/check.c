@@ -174,7 +174,7 @@ static int run(const Command *command, const Arguments *arguments) {
       print_json(&list, arguments->operands[0], status);
     else
       print_text(&list, arguments->operands[0], arguments->values[CHECK_ALL].given);
-    if (fflush(stdout) != 0 || ferror(stdout)) status = report_failure(STATUS_IO, "cannot write to stdout");
+    status = report_stdout(status);
   }
   free(list.items);
   vl_context_destroy(context);

@@ -338,8 +338,7 @@ static int run(const Command *command, const Arguments *arguments) {
     print_json(&f);
   else
     print_text(&f);
-  if (r == VL_OK)
-    status = fflush(stdout) != 0 || ferror(stdout) ? report_failure(STATUS_IO, "cannot write to stdout") : STATUS_OK;
+  if (r == VL_OK) status = report_stdout(STATUS_OK);
   vl_check_destroy(f.check);
   vl_scene_destroy(f.scene);
   vl_context_destroy(context);

@@ -166,7 +166,7 @@ static int run(const Command *command, const Arguments *arguments) {
       printf("%s\n", family->name);
   }
   if (!found) return report_usage("there is no family of kinds \"%s\" (velo scene kinds lists them)", wanted);
-  return fflush(stdout) != 0 || ferror(stdout) ? report_failure(STATUS_IO, "cannot write to stdout") : STATUS_OK;
+  return report_stdout(STATUS_OK);
 }
 
 static const Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,

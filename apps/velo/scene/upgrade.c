@@ -84,7 +84,7 @@ static int run(const Command *command, const Arguments *arguments) {
   status = r == VL_OK               ? STATUS_OK
            : r == VL_ERROR_ARGUMENT ? report_usage("%s", error.message)
                                     : report_error(&error, r, arguments->operands[0]);
-  if (fflush(stdout) != 0 || ferror(stdout)) status = report_failure(STATUS_IO, "cannot write to stdout");
+  status = report_stdout(status);
   for (size_t i = 0; i < list.count; i++) free(list.kinds[i].text);
   free(list.kinds);
   vl_context_destroy(context);

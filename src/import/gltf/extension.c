@@ -42,6 +42,8 @@ static const char *const registered[] = {
     "KHR_gaussian_splatting",
     "KHR_interactivity",
     "KHR_materials_diffuse_roughness",
+    "KHR_materials_retroreflection",
+    "KHR_materials_scatter",
     "KHR_materials_subsurface",
     "KHR_materials_volume_scatter",
     "KHR_physics_rigid_bodies",

@@ -14,7 +14,7 @@
 #include "import/plain.h"
 
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
-enum { REPORTED_LINES = 1, REPORTED_CURVES = 2, REPORTED_UNKNOWN = 4 };
+enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };
 
 /* ---- errors ------------------------------------------------------------------------------------------------------ */
 
@@ -327,12 +327,11 @@ static bool use_smoothing(vlObj *obj) {
 }
 
 static void once(vlObj *obj, uint32_t bit, const char *what, size_t length) {
-  static const char *const texts[3] = {"points and lines are not drawn", "curves and surfaces are not drawn",
+  static const char *const texts[2] = {"curves and surfaces are not drawn",
                                        "unknown statement, ignored (as others like it)"};
   if (obj->reported & bit) return;
   obj->reported |= bit;
-  vl_obj_warn(obj, bit == REPORTED_LINES ? VL_LOG_INFO : VL_LOG_WARNING, "\"%s\": %s",
-              vl_short_text_of(what, length).text, texts[bit >> 1]);
+  vl_obj_warn(obj, VL_LOG_WARNING, "\"%s\": %s", vl_short_text_of(what, length).text, texts[bit >> 1]);
 }
 
 static bool read_statement(vlObj *obj) {
@@ -350,7 +349,7 @@ static bool read_statement(vlObj *obj) {
       case 'g':
       case 'o': return vl_obj_open_object(obj, *word == 'g');
       case 'l':
-      case 'p': once(obj, REPORTED_LINES, word, n); return true;
+      case 'p': return vl_obj_read_marks(obj, *word == 'l');
       default: break;
     }
   if (n == 2 && word[0] == 'v' && word[1] == 't') return read_uv(obj);
@@ -380,6 +379,7 @@ static void free_all(vlObj *obj) {
   VL_ARRAY_FREE(c, &obj->parts);
   VL_ARRAY_FREE(c, &obj->objects);
   VL_ARRAY_FREE(c, &obj->materials);
+  VL_ARRAY_FREE(c, &obj->marks);
   VL_ARRAY_FREE(c, &obj->polygon);
   VL_ARRAY_FREE(c, &obj->ears);
   VL_ARRAY_FREE(c, &obj->libraries);
@@ -408,16 +408,18 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
   for (int i = 0; i < 3; i++) obj->low[i] = INFINITY, obj->high[i] = -INFINITY;
   bool fine = vl_obj_material(obj, "") == 0;
   if (fine) obj->materials.items[0].defined = true;
-  char *from = data;
+  char *from = size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 ? data + 3 : data;
   while (fine && vl_obj_statement(obj, &from, data + size))
     fine = read_statement(obj) &&
            !(obj->line % 1024 == 0 && vl_scene_stopped(scene, (double)(from - data) / (double)size));
   if (fine) {
     obj->line = 0;
     fine = vl_obj_add_shapes(obj);
+    if (fine && obj->marks.count) fine = vl_obj_add_marks(obj);
   }
   vl_repairs_report(obj->context, &obj->repairs, path);
-  if (fine && obj->parts.count == 0) vl_obj_warn(obj, VL_LOG_WARNING, "draws nothing");
+  if (fine && obj->parts.count + obj->marks.count == 0)
+    vl_obj_fail(obj, "it has no faces, points (p) or lines (l): there is nothing to draw");
   free_all(obj);
   vl_free(scene->context, data);
   return vl_scene_result(scene, error);

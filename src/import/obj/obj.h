@@ -70,6 +70,12 @@ typedef struct vlObjPart {
 
 enum { VL_OBJ_HEADS = 4096, VL_OBJ_LIBRARIES = 64 };
 
+/* A point, or a line between two vertices. */
+typedef struct vlObjMark {
+  uint32_t v, from; /* vertices, from 1; from = 0: a point */
+  uint32_t material, line;
+} vlObjMark;
+
 typedef struct vlObj {
   vlContext *context;
   vlScene *scene;
@@ -90,6 +96,7 @@ typedef struct vlObj {
   VL_ARRAY(vlObjPart) parts;
   VL_ARRAY(vlObjObject) objects;     /* index 0: no name */
   VL_ARRAY(vlObjMaterial) materials; /* index 0 is the default material */
+  VL_ARRAY(vlObjMark) marks;
   VL_ARRAY(vlObjCorner) polygon;
   VL_ARRAY(uint32_t) ears; /* scratch of vl_obj_triangulate */
   VL_ARRAY(const char *) libraries;
@@ -125,6 +132,9 @@ vlMtl vl_mtl_default(void);
 /* Adds the material to the scene. False after an error. */
 bool vl_obj_make_material(vlObj *obj, vlObjMaterial *material);
 bool vl_obj_add_shapes(vlObj *obj);
+/* obj_line.c: reads a statement p or l; adds balls and tubes for all of them. */
+bool vl_obj_read_marks(vlObj *obj, bool lines);
+bool vl_obj_add_marks(vlObj *obj);
 /* obj_label.c: begins an object (statement o) or a group (g). */
 bool vl_obj_open_object(vlObj *obj, bool group);
 /* The label of a part's shape. The scene owns its strings. */

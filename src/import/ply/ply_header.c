@@ -2,6 +2,7 @@
  * errors. */
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "import/ply/ply_reader.h"
 
@@ -179,6 +180,8 @@ bool vl_ply_read_header(vlPlyReader *r) {
     if (!next_line(r, &w)) return false;
     bool fine = true;
     if (w.count == 0 || strcmp(w.word[0], "comment") == 0 || strcmp(w.word[0], "obj_info") == 0) continue;
+    /* Blender 2.4x wrote "Created by Blender3D ..." without the word comment. */
+    if (w.count > 1 && strcasecmp(w.word[0], "created") == 0 && strcasecmp(w.word[1], "by") == 0) continue;
     if (strcmp(w.word[0], "end_header") == 0) break;
     if (strcmp(w.word[0], "format") == 0)
       fine = has_format = read_format(r, &w);

@@ -26,7 +26,7 @@ typedef enum vlFindingKind {
   VL_FINDING_NO_UV,      /**< a texture over uv on a mesh without uv, or vertex colours on a mesh without them */
   VL_FINDING_ALBEDO,     /**< a surface that reflects more light than it receives */
   VL_FINDING_CAMERA_INSIDE, /**< the camera is inside a closed solid */
-  VL_FINDING_DARK_LIGHT,    /**< a light of power 0 */
+  VL_FINDING_DARK_LIGHT,    /**< a light of power 0, or one that arrives at the wrong side of its portal */
   VL_FINDING_ROUGH_COAT,    /**< a rough coat that loses light between its microfacets; the message says how much */
   VL_FINDING_WRONG,         /**< reported while loading (vl_scene_diagnose): any other error in the file */
   VL_FINDING_OVERWRITTEN,   /**< reported while loading: something is given twice, and the second one is used */

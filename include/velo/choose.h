@@ -28,8 +28,8 @@ typedef struct vlTracerTrial {
 typedef struct vlTracerChoice {
   vlTracer tracer;      /**< the best tracer, for vlRenderDef.tracer */
   uint32_t light_paths; /**< for vlRenderDef.light_paths */
-  uint32_t count;       /**< number of trials; 0: there was no race, and tracer and light_paths are those of the def, or
-                           VL_TRACER_VOLPATH if the def's tracer is not among those of the race */
+  uint32_t count;       /**< number of trials; 0: there was no race. The tracer is then VL_TRACER_PATH where the def's
+                           tracer looks past something of the world, else VL_TRACER_VOLPATH */
   vlTracerTrial trials[VL_MOST_TRIALS]; /**< VL_TRACER_VOLPATH first */
 } vlTracerChoice;
 
@@ -42,6 +42,8 @@ typedef struct vlTracerChoice {
  * film, def: as for vl_render; def->spp is the number of samples of the whole image. The race costs about 3 % of the
  * work of spp samples by VL_TRACER_VOLPATH, at most as much as 2^19 paths. There is no race for images so small that
  * this does not suffice, for films with spectra, and where VL_TRACER_VOLPATH replaces the tracers with light paths.
+ * Nor is there one where def->tracer looks past media or subsurface materials of the world (VL_TRACER_TRAIT_NO_MEDIA):
+ * the competitors do not, so that their images would show another scene.
  * def->progress is called during the race, and may stop it. Errors: as vl_render. */
 VL_API vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film,
                                  const vlRenderDef *def, bool merging, vlTracerChoice *choice, vlError *error);

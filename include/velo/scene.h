@@ -128,7 +128,7 @@ VL_API vlSpectrumInput vl_spectrum_input(vlSpectrum value);
   X(WRINKLED, wrinkled)         /* float: octaves of the noise's absolute value */                  \
   X(WINDY, windy)               /* float: wind waves; octaves and roughness are fixed */            \
   X(MARBLE, marble)             /* colour: veins with a scale and a variation */                    \
-  X(DOTS, dots)                 /* b inside the dots, a outside */                                  \
+  X(DOTS, dots)                 /* b in the dots, a between them */                                 \
   X(VERTEX_COLOR, vertex_color) /* the shape's vertex colours; has an image's tint, channel, bias, cutoff */
 /** The kinds of textures: VL_TEXTURE_CONSTANT and so on, from VL_TEXTURE_KINDS. */
 typedef enum vlTextureKind {

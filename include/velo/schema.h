@@ -104,6 +104,9 @@ typedef struct vlKindFamily {
 /** Traits of samplers, filters, tracers: the name, or the alias, is one of pbrt's; the others are velo's own. */
 enum { VL_TRAIT_PBRT_NAME = 1, VL_TRAIT_PBRT_ALIAS = 2 };
 
+/** Traits of tracers. */
+enum { VL_TRACER_TRAIT_NO_MEDIA = 4 /**< looks past media and into subsurface materials as into clear glass */ };
+
 /** Traits of samplers. */
 enum { VL_SAMPLER_TRAIT_OPEN = 4 /**< can go on without end; the others lay out a fixed number of samples */ };
 

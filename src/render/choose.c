@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "render/block.h"
 #include "velo/camera.h"
+#include "velo/schema.h"
 
 enum {
   LEAST_SAMPLES = 8,
@@ -111,6 +112,14 @@ static bool can_race(const vlWorld *world, const vlCamera *camera, const vlFilmD
   for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
     if (vl_tracer_lacks(world, camera, film, rows[i].tracer)) return false;
   return world->lights.count > 0;
+}
+
+/* Whether there is something in the world that a tracer looks past: what the scene shows by this tracer, none of the
+ * race's tracers would show. */
+static bool looks_past(const vlWorld *world, vlTracer tracer) {
+  const vlKindFamily *tracers = vl_kind_family_find("tracers");
+  return (world->media.count > 0 || world->has_subsurface) && (uint32_t)tracer < tracers->kind_count &&
+         tracers->rows[tracer]->traits & VL_TRACER_TRAIT_NO_MEDIA;
 }
 
 /* ---- running ----------------------------------------------------------------------------------------------------- */
@@ -309,6 +318,10 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
                .size = size_of(world),
                .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
   uint32_t spp = def->spp;
+  if (looks_past(world, def->tracer)) {
+    choice->tracer = VL_TRACER_PATH;
+    return VL_OK;
+  }
   if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;
   vlFilmDef whole = *film;
   whole.crop[0] = whole.crop[1] = 0, whole.crop[2] = film->width, whole.crop[3] = film->height;

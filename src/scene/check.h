@@ -28,7 +28,7 @@ vlResult vl_check_make(const vlScene *scene, const vlCheckDef *def, vlCheckPart 
 void vl_check_names(vlCheck *check);  /* finds unused and replaced names; fills the arrays *_used */
 void vl_check_images(vlCheck *check); /* checks image files, albedos and the power of lights */
 void vl_check_meshes(vlCheck *check); /* finds degenerate faces, missing uvs, open and inverted solids */
-void vl_check_inside(vlCheck *check); /* finds cameras inside solids, and wrong media of nested solids */
+void vl_check_inside(vlCheck *check); /* finds cameras inside solids, wrong media of nested solids, reversed portals */
 
 /* ---- helpers ----------------------------------------------------------------------------------------------------- */
 

@@ -1,5 +1,5 @@
-/* scene/check_inside.c: scene check: whether the camera is inside a solid where it sees nothing or a wrong image, and
- * whether the media of nested solids agree. */
+/* scene/check_inside.c: scene check: whether the camera is inside a solid where it sees nothing or a wrong image,
+ * whether the media of nested solids agree, and whether the scene is on the right side of portals. */
 #include <math.h>
 #include <string.h>
 
@@ -126,24 +126,29 @@ static void check_group(vlCheck *c, uint32_t group, const Box *boxes, const doub
   vl_free(c->context, done);
 }
 
-static void check_camera(vlCheck *c, const Box *boxes) {
+/* The boxes of the groups, in their spaces; that of an empty one has low > high. Null: no memory. */
+static Box *group_boxes(vlCheck *c, const Box *boxes) {
   const vlScene *s = c->scene;
-  double eye[3], p[3];
-  if (s->defs.camera_missing) return;
-  eye_of(&s->defs.camera, eye);
-  check_group(c, 0, boxes, eye, NULL);
   Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
   if (!groups) c->no_memory = true;
-  if (c->no_memory) return;
-  for (size_t g = 0; g <= s->groups.count; g++)
+  for (size_t g = 0; groups && g <= s->groups.count; g++)
     for (int k = 0; k < 3; k++) groups[g].low[k] = INFINITY, groups[g].high[k] = -INFINITY;
-  for (size_t i = 0; i < s->shapes.count; i++) {
+  for (size_t i = 0; groups && i < s->shapes.count; i++) {
     Box *b = &groups[s->shapes.items[i].group.index];
     for (int k = 0; k < 3; k++) {
       b->low[k] = boxes[i].low[k] < b->low[k] ? boxes[i].low[k] : b->low[k];
       b->high[k] = boxes[i].high[k] > b->high[k] ? boxes[i].high[k] : b->high[k];
     }
   }
+  return groups;
+}
+
+static void check_camera(vlCheck *c, const Box *boxes, const Box *groups) {
+  const vlScene *s = c->scene;
+  double eye[3], p[3];
+  if (s->defs.camera_missing) return;
+  eye_of(&s->defs.camera, eye);
+  check_group(c, 0, boxes, eye, NULL);
   for (size_t i = 0; i < s->instances.count && !c->no_memory; i++) {
     const vlSceneInstance *instance = &s->instances.items[i];
     vlMat4 inverse;
@@ -152,7 +157,6 @@ static void check_camera(vlCheck *c, const Box *boxes) {
     if (box_holds(&groups[instance->group.index], p))
       check_group(c, instance->group.index, boxes, eye, instance->world_from_group);
   }
-  vl_free(c->context, groups);
 }
 
 /* ---- media ------------------------------------------------------------------------------------------------------- */
@@ -230,13 +234,86 @@ static void check_media(vlCheck *c, const Box *boxes) {
   vl_free(c->context, solids);
 }
 
+/* ---- portals ------------------------------------------------------------------------------------------------------
+ */
+
+/* The plane of a portal. Points at a positive height see the sky through it (vlLightDef.portal). */
+typedef struct Gate {
+  double corner[3], normal[3];
+} Gate;
+
+static Gate gate_of(const vlLightDef *l) {
+  Gate g;
+  double x[3], y[3];
+  for (int i = 0; i < 3; i++) {
+    g.corner[i] = (double)l->portal[0][i];
+    x[i] = (double)l->portal[3][i] - g.corner[i], y[i] = (double)l->portal[1][i] - g.corner[i];
+  }
+  for (int i = 0; i < 3; i++) { /* y cross x: the sky is on the other side, where x cross y points to */
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    g.normal[i] = y[j] * x[k] - y[k] * x[j];
+  }
+  double length = sqrt(g.normal[0] * g.normal[0] + g.normal[1] * g.normal[1] + g.normal[2] * g.normal[2]);
+  for (int i = 0; i < 3; i++) g.normal[i] /= length > 0 ? length : 1;
+  return g;
+}
+
+static double height_of(const Gate *g, const double p[3]) {
+  double h = 0;
+  for (int i = 0; i < 3; i++) h += g->normal[i] * (p[i] - g->corner[i]);
+  return h;
+}
+
+/* The heights of the lowest and of the highest corner of a box, placed by `pose` (null: in the world). */
+static void heights(const Gate *g, const Box *b, const double *pose, double *low, double *high) {
+  for (int k = 0; k < 8 && b->low[0] <= b->high[0]; k++) {
+    double p[3] = {k & 1 ? b->high[0] : b->low[0], k & 2 ? b->high[1] : b->low[1], k & 4 ? b->high[2] : b->low[2]};
+    if (pose) {
+      vlMat4 m = vl_mat4_load(pose);
+      double q[3] = {p[0], p[1], p[2]};
+      vl_mat4_point(&m, q, p);
+    }
+    double h = height_of(g, p);
+    *low = fmin(*low, h), *high = fmax(*high, h);
+  }
+}
+
+static void check_portals(vlCheck *c, const Box *boxes, const Box *groups) {
+  const vlScene *s = c->scene;
+  for (size_t i = 0; i < s->lights.count; i++) {
+    const vlLightDef *l = &s->lights.items[i];
+    if (!l->has_portal) continue;
+    Gate g = gate_of(l);
+    double low = INFINITY, high = -INFINITY, eye[3];
+    for (size_t k = 0; k < s->shapes.count; k++)
+      if (!s->shapes.items[k].group.index) heights(&g, &boxes[k], NULL, &low, &high);
+    for (size_t n = 0; n < s->instances.count; n++)
+      heights(&g, &groups[s->instances.items[n].group.index], s->instances.items[n].world_from_group, &low, &high);
+    if (!(low < high)) continue;
+    double hair = 1e-4 * (high - low); /* walls in the portal's plane are on neither side */
+    eye_of(&s->defs.camera, eye);
+    if (high <= hair)
+      vl_check_add(c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
+                   "this light gives no light: the whole scene is on the side of its portal that the sky is on; "
+                   "give the portal's corners in the opposite order");
+    else if (!s->defs.camera_missing && height_of(&g, eye) < -hair)
+      vl_check_add(
+          c, VL_FINDING_DARK_LIGHT, VL_SEVERITY_WARNING, l->source,
+          "the camera is on the side of this light's portal that the sky is on, where the light is not seen; if "
+          "it should be, give the portal's corners in the opposite order");
+  }
+}
+
 void vl_check_inside(vlCheck *c) {
   const vlScene *s = c->scene;
   Box *boxes = vl_alloc_array(c->context, s->shapes.count + 1, sizeof *boxes);
   if (!boxes) c->no_memory = true;
   for (size_t i = 0; i < s->shapes.count && !c->no_memory; i++)
     vl_shape_box(&s->shapes.items[i], boxes[i].low, boxes[i].high);
-  if (!c->no_memory) check_camera(c, boxes);
+  Box *groups = c->no_memory ? NULL : group_boxes(c, boxes);
+  if (!c->no_memory) check_camera(c, boxes, groups);
   if (!c->no_memory) check_media(c, boxes);
+  if (!c->no_memory) check_portals(c, boxes, groups);
+  vl_free(c->context, groups);
   vl_free(c->context, boxes);
 }

@@ -58,6 +58,19 @@ render() { "$VELO" render "$@"; }
   same default_is_the_same auto.pfm default.pfm
 }
 
+# A scene that names a tracer that looks past its media keeps it: the others would show another scene.
+sed -e 's/"volpath"/"path"/' -e '/^WorldBegin/a MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_s" [1 1 1]' \
+  -e '/^  Rotate -90/i MediumInterface "fog" ""' named.pbrt >fog.pbrt
+check past_media render fog.pbrt --tracer auto --crop 0,0,1,1 -o fog.exr -o fog.pfm
+expect_text past_media_is_told 'auto: path (no race'
+check past_media_by_name render fog.pbrt --crop 0,0,1,1 -o path.pfm
+same past_media_is_the_scenes_own fog.pfm path.pfm
+run "$VELO" image info fog.exr
+out=$(grep velo.tracer <<<"$out" | tr -s ' ')
+expect_text past_media_in_the_header 'velo.tracer path'
+check past_nothing render named.pbrt --tracer auto --spp 4 --crop 0,0,1,1 -o little.pfm
+expect_text without_race_it_is_volpath 'auto: volpath (no race'
+
 # Parts of an image, merged; a part that is continued.
 part() { "$VELO" render named.pbrt --tracer auto --crop 40,40,56,56 "$@"; }
 check whole part --film whole.film -t 2

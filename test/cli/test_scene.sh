@@ -173,6 +173,19 @@ scene dark.pbrt 'LightSource "point" "float scale" 0' 'AreaLightSource "diffuse"
 finds 1 dark_light ':4:1: warning: this light gives no light.*\[dark-light\]' dark.pbrt
 finds 1 dark_area_light ':5:1: warning: this area light' dark.pbrt
 
+# A sky behind a window at x = 1, the corners from below, once round and once the other way. The camera is at (0, 0, -9).
+sky='LightSource "infinite" "rgb L" [1 1 1] "point3 portal"'
+out_there='[1 -2 2  1 2 2  1 2 -2  1 -2 -2]' in_here='[1 -2 -2  1 2 -2  1 2 2  1 -2 2]'
+wall='Shape "trianglemesh" "point3 P" [1 -9 -9  1 9 -9  1 9 9] "integer indices" [0 1 2]'
+scene portal.pbrt "$sky $out_there" "$wall" 'Translate -2 0 0 Shape "sphere"'
+clean a_portal_of_a_room portal.pbrt
+scene reversed.pbrt "$sky $in_here" "$wall" 'Translate -2 0 0 Shape "sphere"'
+finds 1 a_reversed_portal ':4:1: warning: this light gives no light: the whole scene.*\[dark-light\]' reversed.pbrt
+scene placed_in.pbrt "$sky $in_here" 'ObjectBegin "o" Shape "sphere" ObjectEnd' 'Translate -2 0 0 ObjectInstance "o"'
+finds 1 a_reversed_portal_of_instances ':4:1: warning: this light gives no light: the whole scene' placed_in.pbrt
+scene both.pbrt "$sky $in_here" 'Shape "sphere" "float radius" 3'
+finds 1 a_portal_behind_the_camera ':4:1: warning: the camera is on the side' both.pbrt
+
 scene coat.pbrt 'Material "coateddiffuse" "float roughness" 0.4 "bool remaproughness" false' 'Shape "sphere"'
 finds 0 rough_coat ':4:1: note: the rough coat of .* loses 37 % of the light.*\[rough-coat\]' coat.pbrt
 sed 's/0.4/& "bool conserveenergy" true/' coat.pbrt >kept.pbrt

@@ -133,6 +133,22 @@ static void named_materials(void **state) {
   end_load(&l);
 }
 
+/* pbrt-v4 shows "inside" between the dots, 1 unless it is given, and "outside" in them, 0 unless it is given. */
+static void dots(void **state) {
+  (void)state;
+  Loaded l;
+  load_fine(&l, W
+            "Texture \"d\" \"float\" \"dots\"\n"
+            "Texture \"e\" \"spectrum\" \"dots\" \"rgb inside\" [1 0 0] \"rgb outside\" [0 1 0]\n"
+            "Material \"diffuse\" \"texture reflectance\" \"e\"\nShape \"sphere\" \"texture alpha\" \"d\"\n");
+  const vlTextureDef *t = l.scene->textures.items; /* a: between the dots, b: in them */
+  assert_near(t[0].float_a.value, 1, 0);
+  assert_near(t[0].float_b.value, 0, 0);
+  assert_near(t[1].spectrum_a.value.rgb[0], 1, 0);
+  assert_near(t[1].spectrum_b.value.rgb[1], 1, 0);
+  end_load(&l);
+}
+
 static void textures(void **state) {
   (void)state;
   Loaded l;
@@ -332,9 +348,10 @@ static void attributes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(attributes),      cmocka_unit_test(materials),   cmocka_unit_test(bodies),
-      cmocka_unit_test(named_materials), cmocka_unit_test(textures),    cmocka_unit_test(plain_portal),
-      cmocka_unit_test(lights),          cmocka_unit_test(area_lights), cmocka_unit_test(media)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(attributes),   cmocka_unit_test(materials),
+                                     cmocka_unit_test(bodies),       cmocka_unit_test(named_materials),
+                                     cmocka_unit_test(dots),         cmocka_unit_test(textures),
+                                     cmocka_unit_test(plain_portal), cmocka_unit_test(lights),
+                                     cmocka_unit_test(area_lights),  cmocka_unit_test(media)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

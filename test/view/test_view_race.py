@@ -144,7 +144,7 @@ def test_path_wins():
     words = check_same_image(page, "open")
     page.close()
     code, errors = view.end()
-    check("path_is_told", code == 0 and len(races(errors)) == 1 and "auto: path" in errors, errors)
+    check("path_is_told", code == 0 and len(races(errors)) == 1 and "auto: volpath" in errors, errors)
     check_film("open", words)
 
 
@@ -175,7 +175,7 @@ def test_default():
     check("no_race_is_told", last["tracer"] == "volpath" and not last["raced"], last)
     page.close()
     errors = view.end()[1]
-    check("no_race_is_told_once", errors.count("auto: path (no race") == 1, errors)
+    check("no_race_is_told_once", errors.count("auto: volpath (no race") == 1, errors)
 
 
 # ---- changes during and after the race ----

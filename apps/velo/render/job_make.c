@@ -159,11 +159,19 @@ static bool sampler_is_open(vlSamplerKind kind) {
   return (uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN;
 }
 
+/* The tracer with which --tracer auto begins: one that sees of the scene what its own tracer sees (vl_choose_tracer).
+ */
+static vlTracer before_race(vlTracer tracer) {
+  const vlKindFamily *tracers = vl_kind_family_find("tracers");
+  bool past = (uint32_t)tracer < tracers->kind_count && tracers->rows[tracer]->traits & VL_TRACER_TRAIT_NO_MEDIA;
+  return past ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
+}
+
 static void override_sampling(vlSceneDefs *defs, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_TRACER].given)
     defs->render.tracer =
-        v[RENDER_TRACER].integer == TRACER_AUTO ? VL_TRACER_VOLPATH : (vlTracer)v[RENDER_TRACER].integer;
+        v[RENDER_TRACER].integer == TRACER_AUTO ? before_race(defs->render.tracer) : (vlTracer)v[RENDER_TRACER].integer;
   if (v[RENDER_MERGE_RADIUS].given) defs->render.merge_radius = v[RENDER_MERGE_RADIUS].number;
   if (v[RENDER_LIGHT_PATHS].given) defs->render.light_paths = (uint32_t)v[RENDER_LIGHT_PATHS].integer;
   if (v[RENDER_SAMPLER].given) defs->render.sampler = (vlSamplerKind)v[RENDER_SAMPLER].integer;

@@ -130,8 +130,7 @@ int race_run(Render *render, const Arguments *arguments) {
   if (result == VL_CANCELLED)
     return report_failure(128 + signals_pending(), "interrupted before the first pass was done; nothing is written");
   if (result != VL_OK) return report_error(&error, result, job->path);
-  if (choice.count) report(job, &choice);
-  if (!choice.count && race_is_asked(arguments)) report_note("%s", race_none_line);
+  if (choice.count || race_is_asked(arguments)) report(job, &choice);
   if (!choice.count && job->race == RACE_LIGHT_PATHS) return -1;
   job->raced = choice.count > 0 || race_is_asked(arguments);
   take_all(render, &choice);

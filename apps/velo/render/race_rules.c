@@ -11,8 +11,6 @@
  * samples that is continued to 256 is that of 256. With --time, PATHS_PER_SECOND count as one second. */
 enum { MOST_SAMPLES = 64, PATHS_PER_SECOND = 200000 };
 
-const char race_none_line[] = "auto: path (no race: docs/tracers.md says when)";
-
 bool race_is_asked(const Arguments *arguments) {
   const OptionValue *tracer = &arguments->values[RENDER_TRACER];
   return tracer->given && tracer->integer == TRACER_AUTO;
@@ -56,13 +54,17 @@ void race_take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice) {
 
 static void trial_name(const vlTracerTrial *trial, char *text, size_t size) {
   bool camera = trial->tracer == VL_TRACER_VOLPATH;
-  snprintf(text, size, "%s%s", camera ? "path" : kind_name("tracers", (int)trial->tracer),
+  snprintf(text, size, "%s%s", kind_name("tracers", (int)trial->tracer),
            trial->light_paths == VL_AS_MANY_AS_PIXELS || camera ? "" : " with a quarter of the light paths");
 }
 
 void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t size) {
-  char name[80], trials[400], chosen[80] = "path";
+  char name[80], trials[400], chosen[80] = "";
   size_t n = 0;
+  if (!choice->count) {
+    snprintf(text, size, "auto: %s (no race: docs/tracers.md says when)", kind_name("tracers", (int)choice->tracer));
+    return;
+  }
   for (uint32_t i = 0; i < choice->count; i++) {
     const vlTracerTrial *trial = &choice->trials[i];
     trial_name(trial, name, sizeof name);

@@ -20,9 +20,8 @@ RaceKind race_kind(const vlSceneDefs *defs, const Arguments *arguments);
 uint32_t race_samples(const vlSceneDefs *defs);
 /* Sets the tracer and the number of light paths. */
 void race_take(vlRenderDef *def, RaceKind kind, const vlTracerChoice *choice);
-/* Writes the line "auto: bidirectional (error x rays: path 1, bidirectional 0.31, ...)". */
+/* Writes the line "auto: bidirectional (error x rays: volpath 1, bidirectional 0.31, ...)", or which tracer --tracer
+ * auto takes where there was no race. */
 void race_line(RaceKind kind, const vlTracerChoice *choice, char *text, size_t size);
-/* What --tracer auto says where there is no race. */
-extern const char race_none_line[];
 
 #endif

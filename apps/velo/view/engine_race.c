@@ -133,10 +133,7 @@ static void post_note(Engine *e, const char *line) {
 static void tell(Engine *e, RaceKind kind, const vlTracerChoice *choice) {
   char line[600];
   if (!choice->count && !race_is_asked(e->def.arguments)) return;
-  if (choice->count)
-    race_line(kind, choice, line, sizeof line);
-  else
-    snprintf(line, sizeof line, "%s", race_none_line);
+  race_line(kind, choice, line, sizeof line);
   report_note("%s", line);
   if (!is_same(e->best, e->shown)) post_note(e, line);
 }

@@ -175,17 +175,19 @@ static bool find(vlImport *import, const char *name, vlSource place, vlMediumId 
 }
 
 /* Warns when a scene with media names one of pbrt's surface integrators, which ignore media. Velo's light-tracing and
- * photon-mapping tracers do not ignore media; the message says which case applies. */
+ * photon-mapping tracers do not ignore media; the message says which case applies. It says what the file means: the
+ * command line may name another tracer. */
 static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) {
   const vlChoice *integrator = &import->integrator;
   vlTracer tracer = vl_scene_defs(import->scene)->render.tracer;
   if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
-  bool through = tracer == VL_TRACER_SPPM || tracer == VL_TRACER_LIGHT_PATH;
-  vl_import_warn(import, VL_LOG_WARNING, link->place,
-                 through ? "integrator \"%s\" of pbrt looks past participating media (here \"%s\"), velo's goes through"
-                         : "integrator \"%s\" looks past participating media (here \"%s\"), as in pbrt",
-                 vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
-                 vl_short_text(link->inside[0] ? link->inside : link->outside).text);
+  bool through = !(vl_kind_row(&vl_tracer_family, (int)tracer)->traits & VL_TRACER_TRAIT_NO_MEDIA);
+  vl_import_warn(
+      import, VL_LOG_WARNING, link->place,
+      through ? "integrator \"%s\" of pbrt looks past participating media (here \"%s\"), velo's goes through"
+              : "integrator \"%s\" looks past participating media (here \"%s\"), as in pbrt; volpath goes through",
+      vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
+      vl_short_text(link->inside[0] ? link->inside : link->outside).text);
 }
 
 bool vl_import_finish_media(vlImport *import) {

@@ -93,9 +93,10 @@ static const vlParameter checkerboard_parameters[] = {
 };
 VL_KIND_ROW(checkerboard, .name = "checkerboard", .description = "a checkerboard of two textures")
 
+/* pbrt-v4 interchanges the two: its constructor takes the texture between the dots first, and is given "inside". */
 static const vlParameter dots_parameters[] = {
-    INPUT("outside", a, "texture between the dots", 0),
-    INPUT("inside", b, "texture in the dots", 1),
+    INPUT("inside", a, "texture between the dots, as pbrt-v4 renders it", 1),
+    INPUT("outside", b, "texture in the dots", 0),
     MAPPING,
 };
 VL_KIND_ROW(dots, .name = "dots", .description = "dots in randomly chosen cells of (s, t)")

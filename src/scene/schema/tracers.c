@@ -39,7 +39,8 @@ static const char *const light_samplers[] = {"bvh", "power", "uniform", "exhaust
 static const vlParameter path_parameters[] = {DEPTH, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"),
                                               IGNORED(BOOL, "samplebsdf")};
 VL_KIND_ROW(path, .name = "path", .alias = "simplepath",
-            .description = "path tracing: paths from the camera; ignores media", .traits = VL_TRAIT_PBRT_NAME)
+            .description = "path tracing: paths from the camera; ignores media",
+            .traits = VL_TRACER_TRAIT_NO_MEDIA | VL_TRAIT_PBRT_NAME)
 
 static const vlParameter volpath_parameters[] = {DEPTH, LIGHT_SAMPLER, REGULARIZE, IGNORED(BOOL, "samplelights"),
                                                  IGNORED(BOOL, "samplebsdf")};
@@ -48,7 +49,8 @@ VL_KIND_ROW(
     .description = "volumetric path tracing: paths from the camera, also through media and subsurface materials",
     .traits = VL_TRAIT_PBRT_NAME)
 
-VL_KIND_ROW_EMPTY(raycast, .name = "raycast", .description = "colour of the surface that each camera ray hits first")
+VL_KIND_ROW_EMPTY(raycast, .name = "raycast", .description = "colour of the surface that each camera ray hits first",
+                  .traits = VL_TRACER_TRAIT_NO_MEDIA)
 
 static const vlParameter ambient_occlusion_parameters[] = {
     PARAMETER(BOOL, "cossample", render.ao_cosine, "true: cosine-weighted directions; false: uniform ones",
@@ -58,7 +60,7 @@ static const vlParameter ambient_occlusion_parameters[] = {
 };
 VL_KIND_ROW(ambient_occlusion, .name = "ambientocclusion", .alias = "ao",
             .description = "ambient occlusion: the fraction of directions that are not occluded",
-            .traits = VL_TRAIT_PBRT_NAME)
+            .traits = VL_TRACER_TRAIT_NO_MEDIA | VL_TRAIT_PBRT_NAME)
 
 static const vlParameter bidirectional_parameters[] = {TWO_WAY, IGNORED(FLOAT, "radius")};
 VL_KIND_ROW(bidirectional, .name = "bidirectional", .alias = "bdpt",
@@ -82,7 +84,7 @@ VL_KIND_ROW(light_path, .name = "lightpath",
 static const vlParameter random_walk_parameters[] = {DEPTH};
 VL_KIND_ROW(random_walk, .name = "randomwalk",
             .description = "paths without light sampling, scattered uniformly over the sphere; for comparison",
-            .traits = VL_TRAIT_PBRT_NAME)
+            .traits = VL_TRACER_TRAIT_NO_MEDIA | VL_TRAIT_PBRT_NAME)
 
 #define ROW(NAME, name) [VL_TRACER_##NAME] = &name##_row,
 VL_KIND_FAMILY(vl_tracer_family, VL_TRACER_KINDS, ROW, "tracers", "integrator", "Integrator")

@@ -49,7 +49,9 @@ typedef struct vlRenderRun {
   const vlTraceKernels *trace_kernels;
   vlTwoWayRun *two_way; /* null: a tracer without light paths */
   bool rgb_mode;
-  bool shares; /* pixels share samples */
+  bool raced;        /* one of the race (choose.c), which has only tracers that lack nothing of the scene */
+  vlResult prepared; /* of vl_render_prepare: OK or MEMORY */
+  bool shares;       /* pixels share samples */
   vlReconstruction reconstruction;
   uint32_t crop[4];
   uint32_t tiles_x, tiles_y, tile_x0, tile_y0;

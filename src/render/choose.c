@@ -13,6 +13,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "render/block.h"
+#include "render/support.h"
 #include "velo/camera.h"
 #include "velo/schema.h"
 
@@ -108,10 +109,13 @@ static bool choose_size(Race *race, const vlFilmDef *film) {
 
 /* Whether all tracers of the race render this world and film (support.c). Without lights there is nothing to race for.
  */
-static bool can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film) {
-  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
-    if (vl_tracer_lacks(world, camera, film, rows[i].tracer)) return false;
-  return world->lights.count > 0;
+static vlResult can_race(const vlWorld *world, const vlCamera *camera, const vlFilmDef *film, bool *can) {
+  uint32_t tracers = 0;
+  const char *lack;
+  for (uint32_t i = 0; i < VL_MOST_TRIALS; i++) tracers |= VL_TRACER_BIT(rows[i].tracer);
+  vlResult result = vl_tracers_lack(world, camera, film, tracers, &lack);
+  *can = result == VL_OK && world->lights.count > 0 && !lack;
+  return result;
 }
 
 /* Whether there is something in the world that a tracer looks past: what the scene shows by this tracer, none of the
@@ -318,11 +322,17 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
                .size = size_of(world),
                .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
   uint32_t spp = def->spp;
+<<<<<<< HEAD
   if (looks_past(world, def->tracer)) {
     choice->tracer = VL_TRACER_PATH;
     return VL_OK;
   }
   if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;
+=======
+  bool can;
+  if (can_race(world, camera, film, &can) != VL_OK) return vl_fail_memory(error);
+  if (!can || !choose_size(&race, film)) return VL_OK;
+>>>>>>> 53ea1cc3 (Tracers with light paths: media that do not fit are refused)
   vlFilmDef whole = *film;
   whole.crop[0] = whole.crop[1] = 0, whole.crop[2] = film->width, whole.crop[3] = film->height;
   race.film = vl_coarse_film_def(&whole, race.factor);

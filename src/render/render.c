@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "render/block.h"
+#include "render/support.h"
 #include "velo/focus.h"
 #include "velo/schema.h"
 
@@ -116,14 +117,15 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 }
 
 /* The tracer that is used: volpath in place of one that lacks something of the scene (support.c). */
-static vlTracer tracer_of(const vlRenderRun *r, const vlCamera *camera) {
+static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
   if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0) return VL_TRACER_VOLPATH;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
            "this tracer renders material \"subsurface\" as clear glass; volpath renders its scattering");
-  const char *lack = vl_tracer_lacks(world, camera, vl_film_def(r->film), tracer);
+  const char *lack = NULL;
+  if (!r->raced) r->prepared = vl_tracers_lack(world, camera, vl_film_def(r->film), VL_TRACER_BIT(tracer), &lack);
   if (!lack) return tracer;
   vl_log(world->context, VL_LOG_INFO, NULL, "tracer \"%s\" does not support %s: volpath is used",
          vl_kind_family_find("tracers")->rows[tracer]->name, lack);
@@ -307,6 +309,7 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   r->def = def;
   r->start = vl_seconds();
   r->loop = vl_loop_def(def->priority, def->cancel);
+  r->raced = pilot != NULL;
   vl_stop_init(&r->stop, def->cancel, ask_to_stop, r);
   r->sequence = vl_film_sequence(film);
   if (!r->sequence.length) {
@@ -317,6 +320,7 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vlCamera focused = *camera;
   if ((result = vl_camera_autofocus(world, &focused, error)) != VL_OK) return result;
   vl_render_prepare(r, &focused);
+  if (r->prepared != VL_OK) return vl_fail_memory(error);
   prepare_pilot(r, pilot);
   result = make_workers(r, world->context, error);
   if (r->shares) r->reconstruction = vl_reconstruction_of(vl_film_filter(film));

@@ -49,6 +49,14 @@ enum {
   VL_DIM_EXIT_UV = 6     /* 2 */
 };
 
+/* Asks volpath whether the media of the world fit together (medium/fit.hot.c). */
+typedef struct vlMediaFit {
+  const uint32_t *light_medium; /* by light: vlTraceKernels.light_media */
+  /* Output, by path: 1 where two ends of a segment name different media; and the path's radiance before it. */
+  uint8_t wrong[VL_BATCH];
+  float before[4][VL_BATCH];
+} vlMediaFit;
+
 typedef struct vlTraceDef {
   vlTracer tracer;
   const vlSampler *sampler;
@@ -61,6 +69,7 @@ typedef struct vlTraceDef {
                                     are drawn from the visible response (pbrt book 4.5.4) */
   float pixel_spread, pixel_width; /* width of a camera ray's footprint at distance t: pixel_width + pixel_spread * t */
   const vlCancel *cancel; /* once it is requested, tracers end early, and their results must not be used; may be null */
+  vlMediaFit *fit;        /* null: nothing is asked */
   const struct vlTwoWay *two_way; /* only for the two-way tracers (two_way.h); else null */
 } vlTraceDef;
 

@@ -2,9 +2,10 @@
  * and must have volpath's mean, in the whole image and in each of its quarters; or vl_tracer_lacks names the feature,
  * and then the image has volpath's bits and the race of the tracers leaves it out.
  *
- * Each tracer has SEEDS images. The standard error of a mean of an image is below POWER of it, so that a difference of
- * 8 POWER is found with a probability of more than 0.99: it is 8 / sqrt(2) = 5.7 standard errors, and 4 are allowed.
- * Seeds are fixed. */
+ * Each tracer has SEEDS images. The standard error of a mean of the whole image is below POWER of it, which is checked,
+ * except in rows that are `weak`. A difference of 11 POWER (9 %) is then at least 7.8 standard errors, of which 5 are
+ * allowed, and is found with a probability of 0.99. In most rows the standard error is a third of that, and 3 % are
+ * found. Seeds are fixed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,14 +18,17 @@
 
 #include "velo/velo.h"
 
-enum { SIZE = 12, SEEDS = 12, SAMPLES = 48, PARTS = 5, CHANNELS = 3 };
-static const double POWER = 0.006, BLUR = 0.01; /* BLUR: of merging */
+enum { SIZE = 12, SEEDS = 12, SAMPLES = 16, PARTS = 5, CHANNELS = 3 };
+static const double POWER = 0.008, BLUR = 0.01; /* BLUR: of merging */
 
 typedef struct Row {
   const char *name;
   const char *lacking; /* what vl_tracer_lacks says; null: all tracers render it */
   const char *head;    /* statements before WorldBegin; null: CAMERA */
   const char *world;
+  bool smooth; /* a smooth surface, which lightpath does not see */
+  bool unseen; /* a camera that light paths do not find: vl_tracer_lacks names it for lightpath */
+  bool weak;   /* so much noise that POWER is not reached */
 } Row;
 
 #define CAMERA "LookAt 0 -.9 1  0 1 .8  0 0 1 Camera \"perspective\" \"float fov\" 80 "
@@ -65,7 +69,7 @@ static Scene open_scene(const Row *row) {
   static char text[20000];
   int n = snprintf(text, sizeof text,
                    "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d PixelFilter \"box\" "
-                   "Integrator \"volpath\" \"integer maxdepth\" 5\n%s\nWorldBegin\n%s\n",
+                   "Integrator \"volpath\" \"integer maxdepth\" 4\n%s\nWorldBegin\n%s\n",
                    SIZE, SIZE, row->head ? row->head : CAMERA, row->world);
   assert_true(n > 0 && (size_t)n < sizeof text);
   vlError error = {0};
@@ -133,13 +137,13 @@ static Means means_of(const Scene *s, vlTracer tracer) {
 }
 
 /* Prints what differs. Returns the number of differences. */
-static int differences(const char *what, const char *how, const Means *a, const Means *b, double blur) {
+static int differences(const char *what, const char *how, const Means *a, const Means *b, double blur, bool power) {
   int found = 0;
   for (int k = 0; k < PARTS; k++)
     for (int c = 0; c < CHANNELS; c++) {
       double x = a->mean[k][c], y = b->mean[k][c], error = hypot(a->error[k][c], b->error[k][c]);
-      bool weak = k == PARTS - 1 && a->error[k][c] > POWER * x;
-      if (fabs(x - y) <= 4 * error + blur * y && !weak && y > 0) continue;
+      bool weak = power && k == PARTS - 1 && !(fmax(a->error[k][c], b->error[k][c]) < POWER * y);
+      if (fabs(x - y) <= 5 * error + blur * y && !weak) continue;
       found++;
       print_error("%s, %s, part %d, channel %d: %.5f (%.5f), volpath %.5f (%.5f): %.4f, %.1f standard errors%s\n", what,
                   how, k, c, x, a->error[k][c], y, b->error[k][c], x / y, (x - y) / error, weak ? ": no power" : "");
@@ -153,9 +157,7 @@ static const char *const names[] = {"bidirectional", "lightpath", "merging"};
 static void all_features(void **state) {
   (void)state;
   int found = 0;
-  const char *only = getenv("VELO_TEST_ROW");
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-    if (only && !strstr(rows[i].name, only)) continue;
     Scene s = open_scene(&rows[i]);
     Means path = {{{0}}, {{0}}};
     if (!rows[i].lacking) path = means_of(&s, VL_TRACER_VOLPATH);
@@ -166,9 +168,13 @@ static void all_features(void **state) {
           fail_msg("%s: lacks %s", rows[i].name, lack ? lack : "nothing");
         continue;
       }
-      if (lack) fail_msg("%s, %s: lacks %s", rows[i].name, names[k], lack);
+      bool light_only = tracers[k] == VL_TRACER_LIGHT_PATH;
+      if ((lack != NULL) != (rows[i].unseen && light_only))
+        fail_msg("%s, %s: lacks %s", rows[i].name, names[k], lack ? lack : "nothing");
+      if ((rows[i].smooth || rows[i].unseen) && light_only) continue;
       Means m = means_of(&s, tracers[k]);
-      found += differences(rows[i].name, names[k], &m, &path, tracers[k] == VL_TRACER_MERGING ? BLUR : 0);
+      found +=
+          differences(rows[i].name, names[k], &m, &path, tracers[k] == VL_TRACER_MERGING ? BLUR : 0, !rows[i].weak);
     }
     close_scene(&s);
   }

@@ -33,6 +33,7 @@ uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t me
   const vlRays *r = &k->f.rays;
   const vlCrossings *x = &k->x;
   vlVec3 d = vl_lane3(r->dx, r->dy, r->dz, i), g = vl_lane3(x->gx, x->gy, x->gz, i);
+  if (t->def->fit) vl_fit_border(t, k->f.paths->lane[k->f.path[i]], x->shape[i], g, d, medium);
   k->f.from[i] = vl_past_crossing(x->t[i], g, x->offset[i], d, k->f.from[i]);
   return vl_medium_beyond(&t->world->shapes.items[x->shape[i]], g, d, medium);
 }

@@ -58,6 +58,12 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k);
 /* Lane i passes the interface that it has met: f.from moves past it. Returns the medium that follows. */
 uint32_t vl_travel_pass(const vlTracing *t, vlTravel *k, uint32_t i, uint32_t medium);
 
+/* With vlTraceDef.fit: compare the medium of a path that arrives in direction d at a border, of the n shaded lanes, and
+ * of the `count` shadow rays that have passed media, with the medium that border or light names (fit.hot.c). */
+void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, vlVec3 d, uint32_t medium);
+void vl_fit_surfaces(const vlTracing *t, uint32_t n);
+void vl_fit_shadows(const vlTracing *t, uint32_t count);
+
 /* Traces the n rays of a through media and interfaces to their events. depth: number of the bounce; emission: add the
  * emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);

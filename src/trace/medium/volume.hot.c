@@ -417,6 +417,7 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
+  if (t->def->fit) vl_fit_surfaces(t, n);
   vl_stage_regularize(t, n);
   vl_volume_normalise_all(t, &s->b, &v->b, n);
   if (t->batch->recorder) vl_record_shaded(t, n);

@@ -126,6 +126,7 @@ void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
   vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
   t->batch->shadow_rays += count;
   vl_volume_pass_media(t, p, count, depth);
+  if (t->def->fit) vl_fit_shadows(t, count);
   if (t->batch->recorder) vl_volume_record_shadows(t, count);
   for (uint32_t k = 0; k < count; k++) {
     if (q->occluded[k]) continue;

@@ -322,17 +322,13 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
                .size = size_of(world),
                .count = merging && has_smooth(world) ? VL_MOST_TRIALS : VL_MOST_TRIALS - 1};
   uint32_t spp = def->spp;
-<<<<<<< HEAD
   if (looks_past(world, def->tracer)) {
     choice->tracer = VL_TRACER_PATH;
     return VL_OK;
   }
-  if (!can_race(world, camera, film) || !choose_size(&race, film)) return VL_OK;
-=======
   bool can;
   if (can_race(world, camera, film, &can) != VL_OK) return vl_fail_memory(error);
   if (!can || !choose_size(&race, film)) return VL_OK;
->>>>>>> 53ea1cc3 (Tracers with light paths: media that do not fit are refused)
   vlFilmDef whole = *film;
   whole.crop[0] = whole.crop[1] = 0, whole.crop[2] = film->width, whole.crop[3] = film->height;
   race.film = vl_coarse_film_def(&whole, race.factor);

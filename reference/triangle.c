@@ -51,7 +51,7 @@ void mesh_normals(const placement *where, const mesh_corner *corners, int count,
   vector sum = make_vector(0, 0, 0);
   for (int k = 0; k < count; k++) {
     vector own = from_floats(def->normals + 3 * (size_t)corners[k].vertex);
-    sum = add(sum, scale(corners[k].weight, normalize(transform_normal(&where->shape_from_world, own))));
+    sum = add(sum, scale(corners[k].weight, transform_normal(&where->shape_from_world, own)));
   }
   if (length(sum) == 0) return;
   record->shading_normal = scale(def->reverse_orientation ? -1 : 1, normalize(sum));

@@ -94,6 +94,21 @@ def a_scene_of_the_lecture_agrees_with_velo():
 
 
 @case
+def vertex_normals_are_blended_with_their_lengths():
+    """Lengths of vertex normals are weights, also those that a transform of the shape or of its instance makes."""
+    mesh = ('Shape "trianglemesh" "point3 P" [ -.8 -.5 0  .9 -.6 .1  0 .9 -.2 ] "integer indices" [ 0 1 2 ] '
+            '"normal N" [ -.6 -.6 3  .03 -.02 .1  0 .4 1 ]\n')
+    squeeze = "Rotate 168 0.37 1 -0.84\nScale 0.5 1.2 2\n"
+    light = ('WorldBegin\nLightSource "distant" "point3 from" [ 1 2 -3 ] "point3 to" [ 0 0 0 ] "rgb L" [ 3 3 3 ]\n'
+             'LightSource "distant" "point3 from" [ -3 2 1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 1 2 3 ]\n')
+    for name, text in (("plain", squeeze + mesh), ("instance", 'ObjectBegin "m"\n' + mesh + "ObjectEnd\n" + squeeze +
+                                                   'ObjectInstance "m"\n')):
+        path = scene("normals_%s.pbrt" % name, light + text)
+        z = worst_z(render_velo(path, "velo_normals.exr", 256), render(path, "normals.exr", 256))
+        assert z < 4.5, "%s: z = %.1f" % (name, z)
+
+
+@case
 def a_white_furnace_is_white():
     for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
                            ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):

@@ -17,30 +17,43 @@ static bool is_identity(const vlMat4 *m) {
   return memcmp(e.m, m->m, sizeof e.m) == 0;
 }
 
-/* Positions or normals at one end of a motion, transformed to group space. */
-typedef struct Rows {
-  const float *from;
-  bool normals;
-} Rows;
-
-static bool move_rows(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, Rows rows, float *to) {
+/* Positions at one end of a motion, transformed to group space. False: one leaves the range of floats. */
+static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *from, float *to) {
   bool fine = true;
   for (size_t i = 0; i < def->vertices; i++) {
-    double p[3] = {rows.from[3 * i], rows.from[3 * i + 1], rows.from[3 * i + 2]}, q[3], f = 1;
-    if (rows.normals) {
-      vl_mat4_normal(inverse, p, q);
-      double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-      f = l > 0 ? 1 / l : 0;
-      if (def->reverse_orientation) f = -f;
-    } else {
-      vl_mat4_point(m, p, q);
-    }
+    double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
+    vl_mat4_point(m, p, q);
     for (int k = 0; k < 3; k++) {
-      to[3 * i + k] = (float)(rows.normals ? q[k] * f : q[k]);
-      fine = fine && (rows.normals || isfinite(to[3 * i + k]));
+      to[3 * i + k] = (float)q[k];
+      fine = fine && isfinite(to[3 * i + k]);
     }
   }
   return fine;
+}
+
+/* The normal of vertex i in group space; returns its length. */
+static double move_normal(const vlMat4 *inverse, const float *from, size_t i, double q[3]) {
+  double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
+  vl_mat4_normal(inverse, p, q);
+  return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+}
+
+/* Vertex normals at one end of a motion, transformed to group space. Their lengths are weights where normals are
+ * interpolated, as in pbrt, so that a mesh looks the same whether it or its instance is scaled: one factor makes the
+ * longest 1. Lengths that differ by rounding alone become 1. */
+static void move_normals(const vlShapeDef *def, const vlMat4 *inverse, const float *from, float *to) {
+  const double nearly = 1 - 1e-4;
+  double q[3], longest = 0;
+  for (size_t i = 0; i < def->vertices; i++) {
+    double l = move_normal(inverse, from, i, q);
+    longest = l > longest ? l : longest;
+  }
+  for (size_t i = 0; i < def->vertices; i++) {
+    double l = move_normal(inverse, from, i, q);
+    double f = longest > 0 ? 1 / (l >= nearly * longest ? l : longest) : 0;
+    if (def->reverse_orientation) f = -f;
+    for (int k = 0; k < 3; k++) to[3 * i + k] = (float)(q[k] * f);
+  }
 }
 
 /* Fills the sets of rows between the two ends of a motion by interpolation. On entry the ends are in the first and the
@@ -71,13 +84,13 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
   if (s->normals && !(normals = vl_world_block(world, s->steps * n, sizeof(float)))) return vl_fail_memory(error);
   memset(positions + s->steps * n, 0, 4 * sizeof(float));
   memcpy(positions, s->positions, n * sizeof(float));
-  if (!move_rows(def, m, inverse, (Rows){def->positions_close, false}, positions + steps * n))
+  if (!move_positions(def, m, def->positions_close, positions + steps * n))
     return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
   spread(world, def, positions, s->steps);
   s->positions = positions;
   if (!normals) return VL_OK;
   memcpy(normals, s->normals, n * sizeof(float));
-  move_rows(def, m, inverse, (Rows){def->normals_close, true}, normals + steps * n);
+  move_normals(def, inverse, def->normals_close, normals + steps * n);
   spread(world, def, normals, s->steps);
   s->normals = normals;
   return VL_OK;
@@ -110,9 +123,9 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
   bool mirrored = vl_mat4_determinant3(*m) < 0; /* if m mirrors, it reverses n x t relative to the mapped n and t */
   for (size_t i = 0; mirrored && s->tangent_signs && i < n; i++) s->tangent_signs[i] = -s->tangent_signs[i];
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
-  if (!same && !move_rows(def, m, inverse, (Rows){def->positions, false}, s->positions))
+  if (!same && !move_positions(def, m, def->positions, s->positions))
     return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-  if (def->normals) move_rows(def, m, inverse, (Rows){def->normals, true}, s->normals);
+  if (def->normals) move_normals(def, inverse, def->normals, s->normals);
   for (size_t i = 0; def->tangents && i < n; i++) {
     double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
     vl_mat4_vector(m, p, q);

@@ -218,6 +218,10 @@ typedef bool vlStepFn(void *user, const vlStep *step);
 /** The number of bytes that the context and Embree hold now. *peak, which may be null, is set to the largest number so
  * far. */
 VL_API size_t vl_context_memory(const vlContext *context, size_t *peak);
+/** The most bytes of memory that this process can have: the least of the machine's memory and swap, of what its control
+ * group allows (Linux, version 2), and of the process's resource limits. *who (may be null) is set to what sets the
+ * limit, for messages: "the machine has", "the process may have". UINT64_MAX: not known. Any thread. */
+VL_API uint64_t vl_memory_limit(const char **who);
 
 /** Frees data that a function of the library returned to the caller (those that say so). Null is allowed. */
 VL_API void vl_release(vlContext *context, void *data);

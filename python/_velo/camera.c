@@ -52,7 +52,7 @@ static bool set_k(vlCameraDef *def, PyObject *value) {
   double k[9];
   if (!numbers_copy(value, "K", 9, k)) return false;
   if (k[3] != 0 || k[6] != 0 || k[7] != 0 || k[8] != 1)
-    return raise_usage("K must be [fx skew cx; 0 fy cy; 0 0 1]"), false;
+    return raise_value("K", value, "[fx skew cx; 0 fy cy; 0 0 1]"), false;
   def->fx = k[0], def->skew = k[1], def->cx = k[2], def->fy = k[4], def->cy = k[5];
   return true;
 }
@@ -60,12 +60,12 @@ static bool set_k(vlCameraDef *def, PyObject *value) {
 static bool set_coefficients(vlCameraDef *def, PyObject *value) {
   Numbers n;
   if (!numbers_read(value, 'd', "distortion_coefficients", &n)) return false;
-  bool fine = n.count <= 14;
+  bool fine = n.count <= 14 && n.dimensions <= 1;
   if (fine) {
     memcpy(def->distortion_coefficients, n.data, n.count * sizeof(double));
     def->distortion_count = (uint32_t)n.count;
   } else {
-    raise_usage("distortion_coefficients: at most 14 numbers");
+    raise_value("distortion_coefficients", value, "a list of at most 14 numbers");
   }
   numbers_release(&n);
   return fine;
@@ -75,7 +75,7 @@ static bool set_shutter(vlCameraDef *def, PyObject *value) {
   Numbers n;
   if (!numbers_read(value, 'd', "shutter", &n)) return false;
   bool fine = n.dimensions == 2 && n.shape[1] == 2 && n.shape[0] <= VL_SHUTTER_POINTS;
-  if (!fine) raise_usage("shutter: at most %d pairs of time and opening", VL_SHUTTER_POINTS);
+  if (!fine) raise_value("shutter", value, "a list of at most %d pairs of time and opening", VL_SHUTTER_POINTS);
   const double *pairs = n.data;
   for (size_t i = 0; fine && i < n.shape[0]; i++)
     def->shutter_at[i] = pairs[2 * i], def->shutter_value[i] = pairs[2 * i + 1];
@@ -86,9 +86,10 @@ static bool set_shutter(vlCameraDef *def, PyObject *value) {
 
 /* colmap: (model, parameters) */
 static bool set_colmap(vlCameraDef *def, PyObject *keep, PyObject *value) {
+  if (sequence_size(value, "colmap", 2, 2) < 0) return false;
   PyObject *model = PySequence_GetItem(value, 0), *parameters = model ? PySequence_GetItem(value, 1) : NULL;
   Numbers n = {0};
-  const char *name = parameters ? keep_text(keep, model) : NULL;
+  const char *name = parameters ? keep_text(keep, model, "colmap's model") : NULL;
   bool fine = name && numbers_read(parameters, 'd', "colmap", &n);
   vlError error = {0};
   if (fine) {
@@ -127,7 +128,7 @@ static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObj
   } else if (strcmp(name, "shape") == 0) {
     Numbers n;
     fine = numbers_read(value, 'd', name, &n);
-    if (fine && (n.count < 1 || n.count > 2)) fine = raise_usage("shape: one or two numbers") != NULL;
+    if (fine && (n.count < 1 || n.count > 2)) fine = raise_value(name, value, "one or two numbers") != NULL;
     for (size_t i = 0; fine && i < n.count; i++) def->shape[i] = ((const double *)n.data)[i];
     numbers_release(&n);
   } else if (strcmp(name, "distortion_coefficients") == 0) {
@@ -160,7 +161,7 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
   bool focal = false;
   const Target target = {(char *)def, keep, NULL, false};
   while (PyDict_Next(keywords, &position, &name, &value)) {
-    const char *text = keep_text(keep, name);
+    const char *text = keep_text(keep, name, "a keyword");
     if (!text) return false;
     if (names_focal(text) && !focal) {
 #define UNSET(field) def->field = VL_UNSET;
@@ -196,10 +197,12 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
 /* camera_new(width, height, keywords) */
 static PyObject *camera_new(PyObject *module, PyObject *arguments) {
   (void)module;
-  unsigned width, height;
-  PyObject *keywords;
-  if (!PyArg_ParseTuple(arguments, "IIO!:camera_new", &width, &height, &PyDict_Type, &keywords)) return NULL;
-  vlCameraDef def = vl_default_camera_def(width, height);
+  PyObject *width, *height, *keywords;
+  uint32_t size[2];
+  if (!PyArg_ParseTuple(arguments, "OOO!:camera_new", &width, &height, &PyDict_Type, &keywords) ||
+      !read_size(width, height, MOST_PIXELS, size))
+    return NULL;
+  vlCameraDef def = vl_default_camera_def(size[0], size[1]);
   PyObject *keep = PyList_New(0);
   PyObject *result = keep && set_keywords(&def, keep, keywords) ? camera_object(&def, keep) : NULL;
   Py_XDECREF(keep);
@@ -241,20 +244,21 @@ static PyObject *with_pixels(Camera *self, vlResult done, const vlCamera *made) 
 }
 
 static PyObject *camera_resize(Camera *self, PyObject *arguments) {
-  unsigned width, height;
-  if (!PyArg_ParseTuple(arguments, "II:_resize", &width, &height)) return NULL;
-  if (width == self->camera.width && height == self->camera.height)
+  PyObject *width, *height;
+  uint32_t size[2];
+  if (!PyArg_ParseTuple(arguments, "OO:_resize", &width, &height) || !read_size(width, height, MOST_PIXELS, size))
+    return NULL;
+  if (size[0] == self->camera.width && size[1] == self->camera.height)
     return Py_INCREF((PyObject *)self), (PyObject *)self;
   vlCamera made;
-  vlResult done = vl_camera_resize(&self->camera, width, height, &made);
+  vlResult done = vl_camera_resize(&self->camera, size[0], size[1], &made);
   return with_pixels(self, done, &made);
 }
 static PyObject *camera_coarse(Camera *self, PyObject *number) {
-  unsigned long factor = PyLong_AsUnsignedLong(number);
-  if (PyErr_Occurred()) return NULL;
-  if (factor < 1 || factor > VL_MOST_COARSE) return raise_usage("coarse: a factor from 1 to %d", VL_MOST_COARSE);
+  uint32_t factor;
+  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor)) return NULL;
   vlCamera made;
-  vlResult done = vl_camera_coarse(&self->camera, (uint32_t)factor, &made);
+  vlResult done = vl_camera_coarse(&self->camera, factor, &made);
   return with_pixels(self, done, &made);
 }
 static PyObject *camera_move(Camera *self, PyObject *matrix) {
@@ -266,8 +270,8 @@ static PyObject *camera_move(Camera *self, PyObject *matrix) {
   return with_compiled(self, done, &made, &error);
 }
 static PyObject *camera_at(Camera *self, PyObject *time) {
-  double seconds = PyFloat_AsDouble(time);
-  if (seconds == -1.0 && PyErr_Occurred()) return NULL;
+  double seconds;
+  if (!read_finite(time, "time", &seconds)) return NULL;
   vlCamera made;
   vlResult done = vl_camera_at(&self->camera, seconds, &made);
   return with_compiled(self, done, &made, NULL);
@@ -284,7 +288,7 @@ static PyObject *camera_stereo(Camera *self, PyObject *unused) {
 /* ---- projection of arrays ---------------------------------------------------------------------------------------- */
 
 static bool read_rows(PyObject *object, const char *what, size_t columns, Numbers *n) {
-  if (!numbers_read(object, 'd', what, n)) return false;
+  if (!numbers_read_any(object, 'd', what, n)) return false;
   if (n->count % columns == 0 && (n->dimensions == 0 || n->shape[n->dimensions - 1] == columns)) return true;
   numbers_release(n);
   return raise_usage("%s: an array of rows of %zu numbers", what, columns), false;
@@ -325,8 +329,11 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
 }
 
 static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
+  PyObject *point[2];
   double x, y;
-  if (!PyArg_ParseTuple(arguments, "dd:solid_angle", &x, &y)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OO:solid_angle", &point[0], &point[1]) || !read_finite(point[0], "x", &x) ||
+      !read_finite(point[1], "y", &y))
+    return NULL;
   return PyFloat_FromDouble(vl_camera_solid_angle(&self->camera, x, y));
 }
 
@@ -373,12 +380,17 @@ static PyObject *camera_warning(Camera *self, void *unused) {
   return self->warning;
 }
 static PyObject *camera_get(Camera *self, PyObject *name) {
-  PyObject *bytes = PyUnicode_AsUTF8String(name);
-  if (!bytes) return NULL;
-  const vlParameter *row = find_parameter(camera_rows.rows, camera_rows.count, PyBytes_AsString(bytes));
-  PyObject *result =
-      row ? get_parameter((const char *)&self->def, row) : raise_usage("a camera has no %s", PyBytes_AsString(bytes));
-  Py_DECREF(bytes);
+  PyObject *keep = PyList_New(0), *result = NULL;
+  const char *text = keep ? keep_text(keep, name, "name") : NULL;
+  const vlParameter *row = text ? find_parameter(camera_rows.rows, camera_rows.count, text) : NULL;
+  if (row) {
+    result = get_parameter((const char *)&self->def, row);
+  } else if (text) {
+    PyObject *names = PyList_New(0);
+    if (names && !append_names(names, camera_rows.rows, camera_rows.count)) Py_CLEAR(names);
+    raise_unknown("parameter of a camera", text, names);
+  }
+  Py_XDECREF(keep);
   return result;
 }
 
@@ -394,30 +406,39 @@ static bool file_def(vlCameraFileDef *def, PyObject *keep, PyObject *dialect, Py
     def->dialect = (vlCameraDialect)found;
   }
   if (frame != Py_None) {
-    PyObject *text = PyObject_Str(frame);
-    def->frame = text ? keep_text(keep, text) : NULL;
+    bool number = PyLong_Check(frame) && !PyBool_Check(frame);
+    int64_t index;
+    if (number && !read_whole(frame, "frame", 0, UINT32_MAX, &index)) return false;
+    PyObject *text = number ? PyObject_Str(frame) : (Py_INCREF(frame), frame);
+    def->frame = text ? keep_text(keep, text, "frame") : NULL;
     Py_XDECREF(text);
     if (!def->frame) return false;
   }
-  Py_ssize_t count = drop == Py_None ? 0 : PySequence_Size(drop);
-  if (count < 0 || count > 32) return raise_usage("drop: at most 32 names of fields"), false;
-  if (!keep_texts(keep, drop, count, drops)) return false;
+  Py_ssize_t count = drop == Py_None ? 0 : sequence_size(drop, "drop", 0, 32);
+  if (count < 0 || !keep_texts(keep, drop, count, "drop", drops)) return false;
   def->drop = drops;
   def->drop_count = (uint32_t)count;
   return true;
+}
+
+/* The image size for files without one; 0: not given. */
+static bool file_size(PyObject *width, PyObject *height, vlCameraFileDef *def) {
+  return read_count(width, "width", 0, MOST_PIXELS, &def->width) &&
+         read_count(height, "height", 0, MOST_PIXELS, &def->height);
 }
 
 /* camera_read(context, path, dialect, frame, width, height): camera, dialect, frames, name, size_assumed */
 static PyObject *camera_read(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
-  PyObject *path, *dialect, *frame, *keep = PyList_New(0), *result = NULL;
+  PyObject *path, *dialect, *frame, *width, *height, *keep = PyList_New(0), *result = NULL;
   vlCameraFileDef def = vl_default_camera_file_def();
   const char *file, *drops[32];
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOOII:camera_read", base_types[TYPE_CONTEXT], &context, &path, &dialect, &frame,
-                        &def.width, &def.height) ||
-      !file_def(&def, keep, dialect, frame, Py_None, drops) || !(file = keep_path(keep, path)))
+      !PyArg_ParseTuple(arguments, "O!OOOOO:camera_read", base_types[TYPE_CONTEXT], &context, &path, &dialect, &frame,
+                        &width, &height) ||
+      !file_size(width, height, &def) || !file_def(&def, keep, dialect, frame, Py_None, drops) ||
+      !(file = keep_path(keep, path, "path")))
     goto end;
   Call call;
   if (!call_begin(&call, context, NULL)) goto end;
@@ -431,8 +452,8 @@ static PyObject *camera_read(PyObject *module, PyObject *arguments) {
   }
   PyObject *camera = camera_object(&record.camera, NULL);
   if (camera)
-    result = Py_BuildValue("(NsIsN)", camera, vl_camera_dialect_name(record.dialect), record.frames, record.name,
-                           PyBool_FromLong(record.size_assumed));
+    result = Py_BuildValue("(NsINN)", camera, vl_camera_dialect_name(record.dialect), record.frames,
+                           text_object(record.name), PyBool_FromLong(record.size_assumed));
 end:
   Py_XDECREF(keep);
   return result;
@@ -441,16 +462,20 @@ end:
 /* _write(context, path, dialect, name, drop) */
 static PyObject *camera_write(Camera *self, PyObject *arguments) {
   Context *context;
-  PyObject *path, *dialect, *drop, *keep = PyList_New(0);
+  PyObject *path, *dialect, *drop, *text, *keep = PyList_New(0);
   const char *name, *file, *drops[32];
   vlCameraFileDef def = vl_default_camera_file_def();
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOsO:_write", base_types[TYPE_CONTEXT], &context, &path, &dialect, &name,
+      !PyArg_ParseTuple(arguments, "O!OOOO:_write", base_types[TYPE_CONTEXT], &context, &path, &dialect, &text,
                         &drop) ||
-      !file_def(&def, keep, dialect, Py_None, drop, drops) || !(file = keep_path(keep, path)))
+      !(name = keep_text(keep, text, "name")) || !file_def(&def, keep, dialect, Py_None, drop, drops) ||
+      !(file = keep_path(keep, path, "path")))
     return Py_XDECREF(keep), NULL;
   vlCameraRecord record = {.camera = self->def, .frames = 1};
-  if (strlen(name) >= sizeof record.name) return Py_DECREF(keep), raise_usage("the camera's name is too long");
+  if (strlen(name) >= sizeof record.name) {
+    Py_DECREF(keep);
+    return raise_value("name", text, "at most %zu bytes long", sizeof record.name - 1);
+  }
   memcpy(record.name, name, strlen(name));
   Call call;
   if (!call_begin(&call, context, NULL)) return Py_DECREF(keep), NULL;
@@ -466,13 +491,14 @@ static PyObject *camera_write(Camera *self, PyObject *arguments) {
 static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
-  PyObject *path, *dialect, *keep = PyList_New(0), *result = NULL;
+  PyObject *path, *dialect, *width, *height, *keep = PyList_New(0), *result = NULL;
   vlCameraFileDef def = vl_default_camera_file_def();
   const char *file, *drops[32];
   if (!keep ||
-      !PyArg_ParseTuple(arguments, "O!OOII:trajectory_read", base_types[TYPE_CONTEXT], &context, &path, &dialect,
-                        &def.width, &def.height) ||
-      !file_def(&def, keep, dialect, Py_None, Py_None, drops) || !(file = keep_path(keep, path)))
+      !PyArg_ParseTuple(arguments, "O!OOOO:trajectory_read", base_types[TYPE_CONTEXT], &context, &path, &dialect,
+                        &width, &height) ||
+      !file_size(width, height, &def) || !file_def(&def, keep, dialect, Py_None, Py_None, drops) ||
+      !(file = keep_path(keep, path, "path")))
     goto end;
   Call call;
   if (!call_begin(&call, context, NULL)) goto end;
@@ -502,8 +528,9 @@ static PyObject *trajectory_read(PyObject *module, PyObject *arguments) {
       time = PyFloat_FromDouble(frame.time);
     else
       Py_INCREF(Py_None);
-    PyObject *entry =
-        camera ? Py_BuildValue("(sNNN)", frame.name, camera, numbers_tuple(frame.world_from_camera, 16), time) : NULL;
+    PyObject *entry = camera ? Py_BuildValue("(NNNN)", text_object(frame.name), camera,
+                                             numbers_tuple(frame.world_from_camera, 16), time)
+                             : NULL;
     if (!entry || PyList_Append(result, entry) < 0) Py_CLEAR(result);
     Py_XDECREF(entry);
   }

@@ -24,7 +24,7 @@ PyObject *call_package(const char *name, const char *format, ...) {
 /* ---- exceptions -------------------------------------------------------------------------------------------------- */
 
 static PyObject *raise_error(vlResult result, const char *message, const char *file, unsigned line, unsigned column) {
-  PyObject *error = call_package("make", "(isII)", (int)result, message, line, column);
+  PyObject *error = call_package("make", "(iNII)", (int)result, text_object(message), line, column);
   if (error && file && file[0]) {
     PyObject *text = PyUnicode_DecodeFSDefault(file);
     if (!text || PyObject_SetAttrString(error, "file", text) < 0) Py_CLEAR(error);
@@ -90,28 +90,33 @@ static void log_message(void *user, vlLogLevel level, const vlError *where, cons
   PyGILState_STATE state = PyGILState_Ensure();
   PyObject *type, *value, *trace;
   PyErr_Fetch(&type, &value, &trace);
-  PyObject *answer = call_package("log", "(issII)", (int)level, message, where ? where->file : "",
-                                  where ? where->line : 0, where ? where->column : 0);
+  PyObject *answer =
+      call_package("log", "(iNNII)", (int)level, text_object(message), text_object(where ? where->file : ""),
+                   where ? where->line : 0, where ? where->column : 0);
   if (!answer) PyErr_WriteUnraisable(NULL);
   Py_XDECREF(answer);
   PyErr_Restore(type, value, trace);
   PyGILState_Release(state);
 }
 
+enum { MOST_THREADS = 1024 };
+
 static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"threads", "max_memory", "keep_inputs", NULL};
   vlContextDef def = vl_default_context_def();
-  unsigned long long memory = 0;
-  int keep_inputs = 0;
-  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|IKp:Context", names, &def.threads, &memory, &keep_inputs))
+  PyObject *threads = NULL, *most = NULL, *keep_inputs = NULL;
+  int64_t memory = 0;
+  if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|OOO:Context", names, &threads, &most, &keep_inputs))
     return NULL;
-  def.keep_inputs = keep_inputs != 0;
-  if (def.threads > 4096) return raise_usage("threads must be at most 4096");
+  if (threads && !read_count(threads, "threads", 1, MOST_THREADS, &def.threads)) return NULL;
+  if (most && !read_whole(most, "max_memory", 0, INT64_MAX, &memory)) return NULL;
+  if (keep_inputs && !read_flag(keep_inputs, "keep_inputs", &def.keep_inputs)) return NULL;
   def.max_memory = (size_t)memory;
   def.log = log_message;
   Context *self = (Context *)((allocfunc)PyType_GetSlot(type, Py_tp_alloc))(type, 0);
   if (!self) return NULL;
   self->pid = (long)getpid();
+  self->max_memory = (uint64_t)memory;
   vlResult result = vl_context_create(&def, &self->context);
   if (result == VL_OK) return (PyObject *)self;
   Py_DECREF((PyObject *)self);

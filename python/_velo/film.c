@@ -1,4 +1,5 @@
 /* _velo/film.c: films: developed images, films in files, merging. */
+#include <math.h>
 #include <string.h>
 
 #include "module.h"
@@ -38,6 +39,11 @@ static PyObject *film_new(PyObject *module, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "O!O!:film_new", base_types[TYPE_CONTEXT], &context, base_types[TYPE_SETTINGS],
                         &settings))
     return NULL;
+  const uint32_t *c = settings->defs.film.crop;
+  char what[96]; /* the film and its developed image */
+  PyOS_snprintf(what, sizeof what, "an image of %u x %u pixels", c[2] - c[0], c[3] - c[1]);
+  uint64_t image = 16 * (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
+  if (!check_memory(context, vl_film_memory(&settings->defs.film) + image, what)) return NULL;
   Call call;
   if (!call_begin(&call, context, NULL)) return NULL;
   vlFilm *film = NULL;
@@ -57,9 +63,12 @@ static vlResult spectrum(const vlFilm *film, const vlDevelopDef *def, vlImage **
 static PyObject *film_image(Film *self, PyObject *arguments) {
   static const char *const kinds[] = {"color", "errors", "spectrum", NULL};
   static Develop *const functions[] = {vl_film_develop, vl_film_errors, spectrum};
-  PyObject *name;
+  PyObject *name, *number;
   double exposure;
-  if (!PyArg_ParseTuple(arguments, "Od:_image", &name, &exposure) || !readable(self)) return NULL;
+  const Range any = {.low = -INFINITY, .high = INFINITY, .single = true};
+  if (!PyArg_ParseTuple(arguments, "OO:_image", &name, &number) || !readable(self) ||
+      !read_real(number, "exposure", &any, &exposure))
+    return NULL;
   int kind = find_choice(kinds, "kind of image", name);
   vlDevelopDef def = vl_default_develop_def();
   def.exposure = (float)exposure;
@@ -76,7 +85,7 @@ static PyObject *film_image(Film *self, PyObject *arguments) {
 
 static PyObject *film_write(Film *self, PyObject *path) {
   PyObject *keep = PyList_New(0);
-  const char *file = keep ? keep_path(keep, path) : NULL;
+  const char *file = keep ? keep_path(keep, path, "path") : NULL;
   Call call;
   bool own = !self->busy;
   if (!file || !readable(self) || !call_begin(&call, self->context, own ? &self->busy : NULL))
@@ -93,12 +102,13 @@ static PyObject *film_write(Film *self, PyObject *path) {
 static PyObject *film_read(PyObject *module, PyObject *arguments) {
   (void)module;
   Context *context;
-  PyObject *path, *keep = PyList_New(0), *result = NULL;
-  int partial;
+  PyObject *path, *flag, *keep = PyList_New(0), *result = NULL;
+  bool partial;
   Call call;
-  if (!keep || !PyArg_ParseTuple(arguments, "O!Op:film_read", base_types[TYPE_CONTEXT], &context, &path, &partial))
+  if (!keep || !PyArg_ParseTuple(arguments, "O!OO:film_read", base_types[TYPE_CONTEXT], &context, &path, &flag) ||
+      !read_flag(flag, "partial", &partial))
     goto end;
-  const char *file = keep_path(keep, path);
+  const char *file = keep_path(keep, path, "path");
   if (!file || !call_begin(&call, context, NULL)) goto end;
   vlError error = {0};
   vlFilm *film = NULL;
@@ -121,15 +131,18 @@ static PyObject *film_merge(PyObject *module, PyObject *arguments) {
   Context *context;
   PyObject *paths, *output, *keep = PyList_New(0);
   const char **texts = NULL;
-  int overwrite;
-  if (!keep || !PyArg_ParseTuple(arguments, "O!O!Op:film_merge", base_types[TYPE_CONTEXT], &context, &PyList_Type,
-                                 &paths, &output, &overwrite))
+  PyObject *flag;
+  bool overwrite;
+  if (!keep ||
+      !PyArg_ParseTuple(arguments, "O!O!OO:film_merge", base_types[TYPE_CONTEXT], &context, &PyList_Type, &paths,
+                        &output, &flag) ||
+      !read_flag(flag, "overwrite", &overwrite))
     goto fail;
   Py_ssize_t count = PyList_Size(paths);
   texts = PyMem_Malloc((size_t)(count + 1) * sizeof *texts);
-  const char *file = texts ? keep_path(keep, output) : NULL;
+  const char *file = texts ? keep_path(keep, output, "output") : NULL;
   for (Py_ssize_t i = 0; file && i < count; i++)
-    if (!(texts[i] = keep_path(keep, PyList_GetItem(paths, i)))) goto fail;
+    if (!(texts[i] = keep_path(keep, PyList_GetItem(paths, i), "an item of paths"))) goto fail;
   Call call;
   if (!file || !call_begin(&call, context, NULL)) goto fail;
   vlError error = {0};

@@ -122,7 +122,8 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   int code = find_choice(encodings, "encoding", encoding);
   if (code < 0) return NULL;
   Py_buffer view;
-  if (PyObject_GetBuffer(array, &view, PyBUF_FULL_RO) < 0) return NULL;
+  if (PyBytes_Check(array) || PyObject_GetBuffer(array, &view, PyBUF_FULL_RO) < 0)
+    return raise_value("image", array, "an array of rows x columns x channels");
   const char *format = view.format ? view.format : "B";
   if (*format == '<' || *format == '=' || *format == '@') format++;
   int type = -1;
@@ -143,13 +144,8 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   def.encoding = (vlEncoding)code;
   if (names != Py_None) {
     keep = PyList_New(0);
-    Py_ssize_t count = PySequence_Size(names);
-    if (!keep || count < 0) goto end;
-    if ((uint32_t)count != def.channels) {
-      raise_usage("%u channels need as many names, not %zd", def.channels, count);
-      goto end;
-    }
-    if (!keep_texts(keep, names, count, texts)) goto end;
+    Py_ssize_t count = sequence_size(names, "names", def.channels, def.channels);
+    if (!keep || count < 0 || !keep_texts(keep, names, count, "names", texts)) goto end;
     def.names = texts;
   }
   if (!context_check(context)) goto end;
@@ -160,7 +156,7 @@ static PyObject *image_new(PyObject *module, PyObject *arguments) {
   }
   if (convert) {
     Numbers n;
-    if (!numbers_read(array, 'f', "image", &n)) goto end;
+    if (!numbers_read_any(array, 'f', "image", &n)) goto end;
     memcpy(vl_image_pixels(image), n.data, n.count * sizeof(float));
     numbers_release(&n);
   } else if (PyBuffer_ToContiguous(vl_image_pixels(image), &view, view.len, 'C') < 0) {
@@ -184,13 +180,10 @@ static PyObject *image_read(PyObject *module, PyObject *arguments) {
   Py_ssize_t count = 0;
   if (!keep || !PyArg_ParseTuple(arguments, "O!OO:image_read", base_types[TYPE_CONTEXT], &context, &path, &names))
     goto end;
-  const char *file = keep_path(keep, path);
+  const char *file = keep_path(keep, path, "path");
   if (!file) goto end;
-  if (names != Py_None && ((count = PySequence_Size(names)) < 1 || count > 1024)) {
-    if (!PyErr_Occurred()) raise_usage("names: 1 to 1024 channels");
-    goto end;
-  }
-  if (!keep_texts(keep, names, count, texts)) goto end;
+  if (names != Py_None && (count = sequence_size(names, "channels", 1, 1024)) < 0) goto end;
+  if (!keep_texts(keep, names, count, "channels", texts)) goto end;
   Call call;
   if (!call_begin(&call, context, NULL)) goto end;
   vlError error = {0};
@@ -213,7 +206,7 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
     return Py_XDECREF(keep), NULL;
   vlWriteDef def = vl_default_write_def();
   const Target target = {(char *)&def, keep, NULL, false};
-  const char *file = keep_path(keep, path);
+  const char *file = keep_path(keep, path, "path");
   Py_ssize_t count = PyList_Size(images);
   if (!file || !set_parameters(&target, write_rows, "option of an image file", keywords)) return Py_DECREF(keep), NULL;
   if (count < 1 || count > 64) return Py_DECREF(keep), raise_usage("1 to 64 images");
@@ -240,9 +233,12 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
 
 static PyObject *image_view(Image *self, PyObject *arguments) {
   static const char *const views[] = {"standard", "khronos_neutral", "agx", "raw", NULL};
-  PyObject *name;
+  PyObject *name, *number;
   double exposure;
-  if (!PyArg_ParseTuple(arguments, "Od:_view", &name, &exposure) || !open_image(self)) return NULL;
+  const Range stops = {.low = -1000, .high = 1000};
+  if (!PyArg_ParseTuple(arguments, "OO:_view", &name, &number) || !open_image(self) ||
+      !read_real(number, "exposure", &stops, &exposure))
+    return NULL;
   int view = find_choice(views, "view", name);
   Call call;
   if (view < 0 || !call_begin(&call, self->context, NULL)) return NULL;
@@ -302,14 +298,16 @@ static PyObject *image_attributes(Image *self, void *unused) {
     int count = counts[a.type];
     PyObject *value = NULL;
     if (count == 0) {
-      value = PyUnicode_DecodeUTF8(a.string, (Py_ssize_t)strlen(a.string), "replace");
+      value = text_object(a.string);
     } else if (count == 1) {
       value = a.type == VL_ATTRIBUTE_INT ? PyLong_FromLong((long)a.numbers[0]) : PyFloat_FromDouble(a.numbers[0]);
     } else {
       value = PyTuple_New(count);
       for (int k = 0; value && k < count; k++) PyTuple_SetItem(value, k, PyFloat_FromDouble(a.numbers[k]));
     }
-    if (!value || PyDict_SetItemString(result, a.name, value) < 0) Py_CLEAR(result);
+    PyObject *name = value ? text_object(a.name) : NULL;
+    if (!name || PyDict_SetItem(result, name, value) < 0) Py_CLEAR(result);
+    Py_XDECREF(name);
     Py_XDECREF(value);
   }
   return result;
@@ -321,7 +319,7 @@ static PyObject *image_names(Image *self, void *unused) {
   uint32_t count = vl_image_channels(self->image);
   PyObject *names = PyTuple_New((Py_ssize_t)count);
   for (uint32_t i = 0; names && i < count; i++) {
-    PyObject *name = PyUnicode_FromString(vl_image_channel_name(self->image, i));
+    PyObject *name = text_object(vl_image_channel_name(self->image, i));
     if (!name || PyTuple_SetItem(names, (Py_ssize_t)i, name) < 0) Py_CLEAR(names);
   }
   return names;

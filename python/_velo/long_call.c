@@ -144,7 +144,8 @@ static void forget(Waiting *w) {
 bool long_call_begin(LongCall *call, const Context *context, PyObject *callback) {
   *call = (LongCall){.callback = callback == Py_None ? NULL : callback};
   if (!context_check(context)) return false;
-  if (call->callback && !PyCallable_Check(call->callback)) return raise_usage("progress must be callable"), false;
+  if (call->callback && !PyCallable_Check(call->callback))
+    return raise_value("progress", callback, "callable, or None"), false;
   call->context = context;
   vlResult result = vl_cancel_create(context->context, &call->cancel);
   if (result != VL_OK) raise_result(result, NULL);

@@ -72,10 +72,13 @@ static PyObject *channel_names(PyObject *module, PyObject *unused) {
 /* kinds(family): {kind: {keyword: description}} of a family of velo/schema.h. */
 static PyObject *kinds(PyObject *module, PyObject *arguments) {
   (void)module;
-  const char *name;
-  if (!PyArg_ParseTuple(arguments, "s:kinds", &name)) return NULL;
-  const vlKindFamily *family = vl_kind_family_find(name);
-  if (!family) return raise_usage("there is no family of kinds %s", name);
+  PyObject *name;
+  const char *families[32] = {0};
+  if (!PyArg_ParseTuple(arguments, "O:kinds", &name)) return NULL;
+  for (uint32_t i = 0; i < 31 && vl_kind_family(i); i++) families[i] = vl_kind_family(i)->name;
+  int found = find_choice(families, "family of kinds", name);
+  if (found < 0) return NULL;
+  const vlKindFamily *family = vl_kind_family((uint32_t)found);
   PyObject *result = PyDict_New();
   for (uint32_t k = 0; result && k < family->kind_count; k++) {
     const vlKindRow *row = family->rows[k];

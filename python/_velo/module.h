@@ -15,7 +15,8 @@
 
 typedef struct Context {
   PyObject_HEAD vlContext *context;
-  long pid; /* of the process that made it: after fork() its threads are missing */
+  uint64_t max_memory; /* bytes; 0: no limit */
+  long pid;            /* of the process that made it: after fork() its threads are missing */
 } Context;
 
 typedef struct Scene {
@@ -141,6 +142,43 @@ PyObject *call_package(const char *name, const char *format, ...);
 PyObject *raise_result(vlResult result, const vlError *error);
 /* Sets velo.UsageError; returns null. */
 PyObject *raise_usage(const char *format, ...);
+/* Sets velo.UsageError: `what` must be ..., it is ...; returns null. The format says what it must be. */
+PyObject *raise_value(const char *what, PyObject *value, const char *format, ...);
+
+/* ---- the caller's numbers and texts -------------------------------------------------------------------------------
+ */
+
+enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
+
+/* What a number may be. */
+typedef struct Range {
+  double low, high;  /* -INFINITY, INFINITY: no limit, but the number is finite */
+  bool above, below; /* low, high themselves are not in the range */
+  bool infinite;     /* may be infinite */
+  bool unset;        /* None: VL_UNSET */
+  bool single;       /* must fit a float */
+} Range;
+
+/* A str of a text that need not be UTF-8. */
+PyObject *text_object(const char *text);
+/* 1: *number is read; 0: it is not a number; -1: an exception of the caller's own. */
+int to_double(PyObject *value, double *number);
+/* Each of these is false (null, -1) with an exception that names `what`, the range and the value. */
+bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole);
+bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high, uint32_t *count);
+bool read_size(PyObject *width, PyObject *height, uint32_t most, uint32_t size[2]);
+bool read_real(PyObject *value, const char *what, const Range *range, double *number);
+bool read_finite(PyObject *value, const char *what, double *number);
+bool read_flag(PyObject *value, const char *what, bool *flag);
+/* The number of items of a sequence that is not a text. */
+Py_ssize_t sequence_size(PyObject *value, const char *what, Py_ssize_t low, Py_ssize_t high);
+/* UTF-8 text of a str, kept alive by the list. */
+const char *keep_text(PyObject *keep, PyObject *value, const char *what);
+/* keep_text for the first `count` items of a sequence. */
+bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char *what, const char **texts);
+const char *keep_path(PyObject *keep, PyObject *value, const char *what);
+/* Whether this many bytes more than the context holds now may be taken; `what` is what needs them. */
+bool check_memory(const Context *context, uint64_t bytes, const char *what);
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
@@ -153,11 +191,14 @@ typedef struct Numbers {
   int dimensions; /* at most 4 */
   size_t shape[4];
 } Numbers;
-/* type: 'd', 'f' or 'I'. False with an exception that names `what`. */
+/* type: 'd', 'f' or 'I'. All must be finite. False with an exception that names `what`. */
 bool numbers_read(PyObject *object, char type, const char *what, Numbers *numbers);
+/* The same for arrays in which infinities and NaN have a meaning. */
+bool numbers_read_any(PyObject *object, char type, const char *what, Numbers *numbers);
 void numbers_release(Numbers *numbers);
-/* Exactly `count` doubles. */
+/* Exactly `count` doubles; floats. */
 bool numbers_copy(PyObject *object, const char *what, size_t count, double *result);
+bool floats_copy(PyObject *object, const char *what, size_t count, float *result);
 /* A bytearray with `size` bytes; *data points at them. */
 PyObject *make_bytes(size_t size, void **data);
 
@@ -178,11 +219,6 @@ bool raise_unknown(const char *thing, const char *name, PyObject *names);
 bool append_names(PyObject *list, const vlParameter *rows, size_t count);
 /* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an exception. */
 int find_choice(const char *const *choices, const char *what, PyObject *value);
-/* UTF-8 text of a str, kept alive by the list; null with an exception. */
-const char *keep_text(PyObject *keep, PyObject *value);
-/* keep_text for the first `count` items of a sequence. */
-bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char **texts);
-const char *keep_path(PyObject *keep, PyObject *value);
 bool keep_object(PyObject *keep, PyObject *object); /* appends, without stealing */
 bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *spectrum, const char *what);
 
@@ -195,8 +231,8 @@ extern const Rows scene_rows, load_rows, complete_rows, camera_rows, channels_ro
 /* Sets each item of a dict. Unknown names are UsageErrors. */
 bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject *keywords);
 
-/* Kind `name` of a family; -1 with an exception. */
-int find_kind(const vlKindFamily *family, PyObject *name);
+/* Kind `name` of a family; -1 with an exception. thing: what messages call it. */
+int find_kind(const vlKindFamily *family, const char *thing, PyObject *name);
 
 /* ---- functions of the files -------------------------------------------------------------------------------------- */
 

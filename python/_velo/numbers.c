@@ -1,4 +1,5 @@
 /* _velo/numbers.c: arrays of numbers from buffers and from nested sequences. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,7 +18,7 @@ static bool store(double value, char type, const char *what, char *result) {
     memcpy(result, &single, sizeof single);
   } else {
     if (!(value >= 0 && value <= 4294967295.0) || value != (double)(uint32_t)value)
-      return raise_usage("%s: %g is not an index", what, value), false;
+      return raise_usage("%s: %.15g is not an index: a whole number from 0 to 4294967295", what, value), false;
     uint32_t whole = (uint32_t)value;
     memcpy(result, &whole, sizeof whole);
   }
@@ -101,6 +102,8 @@ static bool from_buffer(PyObject *object, char type, const char *what, Numbers *
   return fine;
 }
 
+enum { MOST_LISTED = 1 << 28 }; /* numbers of nested sequences; more are given as an array */
+
 typedef struct Growing {
   char *data;
   size_t count, room;
@@ -108,12 +111,15 @@ typedef struct Growing {
 
 static bool flatten(PyObject *object, char type, const char *what, int depth, Numbers *n, Growing *g) {
   size_t size = item_size(type);
-  if (depth > 0 && (PyFloat_Check(object) || PyLong_Check(object) || PyNumber_Check(object)) &&
-      !PySequence_Check(object)) {
-    double value = PyFloat_AsDouble(object);
-    if (value == -1.0 && PyErr_Occurred()) return false;
+  if (depth > 0 && PyNumber_Check(object) && !PySequence_Check(object)) {
+    double value;
+    int read = to_double(object, &value);
+    if (read < 0) return false;
+    if (!read) return raise_value(what, object, "numbers"), false;
     if (depth != n->dimensions && g->count) return raise_usage("%s: its rows differ in length", what), false;
     n->dimensions = depth;
+    if (g->count == MOST_LISTED)
+      return raise_usage("%s: more than %d numbers: give an array", what, MOST_LISTED), false;
     if (g->count == g->room) {
       size_t room = g->room ? 2 * g->room : 64;
       char *more = realloc(g->data, room * size);
@@ -123,8 +129,8 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
     return store(value, type, what, g->data + size * g->count++);
   }
   if (depth >= 4 || !PySequence_Check(object) || PyUnicode_Check(object))
-    return raise_usage("%s must be numbers: an array or nested lists", what), false;
-  Py_ssize_t length = PySequence_Size(object);
+    return raise_value(what, object, "numbers: an array or nested lists"), false;
+  Py_ssize_t length = sequence_size(object, what, 0, MOST_LISTED);
   if (length < 0) return false;
   if (n->shape[depth] == 0) n->shape[depth] = (size_t)length;
   if (n->shape[depth] != (size_t)length) return raise_usage("%s: its rows differ in length", what), false;
@@ -137,8 +143,9 @@ static bool flatten(PyObject *object, char type, const char *what, int depth, Nu
   return true;
 }
 
-bool numbers_read(PyObject *object, char type, const char *what, Numbers *n) {
+bool numbers_read_any(PyObject *object, char type, const char *what, Numbers *n) {
   *n = (Numbers){0};
+  if (PyBytes_Check(object)) return raise_value(what, object, "numbers: an array or nested lists"), false;
   if (PyObject_CheckBuffer(object)) {
     if (from_buffer(object, type, what, n)) return true;
     numbers_release(n);
@@ -153,6 +160,27 @@ bool numbers_read(PyObject *object, char type, const char *what, Numbers *n) {
   return fine;
 }
 
+/* The index of the first number that is not finite; count: there is none. */
+static size_t first_not_finite(const Numbers *n, char type) {
+  const float *singles = n->data;
+  const double *doubles = n->data;
+  size_t i = 0;
+  while (i < n->count && (type == 'f' ? isfinite(singles[i]) : isfinite(doubles[i]))) i++;
+  return i;
+}
+
+bool numbers_read(PyObject *object, char type, const char *what, Numbers *n) {
+  if (!numbers_read_any(object, type, what, n)) return false;
+  if (type == 'I') return true;
+  size_t i = first_not_finite(n, type);
+  if (i == n->count) return true;
+  double value = type == 'f' ? (double)((const float *)n->data)[i] : ((const double *)n->data)[i];
+  raise_usage("%s: item %zu of %zu is %g%s; all must be finite numbers", what, i, n->count, value,
+              type == 'f' ? " as a 32-bit float" : "");
+  numbers_release(n);
+  return false;
+}
+
 void numbers_release(Numbers *n) {
   if (n->view.obj) PyBuffer_Release(&n->view);
   n->view.obj = NULL;
@@ -160,16 +188,24 @@ void numbers_release(Numbers *n) {
   n->owned = NULL;
 }
 
-bool numbers_copy(PyObject *object, const char *what, size_t count, double *result) {
+static bool copy(PyObject *object, char type, const char *what, size_t count, void *result) {
   Numbers n;
-  if (!numbers_read(object, 'd', what, &n)) return false;
+  if (!numbers_read(object, type, what, &n)) return false;
   bool fine = n.count == count;
   if (fine)
-    memcpy(result, n.data, count * sizeof *result);
+    memcpy(result, n.data, count * item_size(type));
   else
     raise_usage("%s must have %zu numbers, it has %zu", what, count, n.count);
   numbers_release(&n);
   return fine;
+}
+
+bool numbers_copy(PyObject *object, const char *what, size_t count, double *result) {
+  return copy(object, 'd', what, count, result);
+}
+
+bool floats_copy(PyObject *object, const char *what, size_t count, float *result) {
+  return copy(object, 'f', what, count, result);
 }
 
 PyObject *make_bytes(size_t size, void **data) {

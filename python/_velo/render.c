@@ -38,10 +38,13 @@ static PyObject *scene_settings(PyObject *module, PyObject *object) {
   return (PyObject *)self;
 }
 
+enum { MOST_SENSORS = 63 };
+
 static PyObject *settings_set(Settings *self, PyObject *arguments) {
   const char *name;
-  PyObject *value;
-  if (!PyArg_ParseTuple(arguments, "sO:set", &name, &value)) return NULL;
+  PyObject *text, *value;
+  if (!PyArg_ParseTuple(arguments, "OO:set", &text, &value)) return NULL;
+  if (!(name = keep_text(self->keep, text, "a keyword"))) return NULL;
   const vlParameter *row = settings_row(name);
   if (!row) {
     PyObject *names = PyList_New(0);
@@ -49,17 +52,23 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
     return raise_unknown("keyword of render", name, names), NULL;
   }
   if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.tracer") == 0) {
-    int kind = find_kind(vl_kind_family_find("tracers"), value);
+    int kind = find_kind(vl_kind_family_find("tracers"), "tracer", value);
     if (kind < 0) return NULL;
     self->defs.render.tracer = (vlTracer)kind;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.sampler") == 0) {
-    int kind = find_kind(vl_kind_family_find("samplers"), value);
+    int kind = find_kind(vl_kind_family_find("samplers"), "sampler", value);
     if (kind < 0) return NULL;
     self->defs.render.sampler = (vlSamplerKind)kind;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "film.filter.kind") == 0) {
-    int kind = find_kind(vl_kind_family_find("filters"), value);
+    int kind = find_kind(vl_kind_family_find("filters"), "filter", value);
     if (kind < 0) return NULL;
     self->defs.film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
+  } else if (strcmp(row->member, "film.sensor") == 0 && value != Py_None) {
+    const char *names[MOST_SENSORS + 1] = {0};
+    for (uint32_t i = 0; i < MOST_SENSORS && vl_sensor_name(i); i++) names[i] = vl_sensor_name(i);
+    int sensor = find_choice(names, "sensor", value);
+    if (sensor < 0) return NULL;
+    self->defs.film.sensor = names[sensor];
   } else {
     const Target target = {(char *)&self->defs, self->keep, NULL, false};
     if (!set_parameter(&target, row, value)) return NULL;
@@ -68,40 +77,47 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
 }
 
 static PyObject *settings_get(Settings *self, PyObject *name) {
-  PyObject *bytes = PyUnicode_AsUTF8String(name);
-  if (!bytes) return NULL;
-  const vlParameter *row = settings_row(PyBytes_AsString(bytes));
-  PyObject *result =
-      row ? get_parameter((const char *)&self->defs, row) : raise_usage("no setting %s", PyBytes_AsString(bytes));
-  Py_DECREF(bytes);
+  PyObject *keep = PyList_New(0), *result = NULL;
+  const char *text = keep ? keep_text(keep, name, "name") : NULL;
+  const vlParameter *row = text ? settings_row(text) : NULL;
+  if (text) result = row ? get_parameter((const char *)&self->defs, row) : raise_usage("no setting %s", text);
+  Py_XDECREF(keep);
   return result;
 }
 
+enum { MOST_FILM = 65536 }; /* pixels of a side */
+
 static PyObject *settings_size(Settings *self, PyObject *arguments) {
-  unsigned width, height;
-  if (!PyArg_ParseTuple(arguments, "II:set_size", &width, &height)) return NULL;
-  if (width < 1 || height < 1 || width > 1u << 24 || height > 1u << 24)
-    return raise_usage("resolution: 1 to 2^24 pixels");
-  self->defs.film.width = width, self->defs.film.height = height;
-  self->defs.film.crop[0] = self->defs.film.crop[1] = 0;
-  self->defs.film.crop[2] = width, self->defs.film.crop[3] = height;
+  PyObject *width, *height;
+  uint32_t size[2];
+  if (!PyArg_ParseTuple(arguments, "OO:set_size", &width, &height)) return NULL;
+  if (!read_count(width, "resolution's width", 1, MOST_FILM, &size[0]) ||
+      !read_count(height, "resolution's height", 1, MOST_FILM, &size[1]))
+    return NULL;
+  vlFilmDef *film = &self->defs.film;
+  film->width = size[0], film->height = size[1];
+  film->crop[0] = film->crop[1] = 0;
+  film->crop[2] = size[0], film->crop[3] = size[1];
   Py_RETURN_NONE;
 }
 
 static PyObject *settings_crop(Settings *self, PyObject *arguments) {
-  uint32_t *c = self->defs.film.crop;
-  if (!PyArg_ParseTuple(arguments, "IIII:set_crop", &c[0], &c[1], &c[2], &c[3])) return NULL;
-  if (c[0] >= c[2] || c[1] >= c[3] || c[2] > self->defs.film.width || c[3] > self->defs.film.height)
-    return raise_usage("crop: x0, y0, x1, y1 must be inside the image");
+  const uint32_t width = self->defs.film.width, height = self->defs.film.height;
+  PyObject *edges[4];
+  uint32_t c[4];
+  if (!PyArg_ParseTuple(arguments, "OOOO:set_crop", &edges[0], &edges[1], &edges[2], &edges[3])) return NULL;
+  for (int i = 0; i < 4; i++)
+    if (!read_count(edges[i], "a number of crop", 0, i & 1 ? height : width, &c[i])) return NULL;
+  if (c[0] >= c[2] || c[1] >= c[3]) return raise_value("crop", arguments, "x0, y0, x1, y1 with x0 < x1 and y0 < y1");
+  memcpy(self->defs.film.crop, c, sizeof c);
   Py_RETURN_NONE;
 }
 
 /* set_coarse(factor): the film of 1/factor of the size. */
 static PyObject *settings_coarse(Settings *self, PyObject *number) {
-  unsigned long factor = PyLong_AsUnsignedLong(number);
-  if (PyErr_Occurred()) return NULL;
-  if (factor < 1 || factor > VL_MOST_COARSE) return raise_usage("coarse: a factor from 1 to %d", VL_MOST_COARSE);
-  self->defs.film = vl_coarse_film_def(&self->defs.film, (uint32_t)factor);
+  uint32_t factor;
+  if (!read_count(number, "coarse's factor", 1, VL_MOST_COARSE, &factor)) return NULL;
+  self->defs.film = vl_coarse_film_def(&self->defs.film, factor);
   Py_RETURN_NONE;
 }
 static PyObject *settings_get_size(Settings *self, void *unused) {
@@ -179,6 +195,8 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
                         base_types[TYPE_FILM], &film, base_types[TYPE_SETTINGS], &settings, &callback))
     return NULL;
   if (!world->world || !film->film) return raise_usage(world->world ? "the film is closed" : "the world is closed");
+  if (!check_memory(world->context, vl_render_memory(world->world, &film->def, &settings->defs.render), "the render"))
+    return NULL;
   LongCall call;
   if (!long_call_begin(&call, world->context, callback)) return NULL;
   call.film = film;
@@ -234,9 +252,11 @@ static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   World *world;
   Camera *camera;
   Settings *settings;
-  unsigned spp;
-  if (!PyArg_ParseTuple(arguments, "O!O!O!I:choose_tracer", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
-                        &camera, base_types[TYPE_SETTINGS], &settings, &spp))
+  PyObject *number;
+  uint32_t spp;
+  if (!PyArg_ParseTuple(arguments, "O!O!O!O:choose_tracer", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA],
+                        &camera, base_types[TYPE_SETTINGS], &settings, &number) ||
+      !read_count(number, "spp", 1, UINT32_MAX, &spp))
     return NULL;
   if (!world->world) return raise_usage("the world is closed");
   LongCall call;
@@ -269,6 +289,14 @@ static vlResult run_channels(void *user) {
   return vl_render_channels(t->world, t->camera, &t->def, &t->floats, &t->ids, &t->error);
 }
 
+/* A camera of the flow channels, or None. */
+static bool other_camera(PyObject *object, const char *what, const vlCamera **camera) {
+  if (object == Py_None) return true;
+  if (!is_object(object, TYPE_CAMERA)) return raise_value(what, object, "a velo.Camera, or None"), false;
+  *camera = &((Camera *)object)->camera;
+  return true;
+}
+
 /* channels(world, camera, film or None, settings, [names], keywords, forward or None, backward or None): (image of
  * floats or None, image of ids or None). */
 static PyObject *channels(PyObject *module, PyObject *arguments) {
@@ -299,12 +327,15 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
     def->channels |= 1u << channel;
   }
   if (film != Py_None) {
-    if (!is_object(film, TYPE_FILM) || !((Film *)film)->film) return raise_usage("expected a Film");
+    if (!is_object(film, TYPE_FILM) || !((Film *)film)->film)
+      return raise_value("film", film, "a velo.Film that is not closed");
     def->film = ((Film *)film)->film;
     def->samples = vl_film_spp(def->film);
   }
-  if (forward != Py_None && is_object(forward, TYPE_CAMERA)) def->forward = &((Camera *)forward)->camera;
-  if (backward != Py_None && is_object(backward, TYPE_CAMERA)) def->backward = &((Camera *)backward)->camera;
+  if (!other_camera(forward, "forward", &def->forward) || !other_camera(backward, "backward", &def->backward))
+    return NULL;
+  const uint64_t width = def->crop[2] - def->crop[0], height = def->crop[3] - def->crop[1];
+  if (!check_memory(world->context, 16 * width * height * (uint64_t)PyList_Size(names), "ground truth")) return NULL;
   const Target target = {(char *)def, settings->keep, NULL, false};
   if (!set_parameters(&target, channels_rows, "keyword of channels", keywords)) return NULL;
   LongCall call;
@@ -389,6 +420,8 @@ static PyObject *boxes(PyObject *module, PyObject *arguments) {
               .objects = list,
               .instances = list + objects};
   memcpy(b.def.crop, settings->defs.film.crop, sizeof b.def.crop);
+  const uint64_t pixels = (uint64_t)(b.def.crop[2] - b.def.crop[0]) * (b.def.crop[3] - b.def.crop[1]);
+  if (!check_memory(world->context, 8 * pixels, "boxes")) return PyMem_Free(list), NULL;
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None)) return PyMem_Free(list), NULL;
   b.def.cancel = call.cancel;
@@ -410,9 +443,11 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
   (void)module;
   World *world;
   Camera *camera;
+  PyObject *point[2];
   double x, y, distance = 0;
-  if (!PyArg_ParseTuple(arguments, "O!O!dd:autofocus", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
-                        &x, &y))
+  if (!PyArg_ParseTuple(arguments, "O!O!OO:autofocus", base_types[TYPE_WORLD], &world, base_types[TYPE_CAMERA], &camera,
+                        &point[0], &point[1]) ||
+      !read_finite(point[0], "x", &x) || !read_finite(point[1], "y", &y))
     return NULL;
   if (!world->world) return raise_usage("the world is closed");
   Call call;

@@ -1,4 +1,6 @@
-/* _velo/rows.c: rows of the defs that velo/schema.h has none for. Their names are the members' names. */
+/* _velo/rows.c: rows of the defs that velo/schema.h has none for. Their names are the members' names; their ranges are
+ * those of the program's options. */
+#include <math.h>
 #include <stddef.h>
 
 #include "module.h"
@@ -8,6 +10,10 @@
 #define CHOICE(Def, path, list) ROW(CHOICE, Def, path, .choices = list)
 #define ROWS(array) \
   { array, sizeof(array) / sizeof *(array) }
+#define FROM(least) .low = (least), .high = INFINITY
+#define WITHIN(least, most) .low = (least), .high = (most)
+#define ABOVE .flags = VL_PARAMETER_ABOVE_LOW
+#define UNSET .flags = VL_PARAMETER_UNSET
 #define KIND(NAME, name) #name,
 
 static const char *const tracers[] = {VL_TRACER_KINDS(KIND) NULL};
@@ -28,45 +34,47 @@ static const char *const stereo_modes[] = {"none", "parallel", "off_axis", "toe_
 static const char *const eyes[] = {"both", "left", "right", NULL};
 static const char *const readouts[] = {"down", "up", "right", "left", NULL};
 
-#define SCENE(TYPE, path) ROW(TYPE, vlSceneDefs, path)
+enum { MOST_SAMPLES = 1 << 24 };
+
+#define SCENE(TYPE, ...) ROW(TYPE, vlSceneDefs, __VA_ARGS__)
 static const vlParameter scene_array[] = {
     CHOICE(vlSceneDefs, render.tracer, tracers),
     CHOICE(vlSceneDefs, render.sampler, samplers),
-    SCENE(COUNT, render.spp),
+    SCENE(COUNT, render.spp, WITHIN(1, MOST_SAMPLES)),
     SCENE(COUNT, render.seed),
-    SCENE(COUNT, render.sequence),
-    SCENE(COUNT, render.first_sample),
-    SCENE(COUNT, render.max_depth),
-    SCENE(FLOAT, render.ao_distance),
+    SCENE(COUNT, render.sequence, WITHIN(0, MOST_SAMPLES)),
+    SCENE(COUNT, render.first_sample, WITHIN(0, MOST_SAMPLES)),
+    SCENE(COUNT, render.max_depth, WITHIN(0, 4096)),
+    SCENE(FLOAT, render.ao_distance, FROM(0), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_INFINITE),
     SCENE(BOOL, render.ao_cosine),
     SCENE(BOOL, render.centred),
     SCENE(BOOL, render.same_wavelengths),
     SCENE(BOOL, render.sharp_textures),
     SCENE(BOOL, render.share_samples),
     SCENE(BOOL, render.transparent),
-    SCENE(DOUBLE, render.merge_radius),
+    SCENE(DOUBLE, render.merge_radius, WITHIN(1e-30, 1e30), UNSET),
     SCENE(COUNT, render.light_paths),
-    SCENE(DOUBLE, render.time_limit),
-    SCENE(DOUBLE, render.noise),
+    SCENE(DOUBLE, render.time_limit, FROM(0)),
+    SCENE(DOUBLE, render.noise, WITHIN(0, 0.5)),
     CHOICE(vlSceneDefs, render.noise_view, views),
-    SCENE(FLOAT, render.noise_exposure),
-    SCENE(FLOAT, render.noise_scale),
-    SCENE(COUNT, render.priority),
+    SCENE(FLOAT, render.noise_exposure, WITHIN(-100, 100)),
+    SCENE(FLOAT, render.noise_scale, FROM(0), ABOVE),
+    SCENE(COUNT, render.priority, WITHIN(0, 1000000)),
     ROW(CHOICE, vlSceneDefs, film.filter.kind, .name = "filter", .choices = filters),
-    ROW(FLOAT, vlSceneDefs, film.filter.radius_x, .name = "filter_radius_x"),
-    ROW(FLOAT, vlSceneDefs, film.filter.radius_y, .name = "filter_radius_y"),
-    ROW(FLOAT, vlSceneDefs, film.filter.sigma, .name = "filter_sigma"),
-    ROW(FLOAT, vlSceneDefs, film.filter.b, .name = "filter_b"),
-    ROW(FLOAT, vlSceneDefs, film.filter.c, .name = "filter_c"),
-    ROW(FLOAT, vlSceneDefs, film.filter.tau, .name = "filter_tau"),
+    ROW(FLOAT, vlSceneDefs, film.filter.radius_x, .name = "filter_radius_x", WITHIN(0, 64), ABOVE),
+    ROW(FLOAT, vlSceneDefs, film.filter.radius_y, .name = "filter_radius_y", WITHIN(0, 64), ABOVE),
+    ROW(FLOAT, vlSceneDefs, film.filter.sigma, .name = "filter_sigma", WITHIN(0, 1e6), ABOVE),
+    ROW(FLOAT, vlSceneDefs, film.filter.b, .name = "filter_b", WITHIN(-10, 10)),
+    ROW(FLOAT, vlSceneDefs, film.filter.c, .name = "filter_c", WITHIN(-10, 10)),
+    ROW(FLOAT, vlSceneDefs, film.filter.tau, .name = "filter_tau", WITHIN(0, 1e6), ABOVE),
     CHOICE(vlSceneDefs, film.space, spaces),
-    SCENE(DOUBLE, film.white_balance),
+    SCENE(DOUBLE, film.white_balance, WITHIN(0, 100000)),
     SCENE(STRING, film.sensor),
-    SCENE(FLOAT, film.max_component),
+    SCENE(FLOAT, film.max_component, FROM(0), .flags = VL_PARAMETER_INFINITE),
     SCENE(BOOL, film.errors),
-    SCENE(COUNT, film.buckets),
-    SCENE(DOUBLE, film.lambda_min),
-    SCENE(DOUBLE, film.lambda_max),
+    SCENE(COUNT, film.buckets, WITHIN(0, 1000)),
+    SCENE(DOUBLE, film.lambda_min, WITHIN(360, 830)),
+    SCENE(DOUBLE, film.lambda_max, WITHIN(360, 830)),
     CHOICE(vlSceneDefs, build.color, colors),
     CHOICE(vlSceneDefs, build.light_sampler, light_samplers),
     SCENE(BOOL, build.imitate_pbrt),
@@ -76,22 +84,28 @@ static const vlParameter scene_array[] = {
 };
 const Rows scene_rows = ROWS(scene_array);
 
-#define LOAD(TYPE, path) ROW(TYPE, vlLoadDef, path)
+#define LOAD(TYPE, ...) ROW(TYPE, vlLoadDef, __VA_ARGS__)
 static const vlParameter load_array[] = {
-    LOAD(BOOL, permissive),  LOAD(BOOL, strict),       LOAD(STRING, search_path),
-    LOAD(DOUBLE, time),      LOAD(DOUBLE, time_close), LOAD(STRING, scene),
-    LOAD(STRING, animation), LOAD(STRING, variant),    LOAD(STRING, camera),
+    LOAD(BOOL, permissive),
+    LOAD(BOOL, strict),
+    LOAD(STRING, search_path),
+    LOAD(DOUBLE, time, WITHIN(-1e6, 1e6), UNSET),
+    LOAD(DOUBLE, time_close, WITHIN(-1e6, 1e6), UNSET),
+    LOAD(STRING, scene),
+    LOAD(STRING, animation),
+    LOAD(STRING, variant),
+    LOAD(STRING, camera),
 };
 const Rows load_rows = ROWS(load_array);
 
-#define COMPLETE(TYPE, path) ROW(TYPE, vlCompleteDef, path)
+#define COMPLETE(TYPE, ...) ROW(TYPE, vlCompleteDef, __VA_ARGS__)
 static const vlParameter complete_array[] = {
-    COMPLETE(COUNT, width),
-    COMPLETE(COUNT, height),
+    COMPLETE(COUNT, width, WITHIN(0, 65536)),
+    COMPLETE(COUNT, height, WITHIN(0, 65536)),
     CHOICE(vlCompleteDef, environment, environments),
     COMPLETE(FILE, path),
-    COMPLETE(DOUBLE, rotation),
-    COMPLETE(FLOAT, strength),
+    COMPLETE(DOUBLE, rotation, WITHIN(-1e6, 1e6)),
+    COMPLETE(FLOAT, strength, WITHIN(0, 1e6)),
     COMPLETE(DOUBLE3, up),
     COMPLETE(DOUBLE3, front),
     COMPLETE(BOOL, ground),
@@ -102,37 +116,37 @@ static const vlParameter complete_array[] = {
 };
 const Rows complete_rows = ROWS(complete_array);
 
-#define CAMERA(TYPE, path) ROW(TYPE, vlCameraDef, path)
+#define CAMERA(TYPE, ...) ROW(TYPE, vlCameraDef, __VA_ARGS__)
 static const vlParameter camera_array[] = {
     CHOICE(vlCameraDef, projection, projections),
-    CAMERA(COUNT, width),
-    CAMERA(COUNT, height),
-    CAMERA(DOUBLE, fov),
+    CAMERA(COUNT, width, WITHIN(1, MOST_PIXELS)),
+    CAMERA(COUNT, height, WITHIN(1, MOST_PIXELS)),
+    CAMERA(DOUBLE, fov, UNSET),
     CHOICE(vlCameraDef, fov_axis, axes),
-    CAMERA(DOUBLE, view_distance),
-    CAMERA(DOUBLE, zoom),
-    CAMERA(DOUBLE, pixel_size),
-    CAMERA(DOUBLE, focal_mm),
-    CAMERA(DOUBLE, sensor_width_mm),
-    CAMERA(DOUBLE, fx),
-    CAMERA(DOUBLE, fy),
-    CAMERA(DOUBLE, skew),
-    CAMERA(DOUBLE, cx),
-    CAMERA(DOUBLE, cy),
-    CAMERA(DOUBLE, screen_min_x),
-    CAMERA(DOUBLE, screen_max_x),
-    CAMERA(DOUBLE, screen_min_y),
-    CAMERA(DOUBLE, screen_max_y),
+    CAMERA(DOUBLE, view_distance, UNSET),
+    CAMERA(DOUBLE, zoom, UNSET),
+    CAMERA(DOUBLE, pixel_size, UNSET),
+    CAMERA(DOUBLE, focal_mm, UNSET),
+    CAMERA(DOUBLE, sensor_width_mm, UNSET),
+    CAMERA(DOUBLE, fx, UNSET),
+    CAMERA(DOUBLE, fy, UNSET),
+    CAMERA(DOUBLE, skew, UNSET),
+    CAMERA(DOUBLE, cx, UNSET),
+    CAMERA(DOUBLE, cy, UNSET),
+    CAMERA(DOUBLE, screen_min_x, UNSET),
+    CAMERA(DOUBLE, screen_max_x, UNSET),
+    CAMERA(DOUBLE, screen_min_y, UNSET),
+    CAMERA(DOUBLE, screen_max_y, UNSET),
     CAMERA(DOUBLE3, eye),
     CAMERA(DOUBLE3, lookat),
     CAMERA(DOUBLE3, up),
     CAMERA(DOUBLE, roll),
     CAMERA(DOUBLE, lens_radius),
-    CAMERA(DOUBLE, focus_distance),
-    CAMERA(DOUBLE, lens.f_number),
+    CAMERA(DOUBLE, focus_distance, .flags = VL_PARAMETER_UNSET | VL_PARAMETER_INFINITE),
+    CAMERA(DOUBLE, lens.f_number, UNSET),
     CAMERA(DOUBLE, lens.unit_mm),
     CAMERA(DOUBLE3, lens.focus_point),
-    CAMERA(COUNT, lens.blades),
+    CAMERA(COUNT, lens.blades, WITHIN(0, 1000)),
     CAMERA(DOUBLE, lens.rotation),
     CAMERA(DOUBLE, lens.ratio),
     CAMERA(DOUBLE, lens.tilt_x),
@@ -147,29 +161,29 @@ static const vlParameter camera_array[] = {
     CAMERA(DOUBLE3, eye_close),
     CAMERA(DOUBLE3, lookat_close),
     CAMERA(DOUBLE3, up_close),
-    CAMERA(DOUBLE, roll_close),
+    CAMERA(DOUBLE, roll_close, UNSET),
     CAMERA(DOUBLE, exposure_time),
     CAMERA(DOUBLE, near_plane),
-    CAMERA(DOUBLE, far_plane),
-    CAMERA(DOUBLE, max_angle),
+    CAMERA(DOUBLE, far_plane, .flags = VL_PARAMETER_INFINITE),
+    CAMERA(DOUBLE, max_angle, UNSET),
     CHOICE(vlCameraDef, distortion, distortions),
     ROW(CHOICE, vlCameraDef, stereo.mode, .name = "stereo_mode", .choices = stereo_modes),
     CAMERA(DOUBLE, stereo.interocular),
-    CAMERA(DOUBLE, stereo.convergence),
+    CAMERA(DOUBLE, stereo.convergence, UNSET),
     CHOICE(vlCameraDef, stereo_eye, eyes),
 };
 const Rows camera_rows = ROWS(camera_array);
 
 static const vlParameter channels_array[] = {
     CHOICE(vlChannelsDef, mode, modes),
-    ROW(COUNT, vlChannelsDef, ranks),
-    ROW(DOUBLE, vlChannelsDef, time),
+    ROW(COUNT, vlChannelsDef, ranks, WITHIN(2, 32)),
+    ROW(DOUBLE, vlChannelsDef, time, UNSET),
 };
 const Rows channels_rows = ROWS(channels_array);
 
 static const vlParameter write_array[] = {
     ROW(BOOL, vlWriteDef, half),
-    ROW(COUNT, vlWriteDef, compression),
-    ROW(COUNT, vlWriteDef, quality),
+    ROW(COUNT, vlWriteDef, compression, WITHIN(0, 1)),
+    ROW(COUNT, vlWriteDef, quality, WITHIN(1, 100)),
 };
 const Rows write_rows = ROWS(write_array);

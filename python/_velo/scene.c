@@ -76,7 +76,7 @@ static PyObject *scene_load(Scene *self, PyObject *arguments) {
   const Target target = {(char *)&l.def, keep, self, false};
   bool fine = keep && PyArg_ParseTuple(arguments, "OO!O:_load", &path, &PyDict_Type, &keywords, &callback) &&
               scene_open(self) && set_parameters(&target, load_rows, "keyword of load", keywords) &&
-              (l.file = keep_path(keep, path)) && load_file(self, &l, callback);
+              (l.file = keep_path(keep, path, "path")) && load_file(self, &l, callback);
   Py_XDECREF(keep);
   if (!fine) return NULL;
   Py_RETURN_NONE;
@@ -104,18 +104,21 @@ static PyObject *scene_complete(Scene *self, PyObject *keywords) {
 static void lost(void *user, const char *what, uint64_t count) {
   PyGILState_STATE state = PyGILState_Ensure();
   PyObject *number = PyLong_FromUnsignedLongLong(count);
-  if (!number || PyDict_SetItemString(user, what, number) < 0) PyErr_WriteUnraisable(NULL);
+  PyObject *text = text_object(what);
+  if (!number || !text || PyDict_SetItem(user, text, number) < 0) PyErr_WriteUnraisable(NULL);
+  Py_XDECREF(text);
   Py_XDECREF(number);
   PyGILState_Release(state);
 }
 static PyObject *scene_save(Scene *self, PyObject *arguments) {
-  PyObject *path, *keep = PyList_New(0), *losses = PyDict_New();
-  int strict;
+  PyObject *path, *flag, *keep = PyList_New(0), *losses = PyDict_New();
+  bool strict;
   const char *file;
   vlSaveDef def = vl_default_save_def();
   Call call;
-  if (!keep || !losses || !PyArg_ParseTuple(arguments, "Op:_save", &path, &strict) || !scene_open(self) ||
-      !(file = keep_path(keep, path)) || !call_begin(&call, self->context, &self->busy))
+  if (!keep || !losses || !PyArg_ParseTuple(arguments, "OO:_save", &path, &flag) ||
+      !read_flag(flag, "strict", &strict) || !scene_open(self) || !(file = keep_path(keep, path, "path")) ||
+      !call_begin(&call, self->context, &self->busy))
     return Py_XDECREF(keep), Py_XDECREF(losses), NULL;
   def.strict = strict;
   def.lost = lost;
@@ -149,7 +152,7 @@ static PyObject *scene_camera(Scene *self, PyObject *unused) {
 
 static PyObject *scene_set_camera(Scene *self, PyObject *object) {
   if (!scene_open(self)) return NULL;
-  if (!is_object(object, TYPE_CAMERA)) return raise_usage("camera must be a velo.Camera");
+  if (!is_object(object, TYPE_CAMERA)) return raise_value("camera", object, "a velo.Camera");
   if (!keep_object(self->keep, object)) return NULL;
   const Camera *camera = (const Camera *)object;
   vlSceneDefs *defs = vl_scene_defs(self->scene);

@@ -17,7 +17,7 @@ bool read_handle(const Scene *scene, PyObject *value, const char *family, const 
   if (value == Py_None) return true;
   const Handle *h = (const Handle *)value;
   if (!is_object(value, TYPE_HANDLE) || strcmp(h->family, family) != 0)
-    return raise_usage("%s must be one of the scene's %s", what, family), false;
+    return raise_value(what, value, "one of the scene's %s", family), false;
   if (h->scene != scene) return raise_usage("%s is part of another scene", what), false;
   *index = h->index;
   return true;
@@ -28,15 +28,8 @@ static bool handle(const Adding *a, PyObject *value, const char *family, const c
 
 static bool image_of(PyObject *value, const char *what, const vlImage **image) {
   if (!is_object(value, TYPE_IMAGE) || !((Image *)value)->image)
-    return raise_usage("%s must be a velo.Image", what), false;
+    return raise_value(what, value, "a velo.Image that is not closed"), false;
   *image = ((Image *)value)->image;
-  return true;
-}
-
-static bool floats(PyObject *value, const char *what, size_t count, float *result) {
-  double numbers[16];
-  if (!numbers_copy(value, what, count, numbers)) return false;
-  for (size_t i = 0; i < count; i++) result[i] = (float)numbers[i];
   return true;
 }
 
@@ -56,26 +49,27 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
   int code;
   bool fine;
   if (IS("name")) {
-    fine = (d->name = keep_text(a->keep, value)) != NULL;
+    fine = (d->name = keep_text(a->keep, value, name)) != NULL;
   } else if (IS("image")) {
     fine = image_of(value, name, &d->image);
   } else if (IS("data")) {
-    const Numbers *n = NULL;
-    PyObject *bytes = PyBytes_FromObject(value);
-    fine = bytes && keep_object(a->keep, bytes);
+    /* an int would be a number of zeros, a list is one by one */
+    PyObject *bytes = PyObject_CheckBuffer(value) ? PyBytes_FromObject(value) : NULL;
+    if (!bytes) return raise_value(name, value, "bytes"), -1;
+    fine = keep_object(a->keep, bytes);
     if (fine) d->data = PyBytes_AsString(bytes), d->data_size = (size_t)PyBytes_Size(bytes);
-    Py_XDECREF(bytes);
-    (void)n;
+    Py_DECREF(bytes);
   } else if (IS("tint")) {
-    fine = floats(value, name, 4, d->tint);
+    fine = floats_copy(value, name, 4, d->tint);
   } else if (IS("channel")) {
-    d->channel = (int)PyLong_AsLong(value);
-    fine = !PyErr_Occurred();
+    int64_t channel;
+    fine = read_whole(value, name, -1, 1023, &channel);
+    if (fine) d->channel = (int)channel;
   } else if (IS("texture_from_world")) {
     fine = numbers_copy(value, name, 16, d->texture_from_world);
   } else if (IS("st_from_uv")) {
     d->st_from_uv_given = true;
-    fine = floats(value, name, 6, d->st_from_uv);
+    fine = floats_copy(value, name, 6, d->st_from_uv);
   } else if (IS("encoding")) {
     fine = choice(encodings, name, value, &code);
     d->encoding_given = fine;
@@ -96,7 +90,7 @@ static int set_texture(Adding *a, vlTextureDef *d, const char *name, PyObject *v
 }
 
 static int set_material(Adding *a, vlMaterialDef *d, const char *name, PyObject *value) {
-  if (IS("name")) return (d->name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("name")) return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
   if (IS("reflectance") && (d->kind == VL_MATERIAL_CONDUCTOR || d->kind == VL_MATERIAL_COATED_CONDUCTOR)) {
     d->use_reflectance = true;
     return 0;
@@ -105,7 +99,7 @@ static int set_material(Adding *a, vlMaterialDef *d, const char *name, PyObject 
   if (IS("reflectance") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_REFLECTANCE;
   if (IS("sigma_a") && d->kind == VL_MATERIAL_HAIR) d->hair.color = VL_HAIR_SIGMA_A;
   if (IS("materials")) {
-    if (PySequence_Size(value) != 2) return PyErr_Clear(), raise_usage("materials: a pair of materials"), -1;
+    if (sequence_size(value, name, 2, 2) < 0) return -1;
     for (int i = 0; i < 2; i++) {
       PyObject *item = PySequence_GetItem(value, i);
       bool fine = item && handle(a, item, "materials", name, &d->materials[i].index);
@@ -128,7 +122,7 @@ static int set_medium(Adding *a, vlMediumDef *d, const char *name, PyObject *val
                {"rgb_a", offsetof(vlMediumDef, rgb_a), 3},
                {"rgb_s", offsetof(vlMediumDef, rgb_s), 3},
                {"rgb_emission", offsetof(vlMediumDef, rgb_emission), 3}};
-  if (IS("name")) return (d->name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("name")) return (d->name = keep_text(a->keep, value, name)) ? 1 : -1;
   if (IS("transform") || IS("world_from_medium")) return numbers_copy(value, name, 16, d->world_from_medium) ? 1 : -1;
   for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
     if (!IS(grids[i].name) || (d->kind != VL_MEDIUM_GRID && d->kind != VL_MEDIUM_RGB_GRID)) continue;
@@ -152,7 +146,7 @@ static int set_light(Adding *a, vlLightDef *d, const char *name, PyObject *value
   if (IS("medium")) return handle(a, value, "media", name, &d->medium.index) ? 1 : -1;
   if (IS("portal")) {
     d->has_portal = true;
-    return floats(value, name, 12, &d->portal[0][0]) ? 1 : -1;
+    return floats_copy(value, name, 12, &d->portal[0][0]) ? 1 : -1;
   }
   if (IS("space")) {
     if (!choice(spaces, name, value, &code)) return -1;
@@ -179,7 +173,7 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
                 {"centers", 'd', offsetof(vlShapeDef, centers), 3},
                 {"radii", 'f', offsetof(vlShapeDef, radii), 1},
                 {"widths", 'f', offsetof(vlShapeDef, widths), 2}};
-  if (IS("name")) return (d->label.name = keep_text(a->keep, value)) ? 1 : -1;
+  if (IS("name")) return (d->label.name = keep_text(a->keep, value, name)) ? 1 : -1;
   if (IS("transform") || IS("group_from_shape")) return numbers_copy(value, name, 16, d->group_from_shape) ? 1 : -1;
   if (IS("material")) return handle(a, value, "materials", name, &d->material.index) ? 1 : -1;
   if (IS("emission")) return handle(a, value, "emission", name, &d->emission.index) ? 1 : -1;
@@ -187,8 +181,8 @@ static int set_shape(Adding *a, vlShapeDef *d, const char *name, PyObject *value
   if (IS("inside")) return handle(a, value, "media", name, &d->inside.index) ? 1 : -1;
   if (IS("outside")) return handle(a, value, "media", name, &d->outside.index) ? 1 : -1;
   if (IS("times")) return numbers_copy(value, name, 2, d->times) ? 1 : -1;
-  if (IS("reverse_orientation")) return d->reverse_orientation = PyObject_IsTrue(value) > 0, PyErr_Occurred() ? -1 : 1;
-  if (IS("backdrop")) return d->backdrop = PyObject_IsTrue(value) > 0, PyErr_Occurred() ? -1 : 1;
+  if (IS("reverse_orientation")) return read_flag(value, name, &d->reverse_orientation) ? 1 : -1;
+  if (IS("backdrop")) return read_flag(value, name, &d->backdrop) ? 1 : -1;
   if (IS("indices")) {
     const Numbers *n = array(a, value, 'I', name);
     size_t per = d->kind == VL_SHAPE_BILINEAR ? 4 : 3;
@@ -286,7 +280,7 @@ bool set_all(Adding *a, Family family, const vlKindRow *row, const char *thing, 
   PyObject *name, *value;
   Py_ssize_t position = 0;
   while (PyDict_Next(keywords, &position, &name, &value)) {
-    const char *text = keep_text(a->keep, name);
+    const char *text = keep_text(a->keep, name, "a keyword");
     int extra = text ? set_extra(a, family, def, text, value) : -1;
     if (extra < 0) return false;
     if (extra) continue;
@@ -326,7 +320,7 @@ static PyObject *scene_error(Scene *self) {
 
 static PyObject *add_group(Scene *self, PyObject *name) {
   PyObject *keep = PyList_New(0);
-  const char *text = !keep || name == Py_None ? NULL : keep_text(keep, name);
+  const char *text = !keep || name == Py_None ? NULL : keep_text(keep, name, "name");
   PyObject *result = NULL;
   if (keep && (text || name == Py_None)) {
     vlGroupId id = vl_scene_add_group(self->scene, text);
@@ -345,11 +339,11 @@ PyObject *scene_add(Scene *self, PyObject *arguments) {
   if (family == GROUPS) return add_group(self, kind_name);
   if (family == INSTANCES) return raise_usage("instances are added by add_instance");
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
-  int kind = find_kind(kinds, kind_name);
+  int kind = find_kind(kinds, kinds->thing, kind_name);
   if (kind < 0) return NULL;
   PyObject *wanted = PyDict_GetItemString(keywords, "spectrum");
-  bool spectrum = family == TEXTURES &&
-                  (wanted ? PyObject_IsTrue(wanted) > 0 : !(kinds->rows[kind]->traits & VL_TEXTURE_FLOAT_ONLY));
+  bool spectrum = family == TEXTURES && !(kinds->rows[kind]->traits & VL_TEXTURE_FLOAT_ONLY);
+  if (family == TEXTURES && wanted && !read_flag(wanted, "spectrum", &spectrum)) return NULL;
   Def def;
   default_def((Family)family, kind, spectrum, &def);
   Adding a = {.scene = self, .keep = PyList_New(0)};
@@ -378,7 +372,8 @@ PyObject *scene_add_instance(Scene *self, PyObject *arguments) {
               (times == Py_None || numbers_read(times, 'd', "times", &seconds));
   size_t keys = times == Py_None ? 1 : seconds.count;
   if (fine && (keys == 0 || keys > 65536 || poses.count != 16 * keys))
-    fine = raise_usage("an instance needs a matrix of 16 numbers for each time") != NULL;
+    fine =
+        raise_value("transform", matrices, "a matrix of 16 numbers, with times (at most 65536) one for each") != NULL;
   vlInstanceId instance = {0};
   if (fine && times == Py_None)
     instance = vl_scene_add_instance(self->scene, id, poses.data, (vlSource){0});
@@ -398,7 +393,7 @@ PyObject *scene_load_group(Scene *self, PyObject *arguments) {
   const Target target = {(char *)&l.def, keep, self, false};
   if (!keep || !PyArg_ParseTuple(arguments, "OOO!O:_load_group", &path, &name, &PyDict_Type, &keywords, &callback) ||
       !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
-      !(l.file = keep_path(keep, path)) || (name != Py_None && !(l.name = keep_text(keep, name))) ||
+      !(l.file = keep_path(keep, path, "path")) || (name != Py_None && !(l.name = keep_text(keep, name, "name"))) ||
       !load_file(self, &l, callback))
     goto end;
   PyObject *group = new_handle(self, GROUPS, loaded.group.index);

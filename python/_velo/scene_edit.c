@@ -7,7 +7,7 @@
 /* The family of a handle of this scene; -1 with an exception. */
 static int family_of(const Scene *self, PyObject *object, uint32_t *index) {
   if (!scene_open(self)) return -1;
-  if (!is_object(object, TYPE_HANDLE)) return raise_usage("expected a velo.Handle"), -1;
+  if (!is_object(object, TYPE_HANDLE)) return raise_value("handle", object, "a velo.Handle of the scene"), -1;
   const Handle *h = (const Handle *)object;
   if (h->scene != self) return raise_usage("the handle is part of another scene"), -1;
   int family = 0;
@@ -115,7 +115,7 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
   const vlKindFamily *kinds = vl_kind_family_find(family_names[family]);
   bool spectrum = family == TEXTURES && def.texture.spectrum;
   if (kind_name != Py_None) {
-    kind = find_kind(kinds, kind_name);
+    kind = find_kind(kinds, kinds->thing, kind_name);
     if (kind < 0) return NULL;
     change_kind((Family)family, kind, spectrum, &def);
   }
@@ -138,9 +138,10 @@ PyObject *scene_set(Scene *self, PyObject *arguments) {
 /* _show(handle, shown) */
 PyObject *scene_show(Scene *self, PyObject *arguments) {
   PyObject *object;
-  int shown;
+  PyObject *flag;
+  bool shown;
   uint32_t index;
-  if (!PyArg_ParseTuple(arguments, "Op:_show", &object, &shown)) return NULL;
+  if (!PyArg_ParseTuple(arguments, "OO:_show", &object, &flag) || !read_flag(flag, "shown", &shown)) return NULL;
   int family = family_of(self, object, &index);
   if (family < 0) return NULL;
   vlError error = {0};
@@ -261,7 +262,7 @@ static PyObject *handle_name(Handle *self, void *unused) {
   if (family == INSTANCES && vl_scene_instance(self->scene->scene, (vlInstanceId){index}, &info) == VL_OK)
     name = info.label.name;
   if (!name || !name[0]) Py_RETURN_NONE;
-  return PyUnicode_DecodeUTF8(name, (Py_ssize_t)strlen(name), "replace");
+  return text_object(name);
 }
 
 static PyObject *copy_array(const void *data, size_t size) {

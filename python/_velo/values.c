@@ -9,32 +9,6 @@ bool keep_object(PyObject *keep, PyObject *object) {
   return object && PyList_Append(keep, object) == 0;
 }
 
-const char *keep_text(PyObject *keep, PyObject *value) {
-  if (!PyUnicode_Check(value)) return raise_usage("expected a str"), NULL;
-  PyObject *bytes = PyUnicode_AsUTF8String(value);
-  const char *text = bytes && keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
-  Py_XDECREF(bytes);
-  return text;
-}
-
-bool keep_texts(PyObject *keep, PyObject *values, Py_ssize_t count, const char **texts) {
-  for (Py_ssize_t i = 0; i < count; i++) {
-    PyObject *item = PySequence_GetItem(values, i);
-    texts[i] = item ? keep_text(keep, item) : NULL;
-    Py_XDECREF(item);
-    if (!texts[i]) return false;
-  }
-  return true;
-}
-
-const char *keep_path(PyObject *keep, PyObject *value) {
-  PyObject *bytes = NULL;
-  if (!PyUnicode_FSConverter(value, &bytes)) return NULL;
-  const char *text = keep_object(keep, bytes) ? PyBytes_AsString(bytes) : NULL;
-  Py_XDECREF(bytes);
-  return text;
-}
-
 /* ---- names ------------------------------------------------------------------------------------------------------- */
 
 /* Compares letters and digits only, whatever their case: "blackman-harris" is "BLACKMAN_HARRIS". */
@@ -88,10 +62,17 @@ bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
   return true;
 }
 
+/* The text of a str without zeros, in *bytes; null: it is none. */
+static const char *name_text(PyObject *value, PyObject **bytes) {
+  *bytes = PyUnicode_Check(value) ? PyUnicode_AsUTF8String(value) : NULL;
+  const char *text = *bytes ? PyBytes_AsString(*bytes) : NULL;
+  return text && strlen(text) == (size_t)PyBytes_Size(*bytes) ? text : NULL;
+}
+
 int find_choice(const char *const *choices, const char *what, PyObject *value) {
-  PyObject *bytes = PyUnicode_Check(value) ? PyUnicode_AsUTF8String(value) : NULL;
-  const char *text = bytes ? PyBytes_AsString(bytes) : NULL;
-  if (!text) return Py_XDECREF(bytes), PyErr_Clear(), raise_usage("%s must be a str", what), -1;
+  PyObject *bytes = NULL;
+  const char *text = name_text(value, &bytes);
+  if (!text) return Py_XDECREF(bytes), raise_value(what, value, "a name, a str"), -1;
   int found = -1;
   for (int i = 0; choices[i] && found < 0; i++)
     if (same_word(choices[i], text)) found = i;
@@ -105,10 +86,15 @@ int find_choice(const char *const *choices, const char *what, PyObject *value) {
   return found;
 }
 
-int find_kind(const vlKindFamily *family, PyObject *name) {
-  PyObject *bytes = PyUnicode_Check(name) ? PyUnicode_AsUTF8String(name) : NULL;
-  const char *text = bytes ? PyBytes_AsString(bytes) : NULL;
-  if (!text) return Py_XDECREF(bytes), PyErr_Clear(), raise_usage("the kind of a %s must be a str", family->thing), -1;
+int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
+  PyObject *bytes = NULL;
+  const char *text = name_text(name, &bytes);
+  if (!text) {
+    Py_XDECREF(bytes);
+    char what[64];
+    PyOS_snprintf(what, sizeof what, "the kind of a %s", thing);
+    return raise_value(what, name, "a name, a str"), -1;
+  }
   int found = -1;
   for (uint32_t k = 0; k < family->kind_count && found < 0; k++) {
     const vlKindRow *row = family->rows[k];
@@ -120,24 +106,30 @@ int find_kind(const vlKindFamily *family, PyObject *name) {
     PyObject *names = PyList_New(0);
     for (uint32_t k = 0; names && k < family->kind_count; k++)
       if (!append_text(names, family->constants[k])) Py_CLEAR(names);
-    raise_unknown(family->thing, text, names);
+    raise_unknown(thing, text, names);
   }
   Py_DECREF(bytes);
   return found;
 }
 
+/* How well a name fits a row: 0 not, 4 best. "lens_tilt_x" is lens.lens_tilt_x rather than lens.tilt_x. */
+static int fits(const vlParameter *p, const char *name) {
+  bool shorthand = p->flags & VL_PARAMETER_SHORTHAND;
+  if (!p->member || !p->member[0] || (shorthand && !p->second)) return 0;
+  if (!shorthand && strcmp(p->member, name) == 0) return 4;
+  if (!shorthand && strcmp(last_word(p->member), name) == 0) return 3;
+  if (!shorthand && strlen(p->member) == strlen(name) && same_word(p->member, name)) return 2;
+  return p->name && strcmp(p->name, name) == 0;
+}
+
 const vlParameter *find_parameter(const vlParameter *rows, size_t count, const char *name) {
-  for (int pass = 0; pass < 3; pass++)
-    for (size_t i = 0; i < count; i++) {
-      const vlParameter *p = &rows[i];
-      bool shorthand = p->flags & VL_PARAMETER_SHORTHAND;
-      if (!p->member || !p->member[0] || (shorthand && !p->second)) continue;
-      const char *candidate = pass == 0 ? p->member : pass == 1 ? last_word(p->member) : p->name;
-      if (!candidate || (shorthand && pass < 2)) continue;
-      if (pass == 0 ? same_word(candidate, name) && strlen(candidate) == strlen(name) : strcmp(candidate, name) == 0)
-        return p;
-    }
-  return NULL;
+  const vlParameter *found = NULL;
+  int best = 0;
+  for (size_t i = 0; i < count; i++) {
+    int fit = fits(&rows[i], name);
+    if (fit > best) best = fit, found = &rows[i];
+  }
+  return found;
 }
 
 /* ---- spectra and ids --------------------------------------------------------------------------------------------- */
@@ -150,17 +142,24 @@ static PyObject *get_attribute(PyObject *object, const char *name) {
   return value;
 }
 
+#define ANY_FLOAT \
+  { .low = -INFINITY, .high = INFINITY, .single = true }
+
 /* The parts of velo.Spectrum: kind, scale, value. */
 static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s, const char *what) {
   static const char *const kinds[] = {"constant", "rgb", "blackbody", "sampled", "named", NULL};
   static const char *const spaces[] = {"srgb", "dci_p3", "rec2020", "aces2065_1", NULL};
+  const Range positive = {.low = 0, .high = INFINITY, .above = true, .single = true}, any = ANY_FLOAT;
   PyObject *kind = get_attribute(object, "kind"), *value = get_attribute(object, "value");
   PyObject *scale = get_attribute(object, "scale"), *space = get_attribute(object, "space");
-  int k = kind && value && scale && space ? find_choice(kinds, what, kind) : -1;
+  bool parts = kind && value && scale && space;
+  if (!parts) raise_value(what, object, "a number, three numbers, a spectrum's name or a velo.Spectrum");
+  int k = parts ? find_choice(kinds, what, kind) : -1;
   int place = k >= 0 ? find_choice(spaces, what, space) : -1;
   bool fine = k >= 0 && place >= 0;
   if (fine && k == VL_SPECTRUM_SAMPLED) {
-    PyObject *pairs[2] = {PySequence_GetItem(value, 0), PySequence_GetItem(value, 1)};
+    bool pair = sequence_size(value, what, 2, 2) == 2;
+    PyObject *pairs[2] = {pair ? PySequence_GetItem(value, 0) : NULL, pair ? PySequence_GetItem(value, 1) : NULL};
     Numbers n[2];
     memset(n, 0, sizeof n);
     fine = pairs[0] && pairs[1] && numbers_read(pairs[0], 'f', what, &n[0]) && numbers_read(pairs[1], 'f', what, &n[1]);
@@ -179,15 +178,17 @@ static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s
                       .values = (const float *)(const void *)data[1]};
     for (int i = 0; i < 2; i++) numbers_release(&n[i]), Py_XDECREF(pairs[i]);
   } else if (fine && k == VL_SPECTRUM_BLACKBODY) {
-    *s = vl_spectrum_blackbody((float)PyFloat_AsDouble(value));
-    fine = !PyErr_Occurred();
+    double kelvin = 0;
+    fine = read_real(value, what, &positive, &kelvin);
+    if (fine) *s = vl_spectrum_blackbody((float)kelvin);
   } else if (fine) {
     fine = read_spectrum(keep, value, s, what);
   }
   if (fine) {
+    double factor = 1;
+    fine = read_real(scale, what, &any, &factor);
     s->space = (vlColorSpace)place;
-    s->scale = (float)PyFloat_AsDouble(scale);
-    fine = !PyErr_Occurred();
+    s->scale = (float)factor;
   }
   Py_XDECREF(kind), Py_XDECREF(value), Py_XDECREF(scale), Py_XDECREF(space);
   return fine;
@@ -195,7 +196,7 @@ static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s
 
 bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *what) {
   if (PyUnicode_Check(value)) {
-    const char *name = keep_text(keep, value);
+    const char *name = keep_text(keep, value, what);
     if (!name) return false;
     *s = vl_spectrum_named(name);
     return true;
@@ -206,15 +207,18 @@ bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *w
     return read_spectrum_object(keep, value, s, what);
   }
   PyErr_Clear();
-  if (PyFloat_Check(value) || PyLong_Check(value) || (PyNumber_Check(value) && !PySequence_Check(value))) {
-    double number = PyFloat_AsDouble(value);
-    if (number == -1.0 && PyErr_Occurred()) return false;
+  if (PyNumber_Check(value) && !PySequence_Check(value)) {
+    const Range any = ANY_FLOAT;
+    double number;
+    if (!read_real(value, what, &any, &number)) return false;
     *s = vl_spectrum_constant((float)number);
     return true;
   }
-  double rgb[3];
-  if (!numbers_copy(value, what, 3, rgb)) return false;
-  *s = vl_spectrum_rgb((float)rgb[0], (float)rgb[1], (float)rgb[2]);
+  if (!PySequence_Check(value) && !PyObject_CheckBuffer(value))
+    return raise_value(what, value, "a number, three numbers, a spectrum's name or a velo.Spectrum"), false;
+  float rgb[3];
+  if (!floats_copy(value, what, 3, rgb)) return false;
+  *s = vl_spectrum_rgb(rgb[0], rgb[1], rgb[2]);
   return true;
 }
 
@@ -236,30 +240,39 @@ static uint32_t handle_index(const Scene *scene, PyObject *value, const char *fa
     if (second) memcpy(second, &v_, sizeof v_); \
   } while (0)
 
+/* What a row says about its number. */
+static Range row_range(const vlParameter *p) {
+  Range r = {.low = -INFINITY, .high = INFINITY, .single = p->type != VL_PARAMETER_DOUBLE};
+  bool limits = (p->low != 0 || p->high != 0) && !(p->flags & VL_PARAMETER_CLAMPED);
+  if (limits) r.low = p->low, r.high = p->high;
+  r.above = limits && p->flags & VL_PARAMETER_ABOVE_LOW;
+  r.below = limits && p->flags & VL_PARAMETER_BELOW_HIGH;
+  r.infinite = p->flags & VL_PARAMETER_INFINITE;
+  r.unset = p->type == VL_PARAMETER_DOUBLE && p->flags & VL_PARAMETER_UNSET;
+  return r;
+}
+
 static bool set_number(const vlParameter *p, PyObject *value, char *place, char *second) {
-  const char *what = last_word(p->member);
-  double number;
-  if (value == Py_None && p->type == VL_PARAMETER_DOUBLE) {
-    number = VL_UNSET;
-  } else {
-    if (PyUnicode_Check(value)) return raise_usage("%s must be a number", what), false;
-    number = PyFloat_AsDouble(value);
-    if (number == -1.0 && PyErr_Occurred()) return PyErr_Clear(), raise_usage("%s must be a number", what), false;
-  }
+  const char *what = shown_name(p);
+  const Range range = row_range(p);
   if (p->type == VL_PARAMETER_COUNT) {
-    if (!(number >= 0 && number <= 4294967295.0) || number != (double)(uint32_t)number)
-      return raise_usage("%s must be a whole number from 0, it is %g", what, number), false;
-    PUT(uint32_t, number);
-  } else if (p->type == VL_PARAMETER_FLOAT) {
-    PUT(float, number);
-  } else {
-    PUT(double, number);
+    uint32_t count, low = range.low > 0 ? (uint32_t)range.low : 0;
+    uint32_t high = range.high < 4294967295.0 ? (uint32_t)range.high : UINT32_MAX;
+    if (!read_count(value, what, low, high, &count)) return false;
+    PUT(uint32_t, count);
+    return true;
   }
+  double number;
+  if (!read_real(value, what, &range, &number)) return false;
+  if (p->type == VL_PARAMETER_FLOAT)
+    PUT(float, number);
+  else
+    PUT(double, number);
   return true;
 }
 
 static bool set_input(const Target *t, const vlParameter *p, PyObject *value, char *place, bool spectrum) {
-  const char *what = last_word(p->member);
+  const char *what = shown_name(p);
   vlTextureId texture = {0};
   if (is_object(value, TYPE_HANDLE)) {
     texture.index = handle_index(t->scene, value, "textures", what);
@@ -273,37 +286,39 @@ static bool set_input(const Target *t, const vlParameter *p, PyObject *value, ch
   vlFloatInput *input = (vlFloatInput *)(void *)place;
   input->texture = texture;
   if (texture.index) return true;
-  double number = PyFloat_AsDouble(value);
-  if (number == -1.0 && PyErr_Occurred())
-    return PyErr_Clear(), raise_usage("%s must be a number or a texture", what), false;
+  double number;
+  int read = to_double(value, &number);
+  if (read < 0) return false;
+  if (!read) return raise_value(what, value, "a number or a texture"), false;
+  const Range range = row_range(p);
+  if (!read_real(value, what, &range, &number)) return false;
   input->value = (float)number;
   return true;
 }
 
 bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
-  const char *what = last_word(p->member);
+  const char *what = shown_name(p);
   char *place = t->def + p->offset, *second = p->second ? t->def + p->second : NULL;
   switch (p->type) {
     case VL_PARAMETER_BOOL: {
-      int truth = PyObject_IsTrue(value);
-      if (truth < 0) return false;
+      bool truth;
+      if (!read_flag(value, what, &truth)) return false;
       PUT(bool, truth);
       return true;
     }
     case VL_PARAMETER_COUNT:
     case VL_PARAMETER_FLOAT:
     case VL_PARAMETER_DOUBLE: return set_number(p, value, place, second);
-    case VL_PARAMETER_FLOAT3:
+    case VL_PARAMETER_FLOAT3: {
+      float three[3];
+      if (!floats_copy(value, what, 3, three)) return false;
+      memcpy(place, three, sizeof three);
+      return true;
+    }
     case VL_PARAMETER_DOUBLE3: {
       double three[3];
       if (!numbers_copy(value, what, 3, three)) return false;
-      for (int i = 0; i < 3; i++) {
-        float single = (float)three[i];
-        if (p->type == VL_PARAMETER_FLOAT3)
-          memcpy(place + (size_t)i * sizeof single, &single, sizeof single);
-        else
-          memcpy(place + (size_t)i * sizeof *three, &three[i], sizeof *three);
-      }
+      memcpy(place, three, sizeof three);
       return true;
     }
     case VL_PARAMETER_CHOICE: {
@@ -316,7 +331,7 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
     case VL_PARAMETER_FILE: {
       const char *text = NULL;
       if (value != Py_None) {
-        text = p->type == VL_PARAMETER_FILE ? keep_path(t->keep, value) : keep_text(t->keep, value);
+        text = p->type == VL_PARAMETER_FILE ? keep_path(t->keep, value, what) : keep_text(t->keep, value, what);
         if (!text) return false;
       }
       memcpy(place, &text, sizeof text);
@@ -330,7 +345,7 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
     case VL_PARAMETER_TEXTURE: {
       vlTextureId id = {0};
       if (value != Py_None) {
-        if (!is_object(value, TYPE_HANDLE)) return raise_usage("%s must be a texture", what), false;
+        if (!is_object(value, TYPE_HANDLE)) return raise_value(what, value, "a texture of the scene"), false;
         id.index = handle_index(t->scene, value, "textures", what);
         if (id.index == UINT32_MAX) return false;
       }
@@ -346,9 +361,8 @@ bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject
   PyObject *name, *value;
   Py_ssize_t position = 0;
   while (PyDict_Next(keywords, &position, &name, &value)) {
-    PyObject *bytes = PyUnicode_AsUTF8String(name);
-    if (!bytes) return false;
-    const char *text = PyBytes_AsString(bytes);
+    const char *text = keep_text(target->keep, name, thing);
+    if (!text) return false;
     const vlParameter *row = find_parameter(rows.rows, rows.count, text);
     bool fine = row != NULL;
     if (!row) {
@@ -358,7 +372,6 @@ bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject
     } else {
       fine = set_parameter(target, row, value);
     }
-    Py_DECREF(bytes);
     if (!fine) return false;
   }
   return true;

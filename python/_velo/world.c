@@ -86,7 +86,7 @@ static PyObject *world_info(World *self, void *unused) {
 
 static PyObject *text_or_none(const char *text) {
   if (!text) Py_RETURN_NONE;
-  return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "replace");
+  return text_object(text);
 }
 
 /* _ids(kind): a list of dicts, that of id 1 first. */

@@ -5,7 +5,7 @@ import atexit
 import os
 from typing import Any, Optional
 
-from velo import _velo
+from velo import _check, _velo
 
 Context = _velo.Context
 
@@ -23,6 +23,11 @@ def default_context() -> Any:
 def protecting_context() -> Any:
     """A context that overwrites no file which it has read, with as many workers as the default context."""
     return _velo.Context(keep_inputs=True, **({"threads": _default.threads} if _default else {}))
+
+
+def context_or_default(context: Any) -> Any:
+    """A given context; None: that of this process."""
+    return default_context() if context is None else _check.instance(context, Context, "context")
 
 
 def set_threads(threads: int) -> None:

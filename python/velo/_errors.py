@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import difflib
 import logging
-from typing import NamedTuple, Optional, Sequence
+from typing import Any, NamedTuple, Optional, Sequence
 
 
 class Error(Exception):
@@ -84,8 +84,41 @@ def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     known = sorted(set(names))
     near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
     if near:
-        return UsageError(f"unknown {thing} '{name}': did you mean {' or '.join(near)}?")
-    return UsageError(f"unknown {thing} '{name}' (known: {', '.join(known)})")
+        return UsageError(f"unknown {thing} {shown(name)}: did you mean {' or '.join(near)}?")
+    return UsageError(f"unknown {thing} {shown(name)} (known: {', '.join(known)})")
+
+
+_MOST_SHOWN = 200  # characters of a value in a message
+
+
+def _brief(value: Any, depth: int) -> str:
+    if isinstance(value, (str, bytes)):
+        return repr(value[:_MOST_SHOWN])
+    if isinstance(value, int) and value.bit_length() > 2 * _MOST_SHOWN:
+        return f"{'-' if value < 0 else ''}2**{value.bit_length() - 1} or more"
+    if isinstance(value, (list, tuple, dict)):
+        if len(value) > 8 or depth > 2:
+            return f"a {type(value).__name__} of {len(value)} items"
+        if isinstance(value, dict):
+            return "{" + ", ".join(f"{_brief(k, depth + 1)}: {_brief(v, depth + 1)}" for k, v in value.items()) + "}"
+        text = ", ".join(_brief(item, depth + 1) for item in value)
+        return f"[{text}]" if isinstance(value, list) else f"({text}{',' if len(value) == 1 else ''})"
+    return repr(value)
+
+
+def shown(value: Any) -> str:
+    """A value as messages show it: at most 200 characters."""
+    try:
+        text = _brief(value, 0)
+    except Exception:  # its own __repr__ fails
+        text = f"<{type(value).__name__}>"
+    text = " ".join(text.split()).encode(errors="backslashreplace").decode()
+    return text if len(text) <= _MOST_SHOWN else text[:_MOST_SHOWN - 3] + "..."
+
+
+def wrong_value(what: str, rule: str, value: Any) -> UsageError:
+    """A value that `what` must not have. rule: what it may be."""
+    return UsageError(f"{what} must be {rule}; it is {shown(value)}")
 
 
 class Progress(NamedTuple):

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Optional, Sequence, Union
 
-from velo import _arrays, _velo
-from velo._context import default_context
+from velo import _arrays, _check, _velo
+from velo._context import context_or_default
 from velo.image import Path
 
 
@@ -118,7 +118,7 @@ class Camera(_velo.Camera):
         """Writes a camera file of velo or of another tool (docs/camera-files.md).
 
         dialect: "velo", "opencv", "colmap", "nerf", ...; default: by the suffix. drop: fields that may be lost."""
-        self._write(context or default_context(), path, dialect, name, list(drop))
+        self._write(context_or_default(context), path, dialect, name, _check.names(drop, "drop"))
 
     def __repr__(self) -> str:
         return f"<velo.Camera {self.projection}, {self.width} x {self.height}>"
@@ -140,11 +140,11 @@ def read_camera(path: Path, *, dialect: Optional[str] = None, frame: Union[str, 
     """Reads a camera file of velo or of another tool; default: the file's contents decide the dialect.
 
     frame: name or number (from 0) of one of several cameras. width, height: for files without an image size."""
-    return _velo.camera_read(context or default_context(), path, dialect, frame, width, height)[0]
+    return _velo.camera_read(context_or_default(context), path, dialect, frame, width, height)[0]
 
 
 def read_trajectory(path: Path, *, dialect: Optional[str] = None, width: int = 0, height: int = 0,
                     context: Any = None) -> list[TrajectoryFrame]:
     """Reads a file of many poses and several cameras: COLMAP, transforms.json, Kalibr, TUM, KITTI, CSV (docs/rigs.md)."""
-    frames = _velo.trajectory_read(context or default_context(), path, dialect, width, height)
+    frames = _velo.trajectory_read(context_or_default(context), path, dialect, width, height)
     return [TrajectoryFrame(name, camera, _arrays.from_rows(pose, 4, 4), time) for name, camera, pose, time in frames]

@@ -4,8 +4,8 @@ from __future__ import annotations
 import os
 from typing import Any, Optional, Sequence
 
-from velo import _velo
-from velo._context import default_context
+from velo import _check, _velo
+from velo._context import context_or_default
 from velo._errors import UsageError
 from velo.image import Image, Path
 
@@ -44,6 +44,8 @@ class Film(_velo.Film):
     def write(self, path: Path, *, overwrite: bool = False) -> None:
         """Writes a film file, whole or not at all. A file that is there already must be one that this film was read from or
         has written, and unchanged since; overwrite: replaces any."""
+        _check.path(path, "path")
+        overwrite = _check.flag(overwrite, "overwrite")
         state = _state_of(path)
         if state and state not in (self._files or {}).values() and not overwrite:
             raise UsageError(f"{os.fsdecode(path)}: this file is not of this film; overwrite=True replaces it")
@@ -70,7 +72,7 @@ _velo.set_type("Film", Film)
 
 def read_film(path: Path, *, partial: bool = False, context: Any = None) -> Film:
     """Reads a film file. partial: pixels may have different samples; such a film can be developed, not continued."""
-    film = _velo.film_read(context or default_context(), path, partial)
+    film = _velo.film_read(context_or_default(context), path, _check.flag(partial, "partial"))
     if not partial:
         film._knows(path)
     return film
@@ -79,4 +81,4 @@ def read_film(path: Path, *, partial: bool = False, context: Any = None) -> Film
 def merge_films(paths: Sequence[Path], output: Path, *, overwrite: bool = False, context: Any = None) -> None:
     """Merges film files of one render, which have different samples or pixels, to one. A film that is there already must be
     of the same render, and the result must have all its samples; overwrite: replaces any film."""
-    _velo.film_merge(context or default_context(), list(paths), output, overwrite)
+    _velo.film_merge(context_or_default(context), _check.items(paths, "paths", "paths"), output, overwrite)

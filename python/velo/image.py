@@ -5,9 +5,9 @@ import os
 import tempfile
 from typing import Any, Optional, Sequence, Union
 
-from velo import _arrays, _velo
-from velo._context import default_context
-from velo._errors import UsageError
+from velo import _arrays, _check, _velo
+from velo._context import context_or_default
+from velo._errors import UsageError, shown, wrong_value
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -28,9 +28,13 @@ class Image(_velo.Image):
 
         names: a name for each channel ("R", "Z", "N.X"); default Y, Y A, R G B or R G B A.
         encoding: of integers, "linear" or "srgb"; default: srgb for 8-bit integers, else linear."""
+        try:
+            size = memoryview(array).itemsize
+        except TypeError:
+            raise wrong_value("image", "an array of rows x columns x channels", array) from None
         if encoding is None:
-            encoding = "srgb" if memoryview(array).itemsize == 1 else "linear"
-        return _velo.image_new(context or default_context(), array, names, encoding)
+            encoding = "srgb" if size == 1 else "linear"
+        return _velo.image_new(context_or_default(context), array, names, encoding)
 
     @property
     def parts(self) -> tuple["Image", ...]:
@@ -50,6 +54,7 @@ class Image(_velo.Image):
     def plane(self, name: str) -> Any:
         """The channel of this name (height x width), or the channels of this layer ("N": "N.X", "N.Y", "N.Z"; height x width x
         3), as a buffer."""
+        _check.text(name, "the name of a channel")
         for part in self.parts:
             names = part._names
             if name in names:
@@ -58,7 +63,7 @@ class Image(_velo.Image):
             if layer and layer == list(range(layer[0], layer[0] + len(layer))):
                 return part._plane(layer[0], len(layer), len(layer) == 1)
         known = ", ".join(self.channels)
-        raise UsageError(f"the image has no channel '{name}' (it has {known})")
+        raise UsageError(f"the image has no channel {shown(name)} (it has {known})")
 
     def __getitem__(self, name: str) -> Any:
         return _arrays.from_buffer(self.plane(name))
@@ -73,7 +78,7 @@ class Image(_velo.Image):
         """Writes a file; the suffix selects the format: .exr (all channels), .png .jpg .hdr .pfm .tga (the colours).
 
         half: EXR, 16-bit floats for colours. compression: EXR, 0 none, 1 ZIP. quality: JPEG, 1 to 100."""
-        whole = os.fspath(path).endswith(".exr")
+        whole = isinstance(path, (str, os.PathLike)) and os.fspath(path).endswith(".exr")
         _velo.image_write(list(self.parts) if whole else [self], path, options)
 
     def view(self, view: str = "standard", *, exposure: float = 0.0) -> "Image":
@@ -83,11 +88,11 @@ class Image(_velo.Image):
     def compare(self, reference: "Image") -> dict[str, float]:
         """Differences from a reference of the same size: mse, rel_mse, psnr (dB), flip, mean_ratio, max_abs, differing and
         not_finite (pixels)."""
-        return self._compare(reference, False)[0]
+        return self._compare(_check.instance(reference, Image, "reference"), False)[0]
 
     def difference(self, reference: "Image") -> "Image":
         """FLIP's differences from a reference, in false colours, as an 8-bit image."""
-        return self._compare(reference, True)[1]
+        return self._compare(_check.instance(reference, Image, "reference"), True)[1]
 
     def denoise(self, denoiser: str = "velo") -> "Image":
         """A denoised copy. The image must have the channels "error" and should have "features" (scene.render(channels=...)).
@@ -142,4 +147,4 @@ def read_image(path: Path, channels: Optional[Sequence[str]] = None, *, context:
     """Reads an image file: EXR, PNG, JPEG, HDR, PFM, TGA, BMP, GIF, PNM, QOI, WebP.
 
     channels: of an EXR file, only these; if they have one type, so has the image (ids stay uint32)."""
-    return _velo.image_read(context or default_context(), path, channels)
+    return _velo.image_read(context_or_default(context), path, channels)

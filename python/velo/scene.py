@@ -4,9 +4,9 @@ from __future__ import annotations
 import os
 from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence, Union
 
-from velo import _arrays, _velo
-from velo._context import default_context
-from velo._errors import Progress, Step, UsageError, unknown
+from velo import _arrays, _check, _velo
+from velo._context import context_or_default
+from velo._errors import Progress, Step, UsageError, unknown, wrong_value
 from velo.camera import Camera
 from velo.film import Film
 from velo.image import Image, Path, join
@@ -21,6 +21,10 @@ _ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file")
 # Settings that the world depends on; the others belong to the film and the render.
 _BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
 _MOST_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
+
+
+def _is_auto(tracer: Any) -> bool:
+    return isinstance(tracer, str) and tracer == "auto"
 
 
 class World(_velo.World):
@@ -77,7 +81,7 @@ class Scene(_velo.Scene):
     _film: Optional[Film]
 
     def __new__(cls, *, context: Any = None) -> "Scene":
-        self = super().__new__(cls, context or default_context())
+        self = super().__new__(cls, context_or_default(context))
         self._world = None
         self._changed = False
         self._film = None
@@ -96,8 +100,8 @@ class Scene(_velo.Scene):
         """Adds a camera and lights if there are none, and what is asked for. Keywords: vlCompleteDef's; environment may also
         be the path of an image."""
         self._changed = True
-        environment = keywords.get("environment")
-        if environment is not None and environment not in _ENVIRONMENTS:
+        environment = keywords.get("environment", "auto")
+        if not (isinstance(environment, str) and environment in _ENVIRONMENTS):
             keywords.update(environment="file", path=environment)
         self._complete(keywords)
 
@@ -165,7 +169,8 @@ class Scene(_velo.Scene):
 
     def add_sphere(self, center: Sequence[float], radius: float, **keywords: Any) -> Handle:
         """Adds a whole sphere: center (x, y, z) and radius in scene units. Keywords: as add_shape."""
-        x, y, z = center
+        x, y, z = (_check.number(value, "center") for value in _check.tuple_of(center, 3, "center", "three numbers"))
+        radius = _check.number(radius, "radius")
         place = [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
         return self.add_shape("sphere", radius=radius, z_min=-radius, z_max=radius, transform=place, **keywords)
 
@@ -178,7 +183,8 @@ class Scene(_velo.Scene):
         """Loads a model's file as one group, which add_instance places; the file's camera, lights and emission are ignored.
         name: the name of its instances; default the file's name without suffix. progress, keywords: as load."""
         self._changed = True
-        name = name if name is not None else os.path.basename(os.fspath(path)).split(".")[0]
+        if name is None and isinstance(path, (str, os.PathLike)):
+            name = os.path.basename(os.fspath(path)).split(".")[0]
         group, info = self._load_group(path, name, keywords, progress)
         return Model(group, name, info["low"], info["high"], info["shapes"], info["first_object"])
 
@@ -197,6 +203,7 @@ class Scene(_velo.Scene):
 
     def find(self, family: str, name: str) -> Handle:
         """The first object of a family with this name."""
+        _check.text(name, "name")
         names = []
         for handle in self._handles(family):
             if handle.name == name:
@@ -208,6 +215,7 @@ class Scene(_velo.Scene):
         """Changes what the keywords name; the rest stays. Textures, materials, emission and lights take the keywords of their
         add_ method; with a kind they become one of this kind, with defaults where nothing is given. Shapes take material and
         emission (None: none), instances transform (4 x 4, world from group)."""
+        _check.instance(handle, Handle, "handle")
         if handle.family == "lights" and "from_" in keywords:
             keywords["from"] = keywords.pop("from_")
         if handle.family in ("lights", "textures") and "image" in keywords:
@@ -247,9 +255,9 @@ class Scene(_velo.Scene):
         """The settings of the scene's file, changed by keywords (render lists them)."""
         settings = _velo.scene_settings(self)
         if resolution is not None:
-            settings.set_size(*resolution)
+            settings.set_size(*_check.tuple_of(resolution, 2, "resolution", "(width, height), two whole numbers from 1 to 65536"))
         if crop is not None:
-            settings.set_crop(*crop)
+            settings.set_crop(*_check.tuple_of(crop, 4, "crop", "(x0, y0, x1, y1), four whole numbers"))
         for name, value in keywords.items():
             settings.set(name, value)
         return settings
@@ -261,7 +269,8 @@ class Scene(_velo.Scene):
         previous: a world of another scene to share with, one that the same file was loaded into for example. progress: called
         about ten times a second with a velo.Step; False ends the build with a CancelledError. Keywords: color, light_sampler,
         regularize, bits."""
-        return self._build(self.settings(**keywords), previous, progress)
+        _check.instance(previous, World, "previous", optional=True)
+        return self._build(self.settings(**keywords), previous, _check.callback(progress, "progress"))
 
     def _build(self, settings: Any, previous: Optional[World] = None, progress: Optional[StepCallback] = None) -> World:
         key = tuple(settings.get(name) for name in _BUILD)
@@ -300,6 +309,7 @@ class Scene(_velo.Scene):
         tracer that choose_tracer names.
 
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
+        denoise = _check.flag(denoise, "denoise")
         settings, view = self._prepare(camera, resolution, crop, channels, film, denoise, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         self._film = target
@@ -316,12 +326,13 @@ class Scene(_velo.Scene):
 
         coarse: factors from 1 to 64, (8, 4, 2) for example: yields images of 1 / factor of the width and height first, with 1
         sample per pixel (Camera.coarse)."""
+        factors = [_check.whole(factor, "an item of coarse", 1, 64) for factor in _check.items(coarse, "coarse", "numbers")]
         settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
         target = film if film is not None else _velo.film_new(self._context_of(), settings)
         self._film = target
         world = self._build(settings)
         self._choose(world, view, target, settings, keywords)
-        for factor in coarse:
+        for factor in factors:
             yield self._coarse(world, view, settings, factor, channels)
         total = settings.get("spp")
         spp = max(1, target.spp)
@@ -357,21 +368,22 @@ class Scene(_velo.Scene):
     def _prepare(self, camera: Optional[Camera], resolution: Optional[tuple[int, int]], crop: Optional[Sequence[int]],
                  channels: Sequence[str], film: Optional[Film], denoise: bool,
                  keywords: dict[str, Any]) -> tuple[Any, Camera]:
-        if isinstance(channels, str):
-            raise UsageError("channels must be a list of names")
+        channels = _check.names(channels, "channels")
+        _check.instance(camera, Camera, "camera", optional=True)
+        _check.instance(film, Film, "film", optional=True)
         if film is not None:
             resolution, crop = film.resolution, film.crop
         elif camera is not None and resolution is None:
             resolution = camera.resolution
         if ("error" in channels or denoise) and film is None:
             keywords.setdefault("errors", True)
-        known = {name: value for name, value in keywords.items() if (name, value) != ("tracer", "auto")}
+        known = {name: value for name, value in keywords.items() if not (name == "tracer" and _is_auto(value))}
         settings = self.settings(resolution=resolution, crop=crop, **known)
         return settings, self._camera_for(camera, settings)
 
     @staticmethod
     def _choose(world: World, view: Camera, film: Film, settings: Any, keywords: dict[str, Any]) -> None:
-        if keywords.get("tracer") != "auto":
+        if not _is_auto(keywords.get("tracer")):
             return
         if film.spp:
             raise UsageError('tracer="auto": the film has samples of a tracer already; give its name')
@@ -404,6 +416,9 @@ class Scene(_velo.Scene):
                      mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Any) -> Image:
         """Ground truth without rendering colours (docs/ground-truth.md). forward, backward: the other cameras of the flow
         channels. mode: centre, nearest or coverage. ranks: of Cryptomatte. time: seconds."""
+        channels = _check.names(channels, "channels")
+        if not channels:
+            raise wrong_value("channels", "a list of at least one name", channels)
         settings, view = self._prepare(camera, resolution, crop, channels, film, False, keywords)
         options: dict[str, Any] = {"mode": mode, "ranks": ranks}
         if time is not None:

@@ -2,7 +2,15 @@
 #include "base/machine.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#if defined(__linux__)
+#include <sys/sysinfo.h>
+#endif
+
+#include "velo/base.h"
 
 #if defined(__GLIBC__)
 #include <malloc.h>
@@ -20,6 +28,41 @@ bool vl_machine_has_addresses(size_t bytes) {
   if (block == MAP_FAILED) return false;
   munmap(block, bytes);
   return true;
+}
+
+/* The memory of the machine, and of the control group where it is less. */
+static uint64_t machine_memory(void) {
+  uint64_t most = UINT64_MAX;
+#if defined(__linux__)
+  struct sysinfo info;
+  if (sysinfo(&info) == 0) most = ((uint64_t)info.totalram + info.totalswap) * info.mem_unit;
+  FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
+  unsigned long long limit;
+  if (file && fscanf(file, "%llu", &limit) == 1 && limit < most) most = limit;
+  if (file) fclose(file);
+#endif
+  return most;
+}
+
+/* Bytes of address space without memory: stacks, code, reservations. */
+static uint64_t empty_addresses(void) {
+  unsigned long long pages[2] = {0, 0};
+  FILE *file = fopen("/proc/self/statm", "r");
+  if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
+  if (file) fclose(file);
+  return pages[0] > pages[1] ? (pages[0] - pages[1]) * (uint64_t)sysconf(_SC_PAGESIZE) : 0;
+}
+
+uint64_t vl_memory_limit(const char **who) {
+  uint64_t most = machine_memory(), own = UINT64_MAX;
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_DATA, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) own = limit.rlim_cur;
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    uint64_t empty = empty_addresses(), left = limit.rlim_cur > empty ? limit.rlim_cur - empty : 0;
+    if (left < own) own = left;
+  }
+  if (who) *who = own < most ? "the process may have" : "the machine has";
+  return own < most ? own : most;
 }
 
 void vl_machine_return_memory(void) {

@@ -298,7 +298,7 @@ def materials_textures_lights_and_shapes_change():
         scene.hide(paint)
     with raises(velo.UsageError, "did you mean paint"):
         scene.find("materials", "pain")
-    with raises(velo.SceneError):
+    with raises(velo.UsageError, "transform", "nan"):
         scene.set(scene.handles("instances")[0], transform=numpy.full((4, 4), numpy.nan))
     scene.render(spp=1)  # the scene is still whole
 

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/sysinfo.h>
 #include <unistd.h>
 
 #include "cli/report.h"
@@ -12,14 +11,13 @@
 
 /* ---- the process ------------------------------------------------------------------------------------------------- */
 
-/* Bytes of address space and of resident memory of the process. */
-static void process_size(uint64_t *addresses, uint64_t *resident) {
+/* Bytes of resident memory of the process. */
+static uint64_t process_resident(void) {
   unsigned long long pages[2] = {0, 0};
   FILE *file = fopen("/proc/self/statm", "r");
   if (file && fscanf(file, "%llu %llu", &pages[0], &pages[1]) != 2) pages[0] = pages[1] = 0;
   if (file) fclose(file);
-  uint64_t page = (uint64_t)sysconf(_SC_PAGESIZE);
-  *addresses = pages[0] * page, *resident = pages[1] * page;
+  return pages[1] * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
 /* ---- who needs how much ------------------------------------------------------------------------------------------ */
@@ -70,8 +68,7 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
     layers |= output_holds_layers(outputs->paths[i]);
   }
   uint64_t values = layers ? channels_values(channels, job->defs->film.buckets) : 0;
-  uint64_t held = vl_context_memory(context, NULL), addresses, resident;
-  process_size(&addresses, &resident);
+  uint64_t held = vl_context_memory(context, NULL), resident = process_resident();
   memory_add(plan, "program", resident > held ? resident - held : 0);
   memory_add(plan, "scene", held);
   memory_add(plan, "film", film_bytes(job, frames));
@@ -82,18 +79,6 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
 }
 
 /* ---- does it fit ------------------------------------------------------------------------------------------------- */
-
-/* The memory available to the process, by the machine and its control group (version 2). */
-static uint64_t machine_bytes(void) {
-  struct sysinfo info;
-  uint64_t most = UINT64_MAX;
-  if (sysinfo(&info) == 0) most = ((uint64_t)info.totalram + info.totalswap) * info.mem_unit;
-  FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
-  unsigned long long limit;
-  if (file && fscanf(file, "%llu", &limit) == 1 && limit < most) most = limit;
-  if (file) fclose(file);
-  return most;
-}
 
 void memory_list(const MemoryPlan *plan, char *text, size_t size) {
   text[0] = 0;
@@ -114,17 +99,10 @@ static int too_much(const MemoryPlan *plan, uint64_t limit, const char *who) {
 }
 
 int memory_check(const MemoryPlan *plan, uint64_t limit) {
-  uint64_t addresses, resident;
-  process_size(&addresses, &resident);
   if (limit && plan->total > limit) return too_much(plan, limit, "--max-memory allows");
-  struct rlimit most;
-  if (getrlimit(RLIMIT_DATA, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total > most.rlim_cur)
-    return too_much(plan, most.rlim_cur, "the process may have");
-  uint64_t reserved = addresses > resident ? addresses - resident : 0; /* address space without memory: stacks, code */
-  if (getrlimit(RLIMIT_AS, &most) == 0 && most.rlim_cur != RLIM_INFINITY && plan->total + reserved > most.rlim_cur)
-    return too_much(plan, most.rlim_cur > reserved ? most.rlim_cur - reserved : 0, "the process may have");
-  if (plan->total > machine_bytes()) return too_much(plan, machine_bytes(), "the machine has");
-  return -1;
+  const char *who;
+  uint64_t most = vl_memory_limit(&who);
+  return plan->total > most ? too_much(plan, most, who) : -1;
 }
 
 void memory_report_json(const MemoryPlan *plan, uint64_t limit) {

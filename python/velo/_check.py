@@ -1,0 +1,124 @@
+"""Checks of arguments. Each failure is a UsageError that names the argument, what it may be, and its value."""
+from __future__ import annotations
+
+import itertools
+import math
+import numbers
+import operator
+import os
+from typing import Any, Optional, Sequence
+
+from velo._errors import wrong_value
+
+
+MOST_ITEMS = 65536  # of a list that is no array
+
+
+def instance(value: Any, kind: type, what: str, optional: bool = False) -> Any:
+    """A value of a class, or None where it is optional."""
+    if isinstance(value, kind) or (optional and value is None):
+        return value
+    raise wrong_value(what, f"a velo.{kind.__name__}" + (", or None" if optional else ""), value)
+
+
+def callback(value: Any, what: str) -> Any:
+    """A function, or None."""
+    if value is None or callable(value):
+        return value
+    raise wrong_value(what, "callable, or None", value)
+
+
+def items(value: Any, what: str, kind: str = "values") -> list[Any]:
+    """A list of a sequence or iterator; a text is not one."""
+    if isinstance(value, (str, bytes, dict)):
+        raise wrong_value(what, f"a list of {kind}", value)
+    try:
+        found = list(itertools.islice(value, MOST_ITEMS + 1))
+    except TypeError:
+        raise wrong_value(what, f"a list of {kind}", value) from None
+    if len(found) > MOST_ITEMS:
+        raise wrong_value(what, f"a list of at most {MOST_ITEMS} {kind}", value)
+    return found
+
+
+def names(value: Any, what: str) -> list[str]:
+    """A list of names."""
+    found = items(value, what, "names")
+    for name in found:
+        if not isinstance(name, str):
+            raise wrong_value(f"each item of {what}", "a name, a str", name)
+    return found
+
+
+def tuple_of(value: Any, count: int, what: str, rule: str) -> Sequence[Any]:
+    """Exactly `count` values; rule: what they are."""
+    if isinstance(value, (str, bytes, dict)):
+        raise wrong_value(what, rule, value)
+    try:
+        found = tuple(itertools.islice(value, count + 1))
+    except TypeError:
+        raise wrong_value(what, rule, value) from None
+    if len(found) != count:
+        raise wrong_value(what, rule, value)
+    return found
+
+
+def text(value: Any, what: str) -> str:
+    """A str."""
+    if not isinstance(value, str):
+        raise wrong_value(what, "a str", value)
+    return value
+
+
+def path(value: Any, what: str) -> Any:
+    """A path that files can have."""
+    try:
+        fine = isinstance(value, (str, bytes, os.PathLike)) and os.fsencode(value) and b"\0" not in os.fsencode(value)
+    except (TypeError, ValueError):
+        fine = False
+    if not fine:
+        raise wrong_value(what, "a path: a str or an os.PathLike", value)
+    return value
+
+
+def flag(value: Any, what: str) -> bool:
+    """True or False."""
+    if isinstance(value, (str, bytes)) or not (value is True or value is False or type(value).__name__ in ("bool_", "bool")):
+        raise wrong_value(what, "True or False", value)
+    return bool(value)
+
+
+def whole(value: Any, what: str, low: int, high: int) -> int:
+    """A whole number in a range."""
+    rule = f"a whole number from {low} to {high}"
+    if isinstance(value, bool):
+        raise wrong_value(what, rule, value)
+    if isinstance(value, numbers.Real) and not isinstance(value, numbers.Integral) and float(value).is_integer():
+        value = int(value)
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise wrong_value(what, rule, value) from None
+    if not low <= found <= high:
+        raise wrong_value(what, rule, value)
+    return found
+
+
+def number(value: Any, what: str, low: float = -math.inf, high: float = math.inf) -> float:
+    """A finite number in a range."""
+    if low > -math.inf and high < math.inf:
+        rule = f"a number from {low:g} to {high:g}"
+    else:
+        rule = "a finite number" + (f" of at least {low:g}" if low > -math.inf else "")
+    try:
+        found = math.nan if isinstance(value, (bool, str, bytes, complex)) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        found = math.nan
+    if not math.isfinite(found) or not low <= found <= high:
+        raise wrong_value(what, rule, value)
+    return found
+
+
+def nothing_or(check: Any, value: Any, *arguments: Any) -> Optional[Any]:
+    """None, or what a check returns."""
+    return None if value is None else check(value, *arguments)

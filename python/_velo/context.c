@@ -147,7 +147,7 @@ static vlResult check_output(vlContext *context, const char *path, vlError *erro
 static PyObject *with_path(const Context *self, PyObject *path, PathCall *call) {
   if (!context_check(self)) return NULL;
   PyObject *keep = PyList_New(0);
-  const char *file = keep ? keep_path(keep, path) : NULL;
+  const char *file = keep ? keep_path(keep, path, "path") : NULL;
   vlError error = {0};
   vlResult result = file ? call(self->context, file, &error) : VL_OK;
   Py_XDECREF(keep);

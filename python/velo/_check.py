@@ -11,6 +11,7 @@ from typing import Any, Optional, Sequence
 from velo._errors import wrong_value
 
 
+_NO_LISTS = (str, bytes, dict, set, frozenset)
 MOST_ITEMS = 65536  # of a list that is no array
 
 
@@ -30,7 +31,7 @@ def callback(value: Any, what: str) -> Any:
 
 def items(value: Any, what: str, kind: str = "values") -> list[Any]:
     """A list of a sequence or iterator; a text is not one."""
-    if isinstance(value, (str, bytes, dict)):
+    if isinstance(value, _NO_LISTS):
         raise wrong_value(what, f"a list of {kind}", value)
     try:
         found = list(itertools.islice(value, MOST_ITEMS + 1))
@@ -52,7 +53,7 @@ def names(value: Any, what: str) -> list[str]:
 
 def tuple_of(value: Any, count: int, what: str, rule: str) -> Sequence[Any]:
     """Exactly `count` values; rule: what they are."""
-    if isinstance(value, (str, bytes, dict)):
+    if isinstance(value, _NO_LISTS):
         raise wrong_value(what, rule, value)
     try:
         found = tuple(itertools.islice(value, count + 1))

@@ -1,9 +1,10 @@
 """Exceptions, the state of a render, messages of the library."""
 from __future__ import annotations
 
+import contextlib
 import difflib
 import logging
-from typing import Any, NamedTuple, Optional, Sequence
+from typing import Any, Iterator, NamedTuple, Optional, Sequence
 
 
 class Error(Exception):
@@ -119,6 +120,16 @@ def shown(value: Any) -> str:
 def wrong_value(what: str, rule: str, value: Any) -> UsageError:
     """A value that `what` must not have. rule: what it may be."""
     return UsageError(f"{what} must be {rule}; it is {shown(value)}")
+
+
+@contextlib.contextmanager
+def at_place(where: str) -> Iterator[None]:
+    """Errors inside of it begin with a place, such as recipe.models[0]."""
+    try:
+        yield
+    except Error as error:
+        error.message = f"{where}: {error.message}"
+        raise
 
 
 class Progress(NamedTuple):

@@ -7,23 +7,26 @@ import sys
 from typing import Optional, Sequence
 
 import velo
+from velo._errors import wrong_value
 from velo.dataset.generate import WRITERS, generate
 from velo.dataset.recipe import read_recipe
 
 
-def frame_numbers(text: Optional[str], shard: Optional[str], count: int) -> list[int]:
+def frame_numbers(text: Optional[str], shard: Optional[str], count: int) -> range:
     """The frames of --frames A-B[:STEP] and --shard I/N."""
-    numbers = list(range(count))
+    numbers = range(count)
     if text is not None:
-        match = re.fullmatch(r"(\d+)(?:(?:-|\.\.)(\d+))?(?::([1-9]\d*))?", text)
+        match = re.fullmatch(r"([0-9]{1,9})(?:(?:-|\.\.)([0-9]{1,9}))?(?::([0-9]{1,9}))?", text)
         if not match:
-            raise velo.UsageError(f"--frames {text}: expected A-B, A-B:STEP or A")
-        first, last = int(match[1]), int(match[2] or match[1])
-        numbers = list(range(first, last + 1, int(match[3] or 1)))
+            raise wrong_value("--frames", "A-B, A-B:STEP or A, numbers from 0", text)
+        first, last, step = int(match[1]), int(match[2] or match[1]), int(match[3] or 1)
+        if first > last or last >= count or step < 1:
+            raise wrong_value("--frames", f"numbers from 0 to {count - 1}, the lower one first, with a step from 1", text)
+        numbers = range(first, last + 1, step)
     if shard is not None:
-        match = re.fullmatch(r"(\d+)/(\d+)", shard)
+        match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", shard)
         if not match or not 1 <= int(match[1]) <= int(match[2]):
-            raise velo.UsageError(f"--shard {shard}: expected I/N with I from 1 to N")
+            raise wrong_value("--shard", "I/N with I from 1 to N", shard)
         numbers = numbers[int(match[1]) - 1::int(match[2])]
     return numbers
 
@@ -39,7 +42,7 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     parser.add_argument("--quiet", action="store_true", help="no line for each frame")
     options = parser.parse_args(arguments)
     try:
-        if options.threads:
+        if options.threads is not None:
             velo.set_threads(options.threads)
         recipe = read_recipe(options.recipe)
         frames = frame_numbers(options.frames, options.shard, recipe.frames)
@@ -48,6 +51,11 @@ def main(arguments: Optional[Sequence[str]] = None) -> int:
     except velo.Error as error:
         print(f"velo.dataset: {error}", file=sys.stderr)
         return error.code
+    except MemoryError:
+        print("velo.dataset: out of memory", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
     except OSError as error:
         print(f"velo.dataset: {error}", file=sys.stderr)
         return 4 if isinstance(error, FileNotFoundError) else 5

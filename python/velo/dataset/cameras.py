@@ -6,7 +6,7 @@ import os
 from typing import Any, NamedTuple
 
 import velo
-from velo._errors import UsageError
+from velo._errors import UsageError, at_place
 from velo.dataset.geometry import Matrix, basis, look_at, multiply
 from velo.dataset.random import Random
 from velo.dataset.recipe import Around, Fixed, Recipe, Rig, Trajectory
@@ -65,6 +65,8 @@ class Cameras:
             return self._around(rule, random)
         if isinstance(rule, Trajectory):
             poses = self._trajectory(rule.file)
+            if not poses:
+                raise UsageError(f"{rule.file}: the file has no poses")
             pose = poses[frame % len(poses)]
             width, height = self._recipe.resolution
             if pose.camera is not None and not rule.keywords:
@@ -72,19 +74,20 @@ class Cameras:
             return velo.Camera(width, height, world_from_camera=pose.world_from_camera, **rule.keywords)
         raise UsageError(f"unknown kind of camera: {type(rule).__name__}")
 
+    def _views(self, rule: Any, frame: int, random: Random) -> list[View]:
+        if not isinstance(rule, Rig):
+            return [View(rule.name, self._one(rule, frame, random))]
+        base = self._one(rule.base, frame, random)
+        pose: Matrix = [[float(value) for value in row] for row in base.world_from_camera]
+        return [View(part.get("name", f"camera{k}"), base.move(multiply(pose, part["pose"])))
+                for k, part in enumerate(rule.parts)]
+
     def views(self, frame: int) -> list[View]:
         """The cameras of a frame, in the recipe's order."""
         views: list[View] = []
         for number, rule in enumerate(self._recipe.cameras):
-            random = Random(self._recipe.seed, frame, f"camera {number}")
-            if not isinstance(rule, Rig):
-                views.append(View(rule.name, self._one(rule, frame, random)))
-                continue
-            base = self._one(rule.base, frame, random)
-            pose: Matrix = [[float(value) for value in row] for row in base.world_from_camera]
-            for k, part in enumerate(rule.parts):
-                own = multiply(pose, [[float(value) for value in row] for row in part["pose"]])
-                views.append(View(part.get("name", f"camera{k}"), base.move(own)))
+            with at_place(f"recipe.cameras[{number}]"):
+                views += self._views(rule, frame, Random(self._recipe.seed, frame, f"camera {number}"))
         names = [view.name for view in views]
         if len(set(names)) < len(names):
             views = [View(f"{view.name}{i}", view.camera) for i, view in enumerate(views)]

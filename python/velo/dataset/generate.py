@@ -5,9 +5,11 @@ import os
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
+from velo import _check
 from velo._context import protecting_context
-from velo._errors import UsageError
+from velo._errors import UsageError, unknown, wrong_value
 from velo.dataset.bop import BopWriter
+from velo.dataset.check import checked
 from velo.dataset.coco import CocoWriter
 from velo.dataset.exr import ExrWriter
 from velo.dataset.nerfstudio import NerfstudioWriter
@@ -21,9 +23,12 @@ WRITERS: dict[str, Any] = {"bop": BopWriter, "coco": CocoWriter, "nerfstudio": N
 def make_writers(stage: Stage, folder: str, names: Iterable[str]) -> list[Writer]:
     """The writers of these names: bop, coco, nerfstudio, exr."""
     writers = []
-    for name in names:
+    wanted = _check.names(names, "writers")
+    if not wanted:
+        raise UsageError(f"no writer is named (known: {', '.join(sorted(WRITERS))})")
+    for name in wanted:
         if name not in WRITERS:
-            raise UsageError(f"unknown writer '{name}' (known: {', '.join(sorted(WRITERS))})")
+            raise unknown("writer", name, list(WRITERS))
         writers.append(WRITERS[name](stage, folder))
     return writers
 
@@ -36,10 +41,20 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
     frames: numbers from 0; default all of the recipe. Shards on several machines make different frames of one folder; the
     tables over all frames are written anew by each, from what is there. A file that was read for the dataset (the recipe,
     models, cameras, textures) is not overwritten. progress: called with each finished frame."""
-    context = context or protecting_context()
+    if not isinstance(folder, (str, os.PathLike)) or not os.fspath(folder):
+        raise wrong_value("folder", "a path: a str or an os.PathLike", folder)
+    _check.callback(progress, "progress")
+    recipe = checked(recipe)
+    context = protecting_context() if context is None else context
     if recipe.path:
         context.note_input(recipe.path)
     stage = Stage(recipe, context=context)
+    last = stage.recipe.frames - 1
+    numbers = range(last + 1) if frames is None else frames
+    if not isinstance(numbers, range):
+        numbers = [_check.whole(number, "each of frames", 0, last) for number in _check.items(frames, "frames", "numbers")]
+    elif numbers and not (0 <= numbers[0] <= last and 0 <= numbers[-1] <= last):
+        raise wrong_value("frames", f"numbers from 0 to {last}", numbers)
     made = make_writers(stage, os.fspath(folder), writers)
 
     def write(images: list[Frame]) -> None:
@@ -50,7 +65,7 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
     # A frame is written while the next one renders.
     with ThreadPoolExecutor(max_workers=1) as pool:
         pending: Optional[tuple[int, Future[None]]] = None
-        for number in range(recipe.frames) if frames is None else frames:
+        for number in numbers:
             images = stage.render(number)
             _finish(pending, progress)
             pending = number, pool.submit(write, images)

@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass, field
 from typing import Any, Optional, Sequence, Union
 
-from velo._errors import UsageError
+from velo._errors import UsageError, shown, unknown, wrong_value
 from velo.dataset.random import Range
 
 Vector = Sequence[float]
@@ -158,62 +158,148 @@ class Recipe:
     path: str = ""  #: the recipe's file, if it came from one
 
 
-_KINDS = {"poses": Poses, "on_surface": OnSurface, "in_volume": InVolume, "fixed": Fixed, "around": Around,
-          "trajectory": Trajectory, "rig": Rig}
+_PLACINGS = {"poses": Poses, "on_surface": OnSurface, "in_volume": InVolume}
+_CAMERAS = {"fixed": Fixed, "around": Around, "trajectory": Trajectory, "rig": Rig}
 _MEMBERS = {"lights": Lights, "environment": Environment, "materials": Materials, "ground": Ground,
             "distractors": Distractors}
+_MOST_VALUES = 10000000  # of a recipe's file
+_MOST_LETTERS = 1 << 28
 
 
 def _make(kind: type, data: Any, where: str) -> Any:
     if not isinstance(data, dict):
-        raise UsageError(f"{where}: expected names and values")
-    known = {member.name for member in dataclasses.fields(kind)}
+        raise wrong_value(where, "names and values", data)
+    known = sorted(member.name for member in dataclasses.fields(kind))
     values = {}
     for name, value in data.items():
         if name not in known:
-            raise UsageError(f"{where}: unknown name '{name}' (known: {', '.join(sorted(known))})")
+            raise unknown(f"name in {where}:", str(name), known)
         values[name] = _value(name, value, f"{where}.{name}")
     return kind(**values)
 
 
-def _kind(data: Any, where: str) -> Any:
-    if not isinstance(data, dict) or data.get("kind") not in _KINDS:
-        raise UsageError(f"{where}: needs a kind, one of {', '.join(sorted(_KINDS))}")
-    return _make(_KINDS[data["kind"]], {name: value for name, value in data.items() if name != "kind"}, where)
+def _kind(data: Any, kinds: dict[str, type], where: str) -> Any:
+    word = data.get("kind") if isinstance(data, dict) else None
+    if not isinstance(word, str) or word not in kinds:
+        raise wrong_value(where, f"names and values with a kind, one of {', '.join(sorted(kinds))}", data if word is None else word)
+    return _make(kinds[word], {name: value for name, value in data.items() if name != "kind"}, where)
+
+
+def _list(value: Any, where: str) -> list[Any]:
+    if not isinstance(value, list):
+        raise wrong_value(where, "a list", value)
+    return value
 
 
 def _value(name: str, value: Any, where: str) -> Any:
-    if name in _MEMBERS and isinstance(value, dict):
-        return _make(_MEMBERS[name], value, where)
+    if name in _MEMBERS:
+        return value if value is None else _make(_MEMBERS[name], value, where)
     if name == "models":
         return [_make(Model, {"path": item} if isinstance(item, str) else item, f"{where}[{i}]")
-                for i, item in enumerate(value)]
-    if name in ("placing", "base") and isinstance(value, dict):
-        return _kind(value, where)
+                for i, item in enumerate(_list(value, where))]
+    if name == "placing":
+        return _kind(value, _PLACINGS, where)
+    if name == "base":
+        return _kind(value, _CAMERAS, where)
     if name == "cameras":
-        return [_kind(item, f"{where}[{i}]") for i, item in enumerate(value)]
+        return [_kind(item, _CAMERAS, f"{where}[{i}]") for i, item in enumerate(_list(value, where))]
     return value
+
+
+def _bounded(data: Any, left: int, depth: int = 0) -> int:
+    # YAML's references can make a few lines as large as one likes, or a list that contains itself.
+    if depth > 32:
+        raise UsageError("recipe: nested too deeply, or a part contains itself")
+    left -= 1
+    if isinstance(data, (list, tuple)):
+        for item in data:
+            left = _bounded(item, left, depth + 1)
+    elif isinstance(data, dict):
+        for item in data.values():
+            left = _bounded(item, left, depth + 1)
+    if left < 0:
+        raise UsageError(f"recipe: more than {_MOST_VALUES} values")
+    return left
 
 
 def recipe_from(data: dict[str, Any], folder: str = "") -> Recipe:
     """A recipe from dicts and lists, as YAML or JSON have them."""
+    from velo.dataset.check import checked
+    _bounded(data, _MOST_VALUES)
     recipe: Recipe = _make(Recipe, data, "recipe")
+    recipe = checked(recipe)
     recipe.folder = recipe.folder or folder
     return recipe
 
 
+def _pairs(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    names = [name for name, _ in pairs]
+    for i, name in enumerate(names):
+        if len(set(names)) < len(names) and name in names[:i]:
+            raise UsageError(f"the name {shown(name)} is there twice in one place")
+    return dict(pairs)
+
+
+def _read_json(text: str) -> Any:
+    import json
+    try:
+        return json.loads(text, object_pairs_hook=_pairs)
+    except json.JSONDecodeError as problem:
+        error = UsageError(f"this is not JSON: {problem.msg}")
+        error.line, error.column = problem.lineno, problem.colno
+        raise error from None
+
+
+def _read_yaml(text: str) -> Any:
+    try:
+        import yaml  # type: ignore[import]
+    except ImportError:
+        raise UsageError("YAML recipes need Python's module yaml (Debian: python3-yaml); JSON ones do not") from None
+
+    class Loader(yaml.SafeLoader):  # type: ignore[misc]
+        def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+            seen = set()
+            for key, _ in node.value:
+                if key.value.__hash__ and key.value in seen:
+                    error = UsageError(f"the name {shown(key.value)} is there twice in one place")
+                    error.line, error.column = key.start_mark.line + 1, key.start_mark.column + 1
+                    raise error
+                if key.value.__hash__:
+                    seen.add(key.value)
+            return super().construct_mapping(node, deep)
+
+    try:
+        return yaml.load(text, Loader)
+    except yaml.YAMLError as problem:
+        place = getattr(problem, "problem_mark", None)
+        error = UsageError(f"this is not YAML: {shown(getattr(problem, 'problem', None) or str(problem))}")
+        if place is not None:
+            error.line, error.column = place.line + 1, place.column + 1
+        raise error from None
+
+
 def read_recipe(path: Union[str, "os.PathLike[str]"]) -> Recipe:
     """Reads a recipe from a YAML file (needs python3-yaml) or a JSON file. Its paths are relative to its folder."""
-    import json
-    text = open(path, encoding="utf-8").read()
-    if os.fspath(path).endswith(".json"):
-        data = json.loads(text)
-    else:
+    if not isinstance(path, (str, os.PathLike)):
+        raise wrong_value("path", "a path: a str or an os.PathLike", path)
+    try:
         try:
-            import yaml  # type: ignore[import]
-        except ImportError:
-            raise UsageError("YAML recipes need Python's module yaml (Debian: python3-yaml); JSON ones do not") from None
-        data = yaml.safe_load(text)
-    recipe = recipe_from(data, os.path.dirname(os.path.abspath(path)))
-    recipe.path = os.path.abspath(path)
-    return recipe
+            with open(path, encoding="utf-8") as file:
+                text = file.read(_MOST_LETTERS + 1)
+            if len(text) > _MOST_LETTERS:
+                raise UsageError(f"a recipe has at most {_MOST_LETTERS} letters")
+            data = _read_json(text) if os.fspath(path).endswith(".json") else _read_yaml(text)
+        except UnicodeDecodeError as problem:
+            raise UsageError(f"this is not UTF-8: byte {problem.start}") from None
+        except RecursionError:
+            raise UsageError("recipe: nested too deeply") from None
+        except ValueError as problem:  # a date or a number that Python cannot hold; a path with zeros
+            if isinstance(problem, UsageError):
+                raise
+            raise UsageError(f"this cannot be read: {shown(str(problem))}") from None
+        recipe = recipe_from(data, os.path.dirname(os.path.abspath(path)))
+        recipe.path = os.path.abspath(path)
+        return recipe
+    except UsageError as error:
+        error.file = error.file or os.fspath(path)
+        raise

@@ -10,8 +10,10 @@ from typing import Any, NamedTuple, Optional
 import numpy
 
 import velo
-from velo._errors import UsageError
+from velo import _check
+from velo._errors import UsageError, at_place, unknown
 from velo.dataset.cameras import Cameras, View
+from velo.dataset.check import MOST_FRAMES, checked
 from velo.dataset.geometry import Matrix, multiply, place, rigid_inverse
 from velo.dataset.placing import Thing, place_things
 from velo.dataset.random import Random
@@ -100,15 +102,21 @@ class Stage:
     """Renders the frames of a recipe."""
 
     def __init__(self, recipe: Recipe, *, context: Any = None) -> None:
-        if not recipe.models:
-            raise UsageError("the recipe has no models")
+        recipe = checked(recipe)
         self.recipe = recipe
         self.context = context
         self._world: Any = None  # of the last frame
         self._build = {name: recipe.render[name] for name in ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
                        if name in recipe.render}
+        with at_place("recipe.render"):
+            settings = {name: value for name, value in recipe.render.items() if name not in ("denoise", "tracer") or value != "auto"}
+            velo.Scene(context=context).settings(**{name: value for name, value in settings.items() if name != "denoise"})
         self._cameras = Cameras(recipe)
-        self._solo = [self._load(model) for model in recipe.models]
+        self._cameras.views(0)
+        self._solo = []
+        for i, model in enumerate(recipe.models):
+            with at_place(f"recipe.models[{i}]"):
+                self._solo.append(self._load(model))
         names = [solo.name for solo in self._solo]
         if len(set(names)) < len(names):
             raise UsageError("two models have the same name: give them names")
@@ -131,6 +139,7 @@ class Stage:
 
     def plan(self, frame: int) -> Plan:
         """What a frame shows."""
+        _check.whole(frame, "frame", 0, MOST_FRAMES - 1)
         recipe = self.recipe
 
         def random(purpose: str) -> Random:
@@ -176,12 +185,10 @@ class Stage:
 
     def _given(self, frame: int) -> list[Placed]:
         frames = self.recipe.placing.frames
-        if not frames:
-            raise UsageError("poses: no frames are given")
         objects = []
         for name, pose in frames[frame % len(frames)]:
             if name not in self.names:
-                raise UsageError(f"poses: there is no model '{name}'")
+                raise unknown("model in recipe.placing:", name, self.names)
             model = self.names.index(name)
             matrix = [[float(value) for value in row] for row in pose]
             scale = self.recipe.models[model].scale

@@ -196,6 +196,18 @@ int report_stdout(int status) {
   return report_failure(STATUS_IO, "cannot write to stdout");
 }
 
+/* "1.0 kB", "12.3 MB" */
+static const char *bytes_text(char text[32], size_t bytes) {
+  double number = (double)bytes;
+  if (number < 1e3)
+    snprintf(text, 32, "%.0f bytes", number);
+  else if (number < 1e6)
+    snprintf(text, 32, "%.1f kB", number * 1e-3);
+  else
+    snprintf(text, 32, "%.1f MB", number * 1e-6);
+  return text;
+}
+
 int report_error(const vlError *error, vlResult result, const char *file) {
   int status = status_of(result);
   const char *message = error && error->message[0] ? error->message : vl_result_name(result);
@@ -203,10 +215,11 @@ int report_error(const vlError *error, vlResult result, const char *file) {
   if (result == VL_ERROR_MEMORY && state.context) {
     size_t peak;
     vl_context_memory(state.context, &peak);
-    int n = snprintf(longer, sizeof longer, "%s; at most %.1f MB were held", message, (double)peak * 1e-6);
+    char bytes[32];
+    int n = snprintf(longer, sizeof longer, "%s; at most %s were held", message, bytes_text(bytes, peak));
     if (state.memory_limit && n > 0 && n < (int)sizeof longer)
-      snprintf(longer + n, sizeof longer - (size_t)n, ", --max-memory allows %.1f MB",
-               (double)state.memory_limit * 1e-6);
+      snprintf(longer + n, sizeof longer - (size_t)n, ", --max-memory allows %s",
+               bytes_text(bytes, state.memory_limit));
     message = longer;
   }
   /* Messages about files that cannot be opened already name them. */

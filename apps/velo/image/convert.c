@@ -113,8 +113,12 @@ static int take_channel(vlContext *context, const Arguments *arguments, vlImage 
     const char *names[1024];
     int count = (int)vl_image_channels(*image);
     for (int c = 0; c < count; c++) names[c] = vl_image_channel_name(*image, (uint32_t)c);
-    return report_failure(STATUS_USAGE, "%s has no channel \"%s\"%s", path, name->text,
-                          did_you_mean("", name->text, names, count));
+    const char *near = did_you_mean("", name->text, names, count);
+    char list[600] = "";
+    size_t used = 0;
+    for (int c = 0; c < count && !*near && used + 80 < sizeof list; c++)
+      used += (size_t)snprintf(list + used, 80, "%s%.60s", c ? ", " : "; it has ", names[c]);
+    return report_failure(STATUS_USAGE, "%s has no channel \"%.200s\"%s%s", path, name->text, near, list);
   }
   vlImage *one = NULL;
   uint64_t too_large = 0;

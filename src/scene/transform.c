@@ -99,17 +99,22 @@ static void transform_instance(vlSceneInstance *instance, const Similarity *s) {
   for (uint32_t k = 0; k < instance->keys; k++) apply(&s->matrix, poses + 16 * (size_t)k);
 }
 
+static void transform_texture(vlTextureDef *texture, const Similarity *s) {
+  double *m = texture->texture_from_world, turned[3];
+  const double direction[3] = {texture->direction[0], texture->direction[1], texture->direction[2]};
+  const vlMat4 product = vl_mat4_multiply(vl_mat4_load(m), s->inverse);
+  memcpy(m, product.m, sizeof product.m);
+  vl_mat4_vector(&s->turn, direction, turned);
+  for (int i = 0; i < 3; i++) texture->direction[i] = (float)turned[i];
+}
+
 static bool transform_all(vlScene *scene, const Similarity *s) {
   const size_t textures = scene->textures.count; /* without those that are added for heights */
   bool good = true;
   for (size_t i = 0; good && i < scene->materials.count; i++) good = transform_material(scene, i, s);
   for (size_t i = 0; good && i < scene->shapes.count; i++) transform_shape(&scene->shapes.items[i], s);
   for (size_t i = 0; good && i < scene->instances.count; i++) transform_instance(&scene->instances.items[i], s);
-  for (size_t i = 0; good && i < textures; i++) {
-    double *m = scene->textures.items[i].texture_from_world;
-    const vlMat4 product = vl_mat4_multiply(vl_mat4_load(m), s->inverse);
-    memcpy(m, product.m, sizeof product.m);
-  }
+  for (size_t i = 0; good && i < textures; i++) transform_texture(&scene->textures.items[i], s);
   for (size_t i = 0; good && i < scene->media.count; i++) {
     apply(&s->matrix, scene->media.items[i].world_from_medium);
     scene->media.items[i].scale = (float)(scene->media.items[i].scale / s->scale);

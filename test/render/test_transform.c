@@ -164,6 +164,11 @@ static void test_textures(void **state) {
       "Texture \"c\" \"spectrum\" \"mix\" \"texture amount\" \"t\" \"rgb tex1\" [.1 .1 .1] \"rgb tex2\" [.9 .8 .7]\n"
       "Material \"diffuse\" \"texture reflectance\" \"c\"\n",
       floor_and_ball, 0.004);
+  expect_same_of(
+      lamp,
+      "Texture \"c\" \"spectrum\" \"directionmix\" \"vector3 dir\" [0 0.3 1] \"rgb tex1\" [.1 .1 .1] \"rgb tex2\" "
+      "[.9 .8 .7]\nMaterial \"diffuse\" \"texture reflectance\" \"c\"\n",
+      floor_and_ball, 0.004);
 }
 
 static void test_heights(void **state) {

@@ -35,6 +35,7 @@ bool verify_has_surfaces(VerifyLights lights) {
 
 /* What decides which tracers claim the scene's light. */
 typedef struct Features {
+  bool hair;           /* its lobes are so narrow that uniform directions hardly ever meet them */
   bool smooth;         /* a material that may reflect or refract like a mirror */
   bool media;          /* any medium */
   bool emissive_media; /* a medium that emits light */
@@ -97,8 +98,10 @@ static Features find_features(const Verify *v) {
   const vlMaterialDef *material;
   const vlMediumDef *medium;
   const vlLightDef *light;
-  for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++)
+  for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++) {
     f.smooth = f.smooth || may_be_smooth(material);
+    f.hair = f.hair || material->kind == VL_MATERIAL_HAIR;
+  }
   for (uint32_t i = 1; (medium = vl_scene_medium(v->scene, (vlMediumId){i})); i++) {
     f.media = true;
     f.emissive_media = f.emissive_media || emits(medium);
@@ -138,7 +141,7 @@ static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int a
     verify_note(v, "lightpath is not compared: it has no light from media");
   else
     add(v, (VerifyRun){.name = "lightpath", .tracer = VL_TRACER_LIGHT_PATH, .lights = lights, .against = against});
-  if (!f->smooth && !f->media && !small)
+  if (!f->smooth && !f->media && !f->hair && !small)
     add(v, (VerifyRun){.name = "randomwalk", .tracer = VL_TRACER_RANDOM_WALK, .lights = lights, .against = against});
   add(v,
       (VerifyRun){.name = "merging", .tracer = VL_TRACER_MERGING, .lights = lights, .against = against, .apart = true});

@@ -124,7 +124,8 @@ VL_API uint32_t vl_film_spp(const vlFilm *film);
 /** How to develop a film. */
 typedef struct vlDevelopDef {
   uint32_t cookie;
-  float exposure; /**< factor on the linear values; default 1 */
+  float exposure;   /**< factor on the linear values; default 1 */
+  bool independent; /**< vl_film_errors: as if the samples of a pixel were independent; default false */
 } vlDevelopDef;
 /** The default def. */
 VL_API vlDevelopDef vl_default_develop_def(void);
@@ -135,9 +136,12 @@ VL_API vlDevelopDef vl_default_develop_def(void);
  */
 VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 /** Makes a float image error.R error.G error.B of the crop window, owned by the caller: the standard errors of
- * vl_film_develop's values. They are square roots of the estimated variance of the mean. The estimate treats a pixel's
- * samples as independent; the true error of most samplers is smaller. Pixels with fewer than 2 samples have infinity.
- * ARGUMENT when the film was made without vlFilmDef.errors. */
+ * vl_film_develop's values. They are square roots of the estimated variance of the mean, for the samples that the
+ * sampler gives, which are better distributed than independent ones (docs/ground-truth.md, Standard error). How much
+ * better they are is estimated in cells of 8 x 8 pixels of the whole image, so a crop has the errors of the whole image
+ * if it ends at multiples of 8. With def.independent they are those of independent samples instead, each from the samples
+ * of its pixel only. Pixels with fewer than 2 samples have infinity. ARGUMENT when the film was made without
+ * vlFilmDef.errors. */
 VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 /** Makes a float image of the crop window with one channel per bucket, owned by the caller. Channels are named as
  * emitted light in Fichet, Pacanowski, Wilkie 2021 ("An OpenEXR layout for spectral images"): S0.374,688nm is the

@@ -29,7 +29,7 @@ typedef struct Merge {
   vlSampleSpan *ranges, *joined; /* samples of the result's block; working memory of join */
   uint32_t range_count;
   vlComparedNoise compared; /* of the result's block: that of its only part, 0 if it has several */
-  char *sum, *data;         /* the result's block, with the means of its only part; one part's block */
+  char *sum, *data;         /* the result's block; one part's block */
   vlFilmReader earlier;     /* the file that the result replaces; only what the result has, too; descriptor -1: none */
   vlFileWriter file;
   vlError *error;
@@ -217,6 +217,10 @@ static vlResult check_earlier(Merge *m) {
                  r->path, r->head.x0, r->head.y0);
 }
 
+static uint32_t last_end(const vlSampleSpan *ranges, uint32_t count) {
+  return ranges[count - 1].end;
+}
+
 static vlResult merge_block(Merge *m) {
   vlResult result = VL_OK;
   for (uint32_t i = 0; i < m->count && result == VL_OK; i++) {
@@ -243,7 +247,9 @@ static vlResult merge_block(Merge *m) {
     if (samples > UINT64_C(1) << 31)
       return vl_fail(m->error, VL_ERROR_SCENE, "%s: a film holds at most 2^31 samples per pixel", p->reader.path);
     result = vl_film_reader_data(&p->reader, first ? m->sum : m->data, m->error);
-    if (result == VL_OK && !first) vl_film_add_block(def, pixels, m->sum, m->data);
+    if (result == VL_OK && !first)
+      vl_film_add_block(def, pixels, m->sum, last_end(m->ranges, m->range_count), m->data,
+                        last_end(p->reader.ranges, p->reader.head.range_count));
     if (result == VL_OK) result = join(m, p->reader.ranges, p->reader.head.range_count);
     if (result != VL_OK) return result;
     p->added = true;

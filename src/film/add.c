@@ -7,12 +7,23 @@ enum {
   WEIGHT_LIMIT = (127 + 4) << 23
 };
 
-uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32_t *bad_y) {
+/* Copies a pixel's sums from the front when it is new in the pass. */
+static inline void begin_pixel(vlFilm *film, size_t at) {
   static const vlFilmPixel zero = {{0, 0, 0}, 0, 0};
-  uint32_t bad = 0, width = film->width, pass = film->pass, x0 = film->def.crop[0], y0 = film->def.crop[1];
+  if (film->stamp[at] == film->pass) return;
+  film->stamp[at] = film->pass;
+  film->back[at] = film->front ? film->front[at] : zero;
+  if (film->def.errors) vl_film_begin_moments(film, at);
+}
+
+void vl_film_miss(vlFilm *film, int32_t px, int32_t py) {
+  uint32_t x = (uint32_t)px - film->def.crop[0], y = (uint32_t)py - film->def.crop[1];
+  if (x < film->width && y < film->height && film->in_pass) begin_pixel(film, (size_t)y * film->width + x);
+}
+
+uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32_t *bad_y) {
+  uint32_t bad = 0, width = film->width, x0 = film->def.crop[0], y0 = film->def.crop[1];
   vlFilmPixel *back = film->back;
-  const vlFilmPixel *front = film->front;
-  uint32_t *stamp = film->stamp;
   for (uint32_t i = 0; i < s->n; i++) {
     uint32_t x = (uint32_t)s->px[i] - x0, y = (uint32_t)s->py[i] - y0;
     float a = s->a[i], w = s->weight[i];
@@ -26,20 +37,24 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
         if (bad_x) *bad_x = s->px[i];
         if (bad_y) *bad_y = s->py[i];
       }
+      vl_film_miss(film, s->px[i], s->py[i]);
       continue;
     }
     size_t at = (size_t)y * width + x;
     vlFilmPixel *p = back + at;
-    bool is_new = stamp[at] != pass;
-    if (is_new) {
-      stamp[at] = pass;
-      *p = front ? front[at] : zero;
-    }
-    if (film->def.errors) vl_film_add_moments(film, at, is_new, (const float[3]){s->r[i], s->g[i], s->b[i]});
+    begin_pixel(film, at);
     int64_t weight = (int64_t)((double)w * (1 << VL_WEIGHT_BITS) + (w < 0.0f ? -0.5 : 0.5));
-    p->color[0] += vl_film_product(s->r[i], weight);
-    p->color[1] += vl_film_product(s->g[i], weight);
-    p->color[2] += vl_film_product(s->b[i], weight);
+    vlInt128 red = vl_film_product(s->r[i], weight), green = vl_film_product(s->g[i], weight);
+    vlInt128 blue = vl_film_product(s->b[i], weight);
+    p->color[0] += red, p->color[1] += green, p->color[2] += blue;
+    if (film->def.errors) {
+      vl_film_add_moments(film, at, (const float[3]){s->r[i], s->g[i], s->b[i]});
+      if (s->index && s->index[i] < film->part) {
+        vlFilmMoments *m = &film->moments[1][at];
+        m->first[0] += red, m->first[1] += green, m->first[2] += blue;
+        m->first_weight += weight;
+      }
+    }
     a = a > 0.0f ? (a < 1.0f ? a : 1.0f) : 0.0f;
     int64_t alpha = (int64_t)(a * 0x1p24f) * weight; /* units of 2^-48 */
     p->alpha += (alpha + (INT64_C(1) << 19)) >> 20;

@@ -41,14 +41,12 @@ vlResult vl_film_set_block_spp(vlFilm *film, uint32_t block, uint32_t spp) {
 vlComparedNoise *vl_film_compared(vlFilm *film) {
   if (!film->compared)
     film->compared = vl_alloc_zero(film->context, vl_film_block_count(film->def.crop), sizeof *film->compared);
-  if (!film->earlier) film->earlier = vl_alloc_zero(film->context, vl_film_pixels(film), sizeof *film->earlier);
-  return film->earlier ? film->compared : NULL;
+  return film->compared;
 }
 
 void vl_film_forget_compared(vlFilm *film) {
   vl_free(film->context, film->compared);
-  vl_free(film->context, film->earlier);
-  film->compared = NULL, film->earlier = NULL;
+  film->compared = NULL;
 }
 
 bool vl_film_is_adaptive(const vlFilm *film) {

@@ -12,7 +12,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
                "film files are little-endian, and sums are stored as they are");
 
 enum {
-  VL_FILM_FORMAT = 2, /* 1 is read, too: it has no vlEarlierMean */
+  VL_FILM_FORMAT = 3, /* 1 and 2 are read, too: file_old.c */
   VL_FILM_MOST_RANGES = 1 << 16,
   VL_FILM_MOST_HEADER = 1 << 26 /* bytes */
 };
@@ -30,7 +30,7 @@ extern const char vl_film_magic[8];
 
 typedef struct vlFilmBlockHead {
   uint32_t magic, range_count, x0, y0, x1, y1;
-  uint64_t data_size;       /* bytes of sums, and of a vlEarlierMean per pixel where there is a comparison */
+  uint64_t data_size;       /* bytes of sums */
   vlComparedNoise compared; /* 0 where samples were not chosen by their noise */
 } vlFilmBlockHead;
 _Static_assert(sizeof(vlFilmBlockHead) == 48, "no padding");
@@ -42,14 +42,15 @@ typedef struct vlFilmShape {
   uint32_t sequence;
 } vlFilmShape;
 
+enum { VL_FILM_OLD_MEAN = 16 }; /* bytes of a pixel's mean, which blocks of format 2 with a comparison have */
 /* Bytes of a pixel's sums in a file. */
 static inline size_t vl_film_pixel_size(const vlFilmDef *def) {
   return sizeof(vlFilmPixel) + (def->errors ? sizeof(vlFilmMoments) : 0) +
          def->buckets * (sizeof(vlInt128) + sizeof(int64_t));
 }
-/* The most bytes of a block's data. */
+/* The most bytes of a block's data, in files of all formats. */
 static inline size_t vl_film_most_data(const vlFilmDef *def) {
-  return (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * (vl_film_pixel_size(def) + sizeof(vlEarlierMean));
+  return (size_t)VL_FILM_BLOCK * VL_FILM_BLOCK * (vl_film_pixel_size(def) + VL_FILM_OLD_MEAN);
 }
 uint32_t vl_film_crc(uint32_t crc, const void *data, size_t size);
 
@@ -98,16 +99,25 @@ bool vl_film_begins_as_film(const char *path);
 void vl_film_reader_close(vlFilmReader *reader);
 /* Reads the head and the ranges of the next block; reader->next <= reader->blocks. */
 vlResult vl_film_reader_next(vlFilmReader *reader, vlError *error);
-/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra, then vlEarlierMean if
- * head.compared.spp. */
+/* Reads and checks the data of that block: pixels (row by row), then moments, then spectra. data: of vl_film_most_data
+ * bytes. */
 vlResult vl_film_reader_data(vlFilmReader *reader, void *data, vlError *error);
 /* Reads the CRC of that block from the file without checking it. */
 vlResult vl_film_reader_crc(vlFilmReader *reader, uint32_t *crc, vlError *error);
 
 /* ---- merging ----------------------------------------------------------------------------------------------------- */
 
-/* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file. */
-void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, const void *from);
+/* Adds the sums in `from` to those in `to`; both hold a block's data as stored in the file. to_end, from_end: the
+ * indices behind their last samples. */
+void vl_film_add_block(const vlFilmDef *def, size_t pixels, void *to, uint32_t to_end, const void *from,
+                       uint32_t from_end);
+
+/* ---- earlier formats --------------------------------------------------------------------------------------------- */
+
+/* The size of a block's data in a file of format 1 or 2. compared: it has a comparison, and means with it. */
+size_t vl_film_old_data_size(const vlFilmDef *def, uint32_t format, size_t pixels, bool compared);
+/* Brings a block's data of format 1 or 2 into the present form, in place; data has room for vl_film_most_data bytes. */
+void vl_film_convert_old_data(const vlFilmDef *def, size_t pixels, void *data);
 
 /* ---- locks ------------------------------------------------------------------------------------------------------- */
 

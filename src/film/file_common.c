@@ -31,8 +31,6 @@ vlResult vl_film_put_header(vlFileWriter *writer, const char *header) {
 size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_t range_count,
                           const vlComparedNoise *compared, vlFilmBlockHead *head) {
   size_t pixels = (size_t)(place[2] - place[0]) * (place[3] - place[1]), each = vl_film_pixel_size(def);
-  bool is_compared = range_count && compared && compared->spp;
-  if (is_compared) each += sizeof(vlEarlierMean);
   *head = (vlFilmBlockHead){.magic = VL_FILM_BLOCK_MAGIC,
                             .range_count = range_count,
                             .x0 = place[0],
@@ -40,6 +38,6 @@ size_t vl_film_block_head(const vlFilmDef *def, const uint32_t place[4], uint32_
                             .x1 = place[2],
                             .y1 = place[3],
                             .data_size = range_count ? pixels * each : 0};
-  if (is_compared) head->compared = *compared;
+  if (range_count && compared && compared->spp) head->compared = *compared;
   return sizeof *head + range_count * sizeof(vlSampleSpan) + head->data_size + sizeof(uint32_t);
 }

@@ -61,15 +61,12 @@ static void place_block(vlFilm *film, const vlFilmBlockHead *h, const char *data
   const char *moments = data + pixels * sizeof(vlFilmPixel);
   const char *sums = moments + (film->def.errors ? pixels * sizeof(vlFilmMoments) : 0);
   const char *weights = sums + pixels * n * sizeof(vlInt128);
-  const char *earlier = weights + pixels * n * sizeof(int64_t);
   for (uint32_t y = 0; y < height; y++) {
     size_t from = (size_t)y * width;
     size_t to = (size_t)(h->y0 + y - film->def.crop[1]) * film->width + (h->x0 - film->def.crop[0]);
     memcpy(film->front + to, data + from * sizeof(vlFilmPixel), width * sizeof(vlFilmPixel));
     if (film->def.errors)
       memcpy(film->moments[0] + to, moments + from * sizeof(vlFilmMoments), width * sizeof(vlFilmMoments));
-    if (h->compared.spp)
-      memcpy(film->earlier + to, earlier + from * sizeof(vlEarlierMean), width * sizeof(vlEarlierMean));
     if (!n) continue;
     memcpy(film->spectrum.sums[0] + to * n, sums + from * n * sizeof(vlInt128), width * n * sizeof(vlInt128));
     memcpy(film->spectrum.weights[0] + to * n, weights + from * n * sizeof(int64_t), width * n * sizeof(int64_t));
@@ -104,6 +101,8 @@ static vlResult fill(vlFilmReader *r, vlFilm *film, bool blocks_differ, vlError 
       film->compared[block] = r->head.compared;
     }
     place_block(film, &r->head, data);
+    uint32_t end = r->ranges[r->head.range_count - 1].end;
+    if (film->end < end) film->end = end;
     if (blocks_differ && vl_film_set_block_spp(film, block, r->ranges[0].end - r->ranges[0].first) != VL_OK)
       result = vl_fail_memory(error);
   }

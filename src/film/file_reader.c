@@ -2,7 +2,6 @@
  * and their sizes must match the size of the file. */
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -130,8 +129,13 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (result != VL_OK) return result;
   vl_film_block_place(r->shape.def.crop, r->next, place);
   bool good = h->magic == VL_FILM_BLOCK_MAGIC && h->range_count <= VL_FILM_MOST_RANGES;
-  size_t whole = vl_film_block_head(&r->shape.def, place, good ? h->range_count : 0,
-                                    r->format > 1 ? &h->compared : NULL, &expected);
+  uint32_t ranges = good ? h->range_count : 0;
+  size_t whole = vl_film_block_head(&r->shape.def, place, ranges, NULL, &expected);
+  if (ranges && r->format < VL_FILM_FORMAT) {
+    size_t pixels = (size_t)(place[2] - place[0]) * (place[3] - place[1]), present = expected.data_size;
+    expected.data_size = vl_film_old_data_size(&r->shape.def, r->format, pixels, h->compared.spp > 0);
+    whole += expected.data_size - present;
+  }
   if (!good || h->x0 != place[0] || h->y0 != place[1] || h->x1 != place[2] || h->y1 != place[3] ||
       h->data_size != expected.data_size)
     return damaged(r, "a block's head", error);
@@ -145,7 +149,7 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (size && (result = get(r, r->ranges, size, r->at + sizeof *h, error)) != VL_OK) return result;
   if (!good_ranges(r->ranges, h->range_count)) return damaged(r, "a block's samples", error);
   r->crc = vl_film_crc(vl_film_crc(0, h, sizeof *h), r->ranges, size);
-  if (r->format == 1) h->compared = (vlComparedNoise){.spp = 0}; /* its means are missing */
+  if (r->format == 1) h->compared = (vlComparedNoise){.spp = 0}; /* of another estimate */
   r->data_at = r->at + sizeof *h + size;
   r->at += whole;
   r->next++;
@@ -176,23 +180,14 @@ static bool good_values(const vlFilmDef *def, size_t pixels, uint64_t samples, c
   }
   const vlFilmMoments *m = (const void *)(p + pixels);
   for (size_t i = 0; i < pixels && def->errors; i++) {
-    for (int c = 0; c < 3; c++) good &= within(m[i].plain[c], samples, 40 + VL_COLOR_BITS);
-    good &= m[i].samples <= samples;
+    for (int c = 0; c < 3; c++)
+      good &= within(m[i].plain[c], samples, 40 + VL_COLOR_BITS) && within(m[i].first[c], samples, 44 + VL_COLOR_BITS);
+    good &= m[i].samples <= samples && within(m[i].first_weight, samples, 4 + VL_WEIGHT_BITS);
   }
-  const vlInt128 *sums = (const void *)(m + (def->errors ? pixels : 0));
+  const vlPackedInt128 *sums = (const void *)(m + (def->errors ? pixels : 0));
   const int64_t *weights = (const void *)(sums + pixels * def->buckets);
   for (size_t i = 0; i < pixels * def->buckets; i++)
     good &= within(sums[i], 4 * samples, 44 + VL_COLOR_BITS) && within(weights[i], 4 * samples, 4 + VL_WEIGHT_BITS);
-  return good;
-}
-
-static bool good_means(const vlFilmDef *def, size_t pixels, uint64_t samples, const char *data) {
-  const vlEarlierMean *mean = (const void *)(data + pixels * vl_film_pixel_size(def));
-  bool good = true;
-  for (size_t i = 0; i < pixels; i++) {
-    for (int c = 0; c < 3; c++) good &= isfinite(mean[i].color[c]);
-    good &= mean[i].samples <= samples && mean[i].samples == mean[0].samples;
-  }
   return good;
 }
 
@@ -206,8 +201,8 @@ vlResult vl_film_reader_data(vlFilmReader *r, void *data, vlError *error) {
   if (vl_film_crc(r->crc, data, h->data_size) != crc) return damaged(r, "the CRC of a block", error);
   size_t pixels = (size_t)(h->x1 - h->x0) * (h->y1 - h->y0);
   uint64_t samples = vl_film_samples(r->ranges, h->range_count);
-  if (!good_values(&r->shape.def, pixels, samples, data) ||
-      (h->compared.spp && !good_means(&r->shape.def, pixels, samples, data)))
+  if (r->format < VL_FILM_FORMAT) vl_film_convert_old_data(&r->shape.def, pixels, data);
+  if (!good_values(&r->shape.def, pixels, samples, data))
     return damaged(r, "sums that its samples cannot have", error);
   return VL_OK;
 }

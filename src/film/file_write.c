@@ -54,7 +54,7 @@ static bool fits_grid(const uint32_t window[4], const uint32_t crop[4]) {
 }
 
 /* Copies a block's data to `to`, in the order of the file. Returns the end of the copied data. */
-static char *gather(const vlFilm *film, const uint32_t place[4], bool compared, char *to) {
+static char *gather(const vlFilm *film, const uint32_t place[4], char *to) {
   uint32_t width = place[2] - place[0], n = film->def.buckets;
   size_t first = (size_t)(place[1] - film->def.crop[1]) * film->width + (place[0] - film->def.crop[0]);
   size_t rows = place[3] - place[1], line = film->width;
@@ -66,8 +66,6 @@ static char *gather(const vlFilm *film, const uint32_t place[4], bool compared, 
     memcpy(to, film->spectrum.sums[0] + (first + y * line) * n, width * n * sizeof(vlInt128));
   for (size_t y = 0; y < rows && n; y++, to += width * n * sizeof(int64_t))
     memcpy(to, film->spectrum.weights[0] + (first + y * line) * n, width * n * sizeof(int64_t));
-  for (size_t y = 0; y < rows && compared; y++, to += width * sizeof(vlEarlierMean))
-    memcpy(to, film->earlier + first + y * line, width * sizeof(vlEarlierMean));
   return to;
 }
 
@@ -84,7 +82,7 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
   to += sizeof head;
   if (head.range_count) {
     memcpy(to, &range, sizeof range);
-    to = gather(run->film, place, head.compared.spp > 0, to + sizeof range);
+    to = gather(run->film, place, to + sizeof range);
   }
   uint32_t crc = vl_film_crc(0, buffer, (size_t)(to - buffer));
   memcpy(to, &crc, sizeof crc);

@@ -19,6 +19,7 @@ typedef struct vlFilmSamples {
   const int32_t *px, *py;
   const float *r, *g, *b, *a;
   const float *weight; /* of the pixel filter: filter value / pdf, may be negative; rounded to a multiple of 2^-24 */
+  const uint32_t *index; /* of the samples in their sequence; read in films with errors; null: behind all others */
 } vlFilmSamples;
 
 /* Adds samples; between begin_pass and commit_pass. Returns the number of dropped samples; *bad_x, *bad_y (may be null)
@@ -63,7 +64,7 @@ bool vl_film_is_adaptive(const vlFilm *film);
 
 /* The noise of a block when adaptive sampling last compared it with the threshold (render/adaptive.h), with the number
  * of samples that it had then and the view that made the display values: the view's kind, and the factor on the linear
- * values. spp 0: it was never compared. Film files hold it as it is in memory, with the means below. */
+ * values. spp 0: it was never compared. Film files hold it as it is in memory. */
 typedef struct vlComparedNoise {
   uint32_t spp;
   float noise, factor;
@@ -71,13 +72,7 @@ typedef struct vlComparedNoise {
 } vlComparedNoise;
 /* One per block. Kept with the film; null: out of memory. */
 vlComparedNoise *vl_film_compared(vlFilm *film);
-/* The mean of a pixel's first samples, kept when its block was last compared at a power of two samples; samples 0: none
- * was kept. The difference from the mean of more samples shows how much the error really falls. */
-typedef struct vlEarlierMean {
-  float color[3];
-  uint32_t samples;
-} vlEarlierMean;
-/* Sets both back to 0, for samples that adaptive sampling did not choose. */
+/* Sets them back to 0, for samples that adaptive sampling did not choose. */
 void vl_film_forget_compared(vlFilm *film);
 
 /* The factor on the linear values that an exposure (as vl_image_view's) and a further factor make together. */
@@ -89,8 +84,7 @@ double vl_film_view_factor(float exposure, float scale);
  * independent. For films with errors; infinite below 2 samples. */
 double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, float exposure, float scale,
                            double correlation);
-/* Sets the block's vlComparedNoise to the above, and keeps its means if it has a power of two samples. After
- * vl_film_compared, which allocates both. Different blocks at the same time. */
+/* Sets the block's vlComparedNoise to the above. After vl_film_compared. Different blocks at the same time. */
 void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation);
 
 /* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
@@ -106,6 +100,11 @@ void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);
  * the front set to the back set, and the pass adds there; commit swaps the sets, abandon drops the back set. The only
  * cost is one test of the pixel's stamp. Error of begin_pass: MEMORY (the sets are allocated at first need). */
 vlResult vl_film_begin_pass(vlFilm *film);
+/* The indices of the samples that the pass adds: first to end - 1, the same in all pixels that get samples. They come
+ * after all samples that these pixels have. After vl_film_begin_pass, for films with errors. */
+void vl_film_set_pass_samples(vlFilm *film, uint32_t first, uint32_t end);
+/* A pixel of the running pass that gets no sample of an index which the others get. */
+void vl_film_miss(vlFilm *film, int32_t x, int32_t y);
 void vl_film_commit_pass(vlFilm *film);
 void vl_film_abandon_pass(vlFilm *film);
 

@@ -1,9 +1,7 @@
-/* film/moments.c: second moments of a pixel's samples, and the standard errors that follow from them. The sums are
- * exact, so that neither order nor grouping of the samples changes the result. */
+/* film/moments.c: second moments of a pixel's samples, the sums of its first samples, and the standard error of
+ * independent samples. The sums are exact, so that neither order nor grouping of the samples changes the result. */
 #include <math.h>
-#include <string.h>
 
-#include "base/cookie.h"
 #include "film/sums.h"
 
 /* Adds value^2 in units of 2^-VL_SQUARE_BITS: 48 bits of mantissa, shifted to their place among 192 bits. |value| <
@@ -24,9 +22,18 @@ static inline void add_square(uint64_t sum[3], float value) {
   sum[2] += (place > 80 ? square >> (128 - place) : 0) + (now < old);
 }
 
-void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]) {
+void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel) {
+  for (int c = 0; c < 3; c++) moments->first[c] = pixel->color[c];
+  moments->first_weight = pixel->weight;
+}
+
+void vl_film_begin_moments(vlFilm *film, size_t at) {
+  film->moments[1][at] = film->moments[0][at];
+  if (film->part_moves) vl_film_join_parts(&film->moments[1][at], &film->back[at]);
+}
+
+void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]) {
   vlFilmMoments *m = &film->moments[1][at];
-  if (is_new) *m = film->moments[0][at];
   for (int c = 0; c < 3; c++) {
     m->plain[c] += vl_film_product(color[c], INT64_C(1) << VL_WEIGHT_BITS);
     add_square(m->squares[c], color[c]);
@@ -34,28 +41,29 @@ void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color
   m->samples++;
 }
 
-void vl_film_merge_moments(vlFilm *film, const vlFilm *other) {
-  if (!other->moments[0]) return;
-  for (size_t i = 0; i < vl_film_pixels(film); i++) {
-    vlFilmMoments *to = &film->moments[0][i];
-    const vlFilmMoments *from = &other->moments[0][i];
-    for (int c = 0; c < 3; c++) {
-      to->plain[c] += from->plain[c];
-      uint64_t carry = 0;
-      for (int k = 0; k < 3; k++) {
-        uint64_t sum = to->squares[c][k] + from->squares[c][k], more = sum + carry;
-        carry = (sum < from->squares[c][k]) | (more < sum);
-        to->squares[c][k] = more;
-      }
-    }
-    to->samples += from->samples;
+static void add_squares(uint64_t to[3], const uint64_t from[3]) {
+  uint64_t carry = 0;
+  for (int k = 0; k < 3; k++) {
+    uint64_t sum = to[k] + from[k], more = sum + carry;
+    carry = (sum < from[k]) | (more < sum);
+    to[k] = more;
   }
+}
+
+void vl_film_sum_moments(vlFilmMoments *to, const vlFilmMoments *from) {
+  for (int c = 0; c < 3; c++) {
+    to->plain[c] += from->plain[c];
+    to->first[c] += from->first[c];
+    add_squares(to->squares[c], from->squares[c]);
+  }
+  to->samples += from->samples;
+  to->first_weight += from->first_weight;
 }
 
 /* The pixel is sum(w v) / sum(w), and |w| is the same in all samples (filters are importance-sampled). To first order
  * the variance of this ratio is sum(w^2 (v - mean)^2) / sum(w)^2, times n / (n - 1) because the mean is estimated from
  * the same samples. Squares are taken about the unweighted mean first, where cancellation is least. */
-double vl_film_standard_error(const vlFilm *film, size_t at, int c) {
+double vl_film_independent_error(const vlFilm *film, size_t at, int c) {
   if (!film->front) return INFINITY;
   const vlFilmPixel *p = film->front + at;
   const vlFilmMoments *m = film->moments[0] + at;
@@ -72,19 +80,12 @@ double vl_film_standard_error(const vlFilm *film, size_t at, int c) {
   return sqrt(variance);
 }
 
-vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image) {
-  if (image) *image = NULL;
-  vlDevelopDef standard = vl_default_develop_def();
-  if (!def) def = &standard;
-  if (!film || !image || !film->def.errors || def->cookie != VL_COOKIE_DEVELOP) return VL_ERROR_ARGUMENT;
-  static const char *const names[3] = {"error.R", "error.G", "error.B"};
-  vlImageDef image_def = vl_default_image_def(film->width, film->height, 3);
-  image_def.names = names;
-  image_def.type = VL_PIXEL_F32;
-  vlResult result = vl_image_create(film->context, &image_def, image);
-  if (result != VL_OK) return result;
-  float *to = vl_image_pixels(*image);
-  for (size_t i = 0; i < vl_film_pixels(film); i++)
-    for (int c = 0; c < 3; c++) to[3 * i + (size_t)c] = (float)vl_film_standard_error(film, i, c) * def->exposure;
-  return VL_OK;
+double vl_film_first_share(const vlFilm *film, size_t at) {
+  int64_t first = film->moments[0][at].first_weight, all = film->front[at].weight;
+  return first > 0 && first < all ? (double)first / (double)all : 0;
+}
+
+double vl_film_first_mean(const vlFilm *film, size_t at, int c) {
+  const vlFilmMoments *m = film->moments[0] + at;
+  return (double)m->first[c] / (double)m->first_weight * 0x1p-26;
 }

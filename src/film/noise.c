@@ -13,7 +13,7 @@
  * The noise is computed both ways, and the larger one counts.
  *
  * These errors treat a pixel's samples as independent, but they are better distributed than that. The difference D
- * between the display values of the first m and of all n samples shows it. Where D has no correlation with the error
+ * between the display values of the first part, m samples (vl_first_part), and of all n samples shows it. Where D has no correlation with the error
  * after n, the variance after m is that after n plus the mean of D^2. So if the variance falls at least as fast as
  * 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and equal to it for independent samples. The
  * ratio of its mean to that of e^2, plus two standard errors, reduces the noise if it is below 1. Rare bright samples
@@ -32,6 +32,7 @@ typedef struct Block {
 
 /* Numbers of standard errors that are added to the mean of e^2, and to the ratio of D^2 to e^2. */
 static const double ERRORS_OF_MEAN = 3, ERRORS_OF_RATIO = 2;
+enum { LEAST_FOR_RATIO = 12 }; /* samples; the mean of fewer than 8 says little about the distribution of more */
 
 typedef struct Display {
   vlView view;
@@ -114,10 +115,10 @@ static double upper_limit(Mean mean) {
 }
 
 /* The square of the difference between the display values of two linear values, the mean over R, G, B. */
-static double difference_square(const Display *d, const double mean[3], const float earlier[3]) {
+static double difference_square(const Display *d, const double mean[3], const double earlier[3]) {
   float now[3], then[3];
   double sum = 0;
-  for (int c = 0; c < 3; c++) now[c] = (float)(mean[c] * d->factor), then[c] = (float)((double)earlier[c] * d->factor);
+  for (int c = 0; c < 3; c++) now[c] = (float)(mean[c] * d->factor), then[c] = (float)(earlier[c] * d->factor);
   vl_view_display(d->view, now, now);
   vl_view_display(d->view, then, then);
   for (int c = 0; c < 3; c++) sum += ((double)now[c] - (double)then[c]) * ((double)now[c] - (double)then[c]) / 3.0;
@@ -125,15 +126,19 @@ static double difference_square(const Display *d, const double mean[3], const fl
 }
 
 /* The upper limit of the ratio of the mean of D^2 m / (n - m) to that of e^2, at most 1. The errors of both means count
- * as independent, although both see the same rare bright samples: those that are missing are missing in both. earlier:
- * of the block's first pixel, with rows of `line` elements; spp: n. */
-static double square_ratio(const Block *b, const Display *d, double correlation, Mean square,
-                           const vlEarlierMean *earlier, size_t line, uint32_t spp) {
-  if (!earlier->samples || earlier->samples >= spp || !(square.value > 0)) return 1;
-  double scale = (double)earlier->samples / (spp - earlier->samples), sum = 0, squares = 0;
+ * as independent, although both see the same rare bright samples: those that are missing are missing in both. first: of
+ * the block's first pixel. */
+static double square_ratio(const vlFilm *film, size_t first, const Block *b, const Display *d, double correlation,
+                           Mean square) {
+  if (!(square.value > 0)) return 1;
+  double sum = 0, squares = 0;
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
-      double p = scale * difference_square(d, b->mean[y][x], earlier[y * line + x].color);
+      size_t at = first + (size_t)y * film->width + x;
+      double share = vl_film_first_share(film, at), earlier[3]; /* m / n */
+      if (!(share > 0)) return 1;
+      for (int c = 0; c < 3; c++) earlier[c] = vl_film_first_mean(film, at, c);
+      double p = share / (1 - share) * difference_square(d, b->mean[y][x], earlier);
       sum += p, squares += p * p;
     }
   Mean difference = mean_of(sum, squares, pixels_of(b), correlation);
@@ -141,12 +146,6 @@ static double square_ratio(const Block *b, const Display *d, double correlation,
   double error = sqrt(difference.error * difference.error + other * other) / square.value;
   double limit = ratio + ERRORS_OF_RATIO * error;
   return limit < 1 ? limit : 1;
-}
-
-/* A pixel's value; 0 if the sum of its weights is not positive. */
-static double linear_mean(const vlFilmPixel *p, int c) {
-  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
-  return p->weight > 0 ? (double)p->color[c] / (double)p->weight * unit : 0;
 }
 
 double vl_film_view_factor(float exposure, float scale) {
@@ -167,36 +166,25 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
       const vlFilmPixel *p = film->front + at;
       if (p->weight <= 0) return INFINITY;
       for (int c = 0; c < 3; c++) {
-        double error = vl_film_standard_error(film, at, c);
-        b.mean[y][x][c] = linear_mean(p, c), b.square[y][x][c] = error * error;
+        double error = vl_film_independent_error(film, at, c);
+        b.mean[y][x][c] = vl_film_linear_mean(p, c), b.square[y][x][c] = error * error;
       }
     }
   Block pooled;
   pool(&b, 1.0 / d.factor, &pooled);
   Mean square = block_square(&b, &d, correlation);
   double each = upper_limit(square), together = upper_limit(block_square(&pooled, &d, correlation)), ratio = 1;
-  if (film->earlier) {
-    const vlEarlierMean *earlier = film->earlier + (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
-    ratio = square_ratio(&b, &d, correlation, square, earlier, film->width, vl_film_block_spp(film, block));
+  if (vl_film_block_spp(film, block) >= LEAST_FOR_RATIO) {
+    size_t first = (size_t)(place[1] - crop[1]) * film->width + (place[0] - crop[0]);
+    ratio = square_ratio(film, first, &b, &d, correlation, square);
   }
   return sqrt(ratio * (each > together ? each : together));
 }
 
 void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation) {
-  uint32_t spp = vl_film_block_spp(film, block), place[4];
   film->compared[block] =
-      (vlComparedNoise){.spp = spp,
+      (vlComparedNoise){.spp = vl_film_block_spp(film, block),
                         .noise = (float)vl_film_block_noise(film, block, view, exposure, scale, correlation),
                         .factor = (float)vl_film_view_factor(exposure, scale),
                         .view = (uint32_t)view};
-  if (spp & (spp - 1)) return;
-  const uint32_t *crop = film->def.crop;
-  vl_film_block_place(crop, block, place);
-  for (uint32_t y = place[1]; y < place[3]; y++)
-    for (uint32_t x = place[0]; x < place[2]; x++) {
-      size_t at = (size_t)(y - crop[1]) * film->width + (x - crop[0]);
-      vlEarlierMean *to = film->earlier + at;
-      for (int c = 0; c < 3; c++) to->color[c] = (float)linear_mean(film->front + at, c);
-      to->samples = spp;
-    }
 }

@@ -91,7 +91,7 @@ vlResult vl_film_create(vlContext *context, const vlFilmDef *def, vlFilm **film)
 uint64_t vl_film_memory(const vlFilmDef *def) {
   uint64_t pixels = (uint64_t)(def->crop[2] - def->crop[0]) * (def->crop[3] - def->crop[1]);
   uint64_t each = 2 * sizeof(vlFilmPixel) + sizeof(uint32_t);
-  if (def->errors) each += 2 * sizeof(vlFilmMoments) + sizeof(vlEarlierMean);
+  if (def->errors) each += 2 * sizeof(vlFilmMoments);
   if (def->buckets) each += 2 * (uint64_t)def->buckets * (sizeof(vlInt128) + sizeof(int64_t)) + sizeof(uint32_t);
   return pixels * each;
 }
@@ -104,7 +104,6 @@ void vl_film_destroy(vlFilm *film) {
   vl_free(context, film->stamp);
   vl_free(context, film->block_spp);
   vl_free(context, film->compared);
-  vl_free(context, film->earlier);
   vl_free(context, film->scratch);
   vl_free(context, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
@@ -150,7 +149,13 @@ vlResult vl_film_begin_pass(vlFilm *film) {
       return VL_ERROR_MEMORY;
   if (!film->stamp || !film->back || !vl_film_spectrum_begin(film)) return VL_ERROR_MEMORY;
   film->in_pass = true;
+  film->part = vl_first_part(film->end), film->pass_end = film->end, film->part_moves = false;
   return VL_OK;
+}
+
+void vl_film_set_pass_samples(vlFilm *film, uint32_t first, uint32_t end) {
+  film->part = vl_first_part(end), film->part_moves = film->part != vl_first_part(first);
+  film->pass_end = end > film->end ? end : film->end;
 }
 
 /* Ends the running pass and advances the pass number. If the number wraps around, all stamps are cleared; otherwise
@@ -180,6 +185,7 @@ void vl_film_commit_pass(vlFilm *film) {
   film->front = film->back;
   film->back = front;
   vl_film_spectrum_commit(film);
+  film->end = film->pass_end;
   next_pass(film);
 }
 
@@ -193,6 +199,7 @@ void vl_film_clear(vlFilm *film) {
   vl_film_set_spp(film, 0);
   vl_film_forget_compared(film);
   film->sequence = (vlFilmSequence){0, 0, false};
+  film->end = 0;
   if (film->front && film->back) {
     vl_free(film->context, film->front);
   } else if (film->front) {
@@ -210,6 +217,18 @@ void *vl_film_scratch(vlFilm *film, size_t size) {
     film->scratch_size = film->scratch ? size : 0;
   }
   return film->scratch;
+}
+
+/* Before the pixels' sums are added. */
+static void add_moments(vlFilm *film, const vlFilm *other) {
+  uint32_t part = vl_first_part(film->end > other->end ? film->end : other->end);
+  bool moves = part != vl_first_part(film->end), other_moves = part != vl_first_part(other->end);
+  for (size_t i = 0; i < vl_film_pixels(film); i++) {
+    vlFilmMoments from = other->moments[0][i];
+    if (moves) vl_film_join_parts(&film->moments[0][i], &film->front[i]);
+    if (other_moves) vl_film_join_parts(&from, &other->front[i]);
+    vl_film_sum_moments(&film->moments[0][i], &from);
+  }
 }
 
 vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
@@ -231,12 +250,13 @@ vlResult vl_film_add_film(vlFilm *film, const vlFilm *other) {
     size_t count = vl_film_pixels(film);
     if (!film->front) film->front = vl_alloc_zero(film->context, count, sizeof *film->front);
     if (!film->front) return VL_ERROR_MEMORY;
+    if (film->def.errors && other->moments[0]) add_moments(film, other);
     for (size_t i = 0; i < count; i++) {
       for (int c = 0; c < 3; c++) film->front[i].color[c] += other->front[i].color[c];
       film->front[i].alpha += other->front[i].alpha;
       film->front[i].weight += other->front[i].weight;
     }
-    if (film->def.errors) vl_film_merge_moments(film, other);
+    if (film->end < other->end) film->end = other->end;
   }
   film->spp += other->spp;
   return VL_OK;

@@ -20,15 +20,28 @@ typedef struct vlFilmPixel {
 } vlFilmPixel;
 _Static_assert(sizeof(vlFilmPixel) == 64, "a pixel's sums are one cache line");
 
-/* Additional sums for standard errors: of each channel the unweighted sum and the sum of squares, and the number of
- * samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Two cache lines. */
+/* Additional sums for standard errors. Of all samples: of each channel the unweighted sum and the sum of squares, and
+ * the number of samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Of the samples with indices
+ * below vl_first_part(end): the sums of weight * channel and of weight, as in vlFilmPixel. Without padding, since films
+ * with errors have one for each pixel. */
 enum { VL_SQUARE_BITS = 80 };
+__extension__ typedef __int128 vlPackedInt128 __attribute__((aligned(8)));
 typedef struct vlFilmMoments {
-  vlInt128 plain[3];
+  vlPackedInt128 plain[3];
+  vlPackedInt128 first[3];
   uint64_t squares[3][3];
   uint64_t samples;
+  int64_t first_weight;
 } vlFilmMoments;
-_Static_assert(sizeof(vlFilmMoments) == 128, "the compiler adds no bytes");
+_Static_assert(sizeof(vlFilmMoments) == 184, "the compiler adds no bytes");
+
+/* The index at which the samples of a film divide into two parts, for standard errors; `end`: the index behind the last
+ * sample. It is the largest power of two below `end`, so that the first part is a whole point set of a low-discrepancy
+ * sequence, and so is the second when it is as large. It depends on `end` only, and a later one is the end of a part:
+ * the first part of more samples is either the same or all earlier ones. 0 and 1: no first part. */
+static inline uint32_t vl_first_part(uint32_t end) {
+  return end > 1 ? 1u << (31 - __builtin_clz(end - 1)) : 0;
+}
 
 /* Sums of weight * radiance and of weight for each bucket of each pixel (spectrum.c): the front sums are committed; the
  * back sums belong to the running pass and are valid where stamp == pass. */
@@ -45,13 +58,15 @@ struct vlFilm {
   uint32_t spp;
   uint32_t *block_spp;       /* samples of each block; null: all have spp */
   vlComparedNoise *compared; /* of each block; null: all 0 */
-  vlEarlierMean *earlier;    /* of each pixel, where compared is */
   vlFilmSequence sequence;
   vlFilmPixel *front; /* committed sums; null: all zero */
   vlFilmPixel *back;  /* sums of the running pass, valid where stamp == pass; null until the first pass */
   uint32_t *stamp;    /* the pass in which the pixel's back was last written */
   uint32_t pass;      /* counts from 1 */
   bool in_pass;
+  uint32_t end;            /* index behind the last sample of any pixel, with def.errors */
+  uint32_t part, pass_end; /* of the running pass: vl_first_part and `end` after it */
+  bool part_moves;         /* all samples before the running pass belong to the first part after it */
   vlFilmMoments
       *moments[2]; /* front and back, front and back, only with def.errors; valid where the pixel's sums are valid */
   vlFilmSpectrum spectrum; /* with def.buckets */
@@ -62,11 +77,25 @@ struct vlFilm {
   size_t scratch_size;
 };
 
-/* In moments.c: adds one sample; copies the front first where the pixel is new in the pass. */
-void vl_film_add_moments(vlFilm *film, size_t at, bool is_new, const float color[3]);
-void vl_film_merge_moments(vlFilm *film, const vlFilm *other);
-/* The standard error of channel c of pixel `at`: of its linear value, without exposure. Infinite below 2 samples. */
-double vl_film_standard_error(const vlFilm *film, size_t at, int c);
+/* In moments.c. begin: copies a pixel's moments from the front, when it is new in the pass. */
+void vl_film_begin_moments(vlFilm *film, size_t at);
+void vl_film_add_moments(vlFilm *film, size_t at, const float color[3]);
+/* Makes all samples of a pixel, whose sums are `pixel`, its first part. */
+void vl_film_join_parts(vlFilmMoments *moments, const vlFilmPixel *pixel);
+/* Adds moments; both have the same first part. */
+void vl_film_sum_moments(vlFilmMoments *to, const vlFilmMoments *from);
+/* The standard error of channel c of pixel `at`, if its samples were independent: of its linear value, without
+ * exposure. Infinite below 2 samples. */
+double vl_film_independent_error(const vlFilm *film, size_t at, int c);
+/* The share of a pixel's weights that its first part has; 0: there are not two parts. */
+double vl_film_first_share(const vlFilm *film, size_t at);
+/* The mean of the first part of pixel `at`; its share is above 0. */
+double vl_film_first_mean(const vlFilm *film, size_t at, int c);
+/* A pixel's value; 0 if the sum of its weights is not positive. */
+static inline double vl_film_linear_mean(const vlFilmPixel *p, int c) {
+  const double unit = 1.0 / (double)(INT64_C(1) << (VL_COLOR_BITS - VL_WEIGHT_BITS));
+  return p->weight > 0 ? (double)p->color[c] / (double)p->weight * unit : 0;
+}
 
 /* In spectrum.c. begin: false when out of memory. */
 bool vl_film_spectrum_begin(vlFilm *film);

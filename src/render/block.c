@@ -143,7 +143,15 @@ static void add_to_film(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   if (r->two_way)
     vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
   if (w->recorder) return;
-  vlFilmSamples add = {n, rows.px, rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA), rows.weight};
+  vlFilmSamples add = {n,
+                       rows.px,
+                       rows.py,
+                       row(w, RED),
+                       row(w, GREEN),
+                       row(w, BLUE),
+                       row(w, ALPHA),
+                       rows.weight,
+                       rows.index};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
   if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
@@ -269,10 +277,10 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
   return true;
 }
 
-/* Adds one sample of each pixel of the block's rows [first, last) to the film: the mean over all samples of the grid
- * that the filter covers. */
+/* Adds sample `sample` of each pixel of the block's rows [first, last) to the film: the mean over all samples of the
+ * grid that the filter covers. */
 static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, const vlSharedGrid *grid,
-                     uint32_t first, uint32_t last) {
+                     uint32_t sample, uint32_t first, uint32_t last) {
   vlFilmRayRows rows = vl_film_ray_rows(w->rows);
   float *const color[4] = {row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA)};
   bool some = r->adaptive.in_pass < r->adaptive.blocks;
@@ -281,21 +289,26 @@ static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBloc
   for (uint32_t y = first; y < last; y++)
     for (uint32_t x = 0; x < b->width; x++, i++) {
       uint32_t px = (uint32_t)b->x0 + x, py = (uint32_t)b->y0 + y;
-      if (!(rows.weight[i] > 0.0f) || (some && !vl_adaptive_has(&r->adaptive, px, py))) continue;
-      rows.px[n] = (int32_t)px, rows.py[n] = (int32_t)py, rows.weight[n] = rows.weight[i];
+      if (some && !vl_adaptive_has(&r->adaptive, px, py)) continue;
+      if (!(rows.weight[i] > 0.0f)) {
+        if (!w->recorder) vl_film_miss(r->film, (int32_t)px, (int32_t)py);
+        continue;
+      }
+      rows.px[n] = (int32_t)px, rows.py[n] = (int32_t)py, rows.index[n] = sample, rows.weight[n] = rows.weight[i];
       for (int c = 0; c < 4; c++) color[c][n] = color[c][i];
       n++;
     }
   add_to_film(r, w, n);
 }
 
-/* Adds `count` samples of each pixel of the block. A few rows at a time get all of them, while their sums are in the
+/* Adds `count` samples, from `first` on, of each pixel of the block. A few rows at a time get all of them, while their sums are in the
  * cache. */
-static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t count) {
+static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first,
+                       uint32_t count) {
   uint32_t rows = VL_BATCH / VL_SHARED_SIDE;
   for (uint32_t y = 0; y < b->height; y += rows)
     for (uint32_t k = 0; k < count; k++)
-      add_rows(r, w, b, &w->grids[k], y, b->height - y < rows ? b->height : y + rows);
+      add_rows(r, w, b, &w->grids[k], first + k, y, b->height - y < rows ? b->height : y + rows);
 }
 
 uint32_t vl_render_block_count(const vlRenderRun *r) {
@@ -344,7 +357,7 @@ void vl_render_block(void *user, uint32_t block, uint32_t worker) {
       uint32_t n = list_samples(r, w, block, s, count);
       if (n) vl_render_batch(r, w, n);
     } else if (some) {
-      if (trace_shared(r, w, &b, s, count, &state)) add_shared(r, w, &b, count);
+      if (trace_shared(r, w, &b, s, count, &state)) add_shared(r, w, &b, s, count);
     }
     s += count;
     ask_between(r, &state);

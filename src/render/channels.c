@@ -15,7 +15,7 @@
 static const struct Channel {
   const char *name;
   uint32_t floats, ids; /* number of components; Cryptomatte's floats depend on the ranks */
-  const char *names[7]; /* of the floats, then of the ids */
+  const char *names[7]; /* of the floats, then of the ids; see FEATURE_ERRORS, too */
 } channels[VL_CHANNEL_COUNT] = {
     {"Z", 1, 0, {"Z"}},
     {"distance", 1, 0, {"distance.Y"}},
@@ -44,7 +44,10 @@ static const struct Channel {
       "feature.disparity.Y"}},
 };
 static const uint32_t CRYPTO = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
-enum { MAX_RANKS = 32, MAX_FLOATS = 32 + 3 * 2 * MAX_RANKS };
+/* The features' last three floats, with errors only: the standard errors of independent samples, for denoisers. */
+static const char *const FEATURE_ERRORS[3] = {"feature.error.R", "feature.error.G", "feature.error.B"};
+static const uint32_t ERRORS_OF_FEATURES = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
+enum { FEATURES = 7, MAX_RANKS = 32, MAX_FLOATS = 48 + 3 * 2 * MAX_RANKS };
 
 const char *vl_channel_name(uint32_t index) {
   return index < VL_CHANNEL_COUNT ? channels[index].name : NULL;
@@ -119,6 +122,8 @@ static uint32_t list_names(vlChannelPass *p, int id, const char *names[MAX_FLOAT
     if (i < VL_INDEX_CRYPTO || i == VL_INDEX_FEATURES) {
       uint32_t first = id ? c->floats : 0, parts = id ? c->ids : c->floats;
       for (uint32_t k = 0; k < parts; k++) names[count++] = c->names[first + k];
+      bool errors = i == VL_INDEX_FEATURES && !id && (p->def->channels & ERRORS_OF_FEATURES) == ERRORS_OF_FEATURES;
+      for (uint32_t k = 0; k < 3 && errors; k++) names[count++] = FEATURE_ERRORS[k];
       continue;
     }
     for (uint32_t k = 0; k < 2 * p->def->ranks && !id; k++) {
@@ -148,9 +153,11 @@ static vlResult make_images(vlChannelPass *p, vlError *error) {
   return VL_OK;
 }
 
-static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
-  if (!vl_channel_wanted(p, VL_CHANNEL_ERROR)) return VL_OK;
+/* Copies the film's errors to three floats of each pixel, from number `first` of the channel on. */
+static vlResult copy_errors_to(const vlChannelPass *p, bool independent, uint32_t channel, uint32_t first,
+                               vlError *error) {
   vlDevelopDef def = vl_default_develop_def();
+  def.independent = independent;
   def.exposure = p->def->exposure;
   vlImage *image;
   vlResult r = vl_film_errors(p->def->film, &def, &image);
@@ -158,9 +165,16 @@ static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
   if (r != VL_OK) return vl_fail(error, r, "ground truth: the film does not tell standard errors");
   size_t pixels = (size_t)vl_image_width(image) * vl_image_height(image);
   const float *from = vl_image_const_pixels(image);
-  for (size_t i = 0; i < pixels; i++) memcpy(vl_channel_floats(p, i, VL_INDEX_ERROR), from + 3 * i, 3 * sizeof *from);
+  for (size_t i = 0; i < pixels; i++) memcpy(vl_channel_floats(p, i, channel) + first, from + 3 * i, 3 * sizeof *from);
   vl_image_destroy(image);
   return VL_OK;
+}
+
+static vlResult copy_errors(const vlChannelPass *p, vlError *error) {
+  if (!vl_channel_wanted(p, VL_CHANNEL_ERROR)) return VL_OK;
+  vlResult r = copy_errors_to(p, false, VL_INDEX_ERROR, 0, error);
+  if (r != VL_OK || !vl_channel_wanted(p, VL_CHANNEL_FEATURES)) return r;
+  return copy_errors_to(p, true, VL_INDEX_FEATURES, FEATURES, error);
 }
 
 /* ---- the pass ---------------------------------------------------------------------------------------------------- */

@@ -246,6 +246,7 @@ static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
 /* One pass. *late: it was not finished before the time limit. */
 static vlResult render_pass(vlRenderRun *r, bool *late, vlError *error) {
   if (vl_film_begin_pass(r->film) != VL_OK) return vl_fail_memory(error);
+  vl_film_set_pass_samples(r->film, r->first_sample, r->first_sample + r->pass_samples);
   vlResult result = VL_OK;
   vl_render_choose_blocks(r);
   if (r->two_way) vl_two_way_times(r->two_way, r->first_sample, &r->film_rays);

@@ -156,6 +156,8 @@ uint64_t channels_values(const Channels *c, uint32_t buckets) {
   uint64_t sum = c->gbuffer ? GBUFFER : 0;
   for (uint32_t i = 0; i < VL_CHANNEL_COUNT; i++)
     if (c->bits & 1u << i) sum += i >= 17 && i < 20 ? 2 * c->ranks : values[i];
+  const uint32_t both = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
+  if ((c->bits & both) == both) sum += 3; /* feature.error */
   return sum + (c->spectrum ? buckets : 0);
 }
 

@@ -11,7 +11,7 @@
 #include "render/attributes.h"
 #include "render/frames.h"
 
-enum { MAX_CHANNELS = 16 };
+enum { MAX_CHANNELS = 24 };
 
 int denoised_choose(Denoised *d, const Arguments *arguments, const Outputs *image) {
   const OptionValue *v = arguments->values;

@@ -36,9 +36,9 @@ _Static_assert(sizeof names / sizeof *names == COUNT, "a name for each");
 /* The images that the values come from, and the indices of their channels. */
 typedef struct Source {
   const vlImage *geometry, *rendered;
-  const float *values;
+  const float *values, *errors; /* errors: of independent samples, 3 floats of each pixel */
   uint32_t width, height, channels;
-  int p, n, ng, uv, albedo, ray, distance, error;
+  int p, n, ng, uv, albedo, ray, distance;
   bool world;
   double m[16]; /* camera_from_world */
   double shrink, samples;
@@ -87,9 +87,9 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
 }
 
 static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
-  for (int c = 0; c < 3;
-       c++) { /* the variance of samples is the squared standard error of the mean times their number */
-    float error = at(s, x, y, s->error)[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
+  const float *errors = s->errors + 3 * ((size_t)y * s->width + x);
+  for (int c = 0; c < 3; c++) { /* the variance of samples is the squared error of independent ones times their number */
+    float error = errors[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
     out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
     out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;
   }
@@ -124,7 +124,7 @@ static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFi
   int signals = signals_count();
   vlChannelsDef def = vl_default_channels_def(job->camera.width, job->camera.height);
   def.channels = VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV | VL_CHANNEL_ALBEDO | VL_CHANNEL_RAY |
-                 VL_CHANNEL_DISTANCE | VL_CHANNEL_ERROR;
+                 VL_CHANNEL_DISTANCE;
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   def.space = job->defs->film.space;
   def.film = film;
@@ -136,12 +136,14 @@ static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFi
 }
 
 int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, const vlFilm *film, vlImage **image) {
-  vlImage *geometry = NULL, *rendered = NULL;
+  vlImage *geometry = NULL, *rendered = NULL, *errors = NULL;
   vlError error = {0};
   vlDevelopDef develop = vl_default_develop_def();
   develop.exposure = job->defs->develop.exposure;
+  develop.independent = true;
   vlResult result = ground_truth_of(world, job, film, &geometry, &error);
   if (result == VL_OK) result = vl_film_develop(film, &develop, &rendered);
+  if (result == VL_OK) result = vl_film_errors(film, &develop, &errors);
   if (result == VL_OK) {
     vlImageDef def = vl_default_image_def(vl_image_width(geometry), vl_image_height(geometry), COUNT);
     def.names = names;
@@ -156,6 +158,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
     Source s = {.geometry = geometry,
                 .rendered = rendered,
                 .values = vl_image_const_pixels(geometry),
+                .errors = vl_image_const_pixels(errors),
                 .width = vl_image_width(geometry),
                 .height = vl_image_height(geometry),
                 .channels = vl_image_channels(geometry),
@@ -166,7 +169,6 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
                 .albedo = vl_image_find_channel(geometry, "albedo.R"),
                 .ray = vl_image_find_channel(geometry, "ray.X"),
                 .distance = vl_image_find_channel(geometry, "distance.Y"),
-                .error = vl_image_find_channel(geometry, "error.R"),
                 .world = job->defs->gbuffer == VL_GBUFFER_WORLD,
                 .shrink = fmax(0.125, 1 / sqrt(spp)), /* pbrt's ray differentials shrink with the number of samples */
                 .samples = spp};
@@ -177,6 +179,7 @@ int gbuffer_render(vlContext *context, const vlWorld *world, const Job *job, con
   }
   vl_image_destroy(geometry);
   vl_image_destroy(rendered);
+  vl_image_destroy(errors);
   if (result == VL_CANCELLED) return 128 + signals_pending();
   return result == VL_OK ? STATUS_OK : report_error(&error, result, job->path);
 }

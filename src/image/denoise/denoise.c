@@ -32,12 +32,14 @@ vlDenoiseDef vl_default_denoise_def(void) {
 
 static vlResult find_channels(const vlImage *image, bool errors, vlDenoiseChannels *to, vlError *error) {
   static const char *const colors[COLOR] = {"R", "G", "B"}, *const sigmas[COLOR] = {"error.R", "error.G", "error.B"};
+  static const char *const independent[COLOR] = {"feature.error.R", "feature.error.G", "feature.error.B"};
   static const char *const features[VL_DENOISE_FEATURES] = {
       "feature.albedo.R", "feature.albedo.G", "feature.albedo.B",   "feature.N.X",
       "feature.N.Y",      "feature.N.Z",      "feature.disparity.Y"};
   for (int c = 0; c < COLOR; c++) {
     to->color[c] = vl_image_find_channel(image, colors[c]);
-    to->error[c] = vl_image_find_channel(image, sigmas[c]);
+    to->error[c] = vl_image_find_channel(image, independent[c]);
+    if (to->error[c] < 0) to->error[c] = vl_image_find_channel(image, sigmas[c]);
     if (to->color[c] < 0) return vl_fail(error, VL_ERROR_SCENE, "denoise: the image has no channel %s", colors[c]);
     if (to->error[c] < 0 && errors)
       return vl_fail(error, VL_ERROR_SCENE,

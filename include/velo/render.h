@@ -139,8 +139,8 @@ VL_API vlResult vl_film_develop(const vlFilm *film, const vlDevelopDef *def, vlI
  * vl_film_develop's values. They are square roots of the estimated variance of the mean, for the samples that the
  * sampler gives, which are better distributed than independent ones (docs/ground-truth.md, Standard error). How much
  * better they are is estimated in cells of 8 x 8 pixels of the whole image, so a crop has the errors of the whole image
- * if it ends at multiples of 8. With def.independent they are those of independent samples instead, each from the samples
- * of its pixel only. Pixels with fewer than 2 samples have infinity. ARGUMENT when the film was made without
+ * if it ends at multiples of 8. With def.independent they are those of independent samples instead, each from the
+ * samples of its pixel only. Pixels with fewer than 2 samples have infinity. ARGUMENT when the film was made without
  * vlFilmDef.errors. */
 VL_API vlResult vl_film_errors(const vlFilm *film, const vlDevelopDef *def, vlImage **image);
 /** Makes a float image of the crop window with one channel per bucket, owned by the caller. Channels are named as

@@ -87,8 +87,7 @@ static void fill_cell(const vlFilm *film, uint32_t x0, uint32_t y0, uint32_t x1,
   for (uint32_t i = 0; i < n; i++) {
     size_t at = (size_t)(y0 + i / (x1 - x0)) * film->width + x0 + i % (x1 - x0);
     double factor = pixel_factor(&cell[i], cell, n, apart);
-    for (int c = 0; c < 3; c++)
-      to[3 * at + (size_t)c] = (float)sqrt(factor * cell[i].independent[c]) * exposure;
+    for (int c = 0; c < 3; c++) to[3 * at + (size_t)c] = (float)sqrt(factor * cell[i].independent[c]) * exposure;
   }
 }
 

@@ -202,7 +202,6 @@ vlResult vl_film_reader_data(vlFilmReader *r, void *data, vlError *error) {
   size_t pixels = (size_t)(h->x1 - h->x0) * (h->y1 - h->y0);
   uint64_t samples = vl_film_samples(r->ranges, h->range_count);
   if (r->format < VL_FILM_FORMAT) vl_film_convert_old_data(&r->shape.def, pixels, data);
-  if (!good_values(&r->shape.def, pixels, samples, data))
-    return damaged(r, "sums that its samples cannot have", error);
+  if (!good_values(&r->shape.def, pixels, samples, data)) return damaged(r, "sums that its samples cannot have", error);
   return VL_OK;
 }

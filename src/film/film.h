@@ -18,7 +18,7 @@ typedef struct vlFilmSamples {
   uint32_t n;
   const int32_t *px, *py;
   const float *r, *g, *b, *a;
-  const float *weight; /* of the pixel filter: filter value / pdf, may be negative; rounded to a multiple of 2^-24 */
+  const float *weight;   /* of the pixel filter: filter value / pdf, may be negative; rounded to a multiple of 2^-24 */
   const uint32_t *index; /* of the samples in their sequence; read in films with errors; null: behind all others */
 } vlFilmSamples;
 

@@ -13,11 +13,11 @@
  * The noise is computed both ways, and the larger one counts.
  *
  * These errors treat a pixel's samples as independent, but they are better distributed than that. The difference D
- * between the display values of the first part, m samples (vl_first_part), and of all n samples shows it. Where D has no correlation with the error
- * after n, the variance after m is that after n plus the mean of D^2. So if the variance falls at least as fast as
- * 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and equal to it for independent samples. The
- * ratio of its mean to that of e^2, plus two standard errors, reduces the noise if it is below 1. Rare bright samples
- * that were not found are missing in both, so the ratio says nothing about them. */
+ * between the display values of the first part, m samples (vl_first_part), and of all n samples shows it. Where D has
+ * no correlation with the error after n, the variance after m is that after n plus the mean of D^2. So if the variance
+ * falls at least as fast as 1 / n, D^2 m / (n - m) is in the mean at least the variance after n, and equal to it for
+ * independent samples. The ratio of its mean to that of e^2, plus two standard errors, reduces the noise if it is
+ * below 1. Rare bright samples that were not found are missing in both, so the ratio says nothing about them. */
 #include <math.h>
 
 #include "film/sums.h"

@@ -21,9 +21,9 @@ typedef struct vlFilmPixel {
 _Static_assert(sizeof(vlFilmPixel) == 64, "a pixel's sums are one cache line");
 
 /* Additional sums for standard errors. Of all samples: of each channel the unweighted sum and the sum of squares, and
- * the number of samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Of the samples with indices
- * below vl_first_part(end): the sums of weight * channel and of weight, as in vlFilmPixel. Without padding, since films
- * with errors have one for each pixel. */
+ * the number of samples. Squares are exact, too: 192-bit fixed point, the lowest limb first. Of the samples with
+ * indices below vl_first_part(end): the sums of weight * channel and of weight, as in vlFilmPixel. Without padding,
+ * since films with errors have one for each pixel. */
 enum { VL_SQUARE_BITS = 80 };
 __extension__ typedef __int128 vlPackedInt128 __attribute__((aligned(8)));
 typedef struct vlFilmMoments {

@@ -143,15 +143,8 @@ static void add_to_film(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   if (r->two_way)
     vl_two_way_take(r->two_way, n, rows.px, rows.py, rows.weight, row(w, RED), row(w, GREEN), row(w, BLUE));
   if (w->recorder) return;
-  vlFilmSamples add = {n,
-                       rows.px,
-                       rows.py,
-                       row(w, RED),
-                       row(w, GREEN),
-                       row(w, BLUE),
-                       row(w, ALPHA),
-                       rows.weight,
-                       rows.index};
+  vlFilmSamples add = {n,           rows.px,   rows.py, row(w, RED), row(w, GREEN), row(w, BLUE), row(w, ALPHA),
+                       rows.weight, rows.index};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
   if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
@@ -301,8 +294,8 @@ static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBloc
   add_to_film(r, w, n);
 }
 
-/* Adds `count` samples, from `first` on, of each pixel of the block. A few rows at a time get all of them, while their sums are in the
- * cache. */
+/* Adds `count` samples, from `first` on, of each pixel of the block. A few rows at a time get all of them, while their
+ * sums are in the cache. */
 static void add_shared(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock *b, uint32_t first,
                        uint32_t count) {
   uint32_t rows = VL_BATCH / VL_SHARED_SIDE;

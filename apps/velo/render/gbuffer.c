@@ -88,7 +88,8 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
 
 static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
   const float *errors = s->errors + 3 * ((size_t)y * s->width + x);
-  for (int c = 0; c < 3; c++) { /* the variance of samples is the squared error of independent ones times their number */
+  for (int c = 0; c < 3;
+       c++) { /* the variance of samples is the squared error of independent ones times their number */
     float error = errors[c], mean = vl_image_get(s->rendered, x, y, (uint32_t)c);
     out[VARIANCE + c] = error < 1e18f ? (float)((double)error * (double)error * s->samples) : 0.0f;
     out[RELATIVE + c] = mean != 0.0f ? out[VARIANCE + c] / mean : 0.0f;

@@ -50,7 +50,7 @@ typedef enum vlChannel {
      means over the first samples of each pixel (8 to VL_FEATURE_SAMPLES) and those it shares, through the lens; so they
      are blurred as the image is, at edges, by defocus and by motion. The albedo uses fewer wavelengths than the channel
      albedo. The disparity is 1 / distance, 0 for nothing. They need vlChannelsDef.film and .render, as Cryptomatte
-     does. */
+     does. With VL_CHANNEL_ERROR there are also feature.error.R .G .B: vl_film_errors with vlDevelopDef.independent. */
   VL_CHANNEL_FEATURES = 1 << 20
 } vlChannel;
 /** The number of channels; the default set, which has all cheap channels; the largest number of samples per pixel that

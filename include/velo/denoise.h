@@ -36,8 +36,9 @@ typedef struct vlDenoiseStats {
 
 /** Makes a denoised copy of `image` in *clean, owned by the caller: a float image R G B (A is copied if there is one),
  * with much less noise and some bias. `image` must have the linear channels R G B. VL_DENOISER_VELO also needs their
- * standard errors error.R .G .B (VL_CHANNEL_ERROR). Both denoisers use the features feature.albedo, feature.N and
- * feature.disparity (VL_CHANNEL_FEATURES) if all their channels are there. Attributes are copied.
+ * standard errors: feature.error.R .G .B, which VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES gives, or error.R .G .B. Both
+ * denoisers use the features feature.albedo, feature.N and feature.disparity (VL_CHANNEL_FEATURES) if all their
+ * channels are there. Attributes are copied.
  *
  * VL_DENOISER_VELO runs on the workers of the image's context. Its bits depend neither on the number of threads nor on
  * the instruction set. It fits the radiance around a pixel by a weighted linear function of the features and of the

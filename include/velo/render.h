@@ -95,7 +95,7 @@ typedef struct vlFilmDef {
   /** A sample whose X, Y or Z (or the sensor's red, green or blue) is above this value is scaled down so that the
    * largest equals it. This removes fireflies, but biases the image. Default infinity. */
   float max_component;
-  bool errors; /**< keep the sums that vl_film_errors needs, which triples the film's memory; default false */
+  bool errors; /**< keep the sums that vl_film_errors needs, which takes four times the memory; default false */
   /** The number of wavelength buckets, at most 1000. A film with buckets stores spectra besides the colours: its
    * buckets have equal width and cover lambda_min to lambda_max. Each bucket takes 48 bytes per pixel. All paths then
    * sample wavelengths from the same distribution, and only in this range. 0 (default): no spectra. */

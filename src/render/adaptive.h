@@ -11,7 +11,7 @@
  *
  * The decision depends on the block's own sums at the numbers where it was compared, and on nothing else. So neither
  * the division into passes and calls, nor the threads, nor the other blocks change the image. The film keeps the last
- * comparison of each block (vlComparedNoise, vlEarlierMean) with its sums, in files, too, so that it can be
+ * comparison of each block (vlComparedNoise) with its sums, in files, too, so that it can be
  * continued. */
 #ifndef RENDER_ADAPTIVE_H
 #define RENDER_ADAPTIVE_H

@@ -12,6 +12,7 @@
 #include "velo/check.h"
 #include "velo/choose.h"
 #include "velo/color.h"
+#include "velo/confine.h"
 #include "velo/denoise.h"
 #include "velo/drawing.h"
 #include "velo/edit.h"

@@ -1,7 +1,6 @@
 /* base/context.c: counted allocation, log, parallel loops (pool.c), the sandbox. See context.h. */
 #include "base/context.h"
 
-#include <limits.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -14,6 +13,7 @@
 #include "base/isa.h"
 #include "base/machine.h"
 #include "base/pool.h"
+#include "base/sandbox.h"
 #include "base/text.h"
 
 struct vlContext {
@@ -24,7 +24,7 @@ struct vlContext {
   atomic_uint_fast64_t last_number;
   vlFileRecords files;
   vlFileInputs inputs;
-  char **sandbox; /* def.sandbox_count folders, with symbolic links resolved */
+  vlSandbox sandbox;
   vlPool pool;
 };
 
@@ -184,41 +184,20 @@ void vl_parallel_for(vlContext *context, uint32_t count, vlParallelFn *body, voi
 
 /* ---- the sandbox ------------------------------------------------------------------------------------------------- */
 
-/* Whether a path lies in a folder. Compares whole components: /a/b is not beneath /a/bc. */
-static bool is_beneath(const char *path, const char *folder) {
-  size_t n = strlen(folder);
-  if (n && folder[n - 1] == '/') n--;
-  return strncmp(path, folder, n) == 0 && (path[n] == '/' || !path[n]);
-}
-
 bool vl_context_allows(const vlContext *context, const char *path) {
-  char real[PATH_MAX];
-  if (!context->def.sandbox_count) return true;
-  if (!realpath(path, real)) return false;
-  for (uint32_t i = 0; i < context->def.sandbox_count; i++)
-    if (is_beneath(real, context->sandbox[i])) return true;
-  return false;
+  return vl_sandbox_allows((vlSandbox *)(uintptr_t)&context->sandbox, path); /* takes its mutex */
 }
 
 bool vl_context_has_sandbox(const vlContext *context) {
-  return context->def.sandbox_count > 0;
+  return context->sandbox.count > 0;
+}
+
+vlSandbox *vl_context_sandbox(vlContext *context) {
+  return &context->sandbox;
 }
 
 uint64_t vl_context_max_texture_pixels(const vlContext *context) {
   return context->def.max_texture_pixels;
-}
-
-static void free_sandbox(vlContext *context) {
-  for (uint32_t i = 0; context->sandbox && i < context->def.sandbox_count; i++) free(context->sandbox[i]);
-  free(context->sandbox);
-}
-
-static vlResult copy_sandbox(vlContext *context) {
-  uint32_t count = context->def.sandbox_count;
-  if (count && !(context->sandbox = calloc(count, sizeof *context->sandbox))) return VL_ERROR_MEMORY;
-  for (uint32_t i = 0; i < count; i++)
-    if (!(context->sandbox[i] = realpath(context->def.sandbox[i], NULL))) return VL_ERROR_MISSING;
-  return VL_OK;
 }
 
 /* ---- creation and destruction ------------------------------------------------------------------------------------ */
@@ -252,10 +231,10 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
   pthread_mutex_init(&context->inputs.mutex, NULL);
-  r = copy_sandbox(context);
+  r = vl_sandbox_make(&context->sandbox, d.sandbox, d.sandbox_count);
   if (r == VL_OK && !d.parallel_for) r = vl_pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
-    free_sandbox(context);
+    vl_sandbox_free(&context->sandbox);
     d.allocator.release(d.allocator.user, context);
     return r;
   }
@@ -267,7 +246,7 @@ vlResult vl_context_create_quiet(const vlContext *context, vlContext **result) {
   vlContextDef def = context->def;
   def.log = NULL;
   def.threads = 1;
-  def.sandbox = (const char *const *)context->sandbox;
+  def.sandbox = (const char *const *)context->sandbox.folders;
   return vl_context_create(&def, result);
 }
 
@@ -282,7 +261,7 @@ void vl_context_destroy(vlContext *context) {
   vl_free(context, context->files.files.items);
   for (size_t i = 0; i < context->inputs.list.count; i++) vl_free(context, context->inputs.list.items[i].path);
   vl_free(context, context->inputs.list.items);
-  free_sandbox(context);
+  vl_sandbox_free(&context->sandbox);
   context->def.allocator.release(context->def.allocator.user, context);
 }
 

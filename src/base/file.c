@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/file_input.h"
 #include "base/file_record.h"
+#include "base/sandbox.h"
 #include "base/text.h"
 
 double vl_seconds(void) {
@@ -127,13 +128,10 @@ static const char *not_a_file(const struct stat *info, bool pipes) {
  * again after opening, since the name may refer to another file by then. */
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
-  if (stat(path, &info) != 0) {
-    int code = errno;
-    if (given || !vl_context_has_sandbox(context)) return fail_open(path, code, error), -1;
-    return vl_fail(error, VL_ERROR_MISSING, "no such file: %s", path), -1; /* no names from outside */
-  }
-  if (!given && !vl_context_allows(context, path))
+  if (!given && !vl_context_allows(context, path)) /* asked first: the answer is the same for a missing file */
     return vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path), -1;
+  if (stat(path, &info) != 0) return fail_open(path, errno, error), -1;
+  if (given) vl_sandbox_pass(vl_context_sandbox(context), path);
   const char *what = not_a_file(&info, given);
   int fd = what ? -1 : open(path, O_RDONLY | O_CLOEXEC | (given ? 0 : O_NONBLOCK));
   if (!what && fd < 0) return fail_open(path, errno, error), -1;

@@ -198,7 +198,7 @@ bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char 
   vlError error;
   vl_error_clear(&error);
   vlResult r = vl_image_write(image, path, NULL, &error);
-  if (r == VL_OK) r = vl_file_read(x->context, path, false, data, size, &error);
+  if (r == VL_OK) r = vl_file_read_given(x->context, path, false, data, size, &error);
   unlink(path);
   return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
 }

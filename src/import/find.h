@@ -12,9 +12,9 @@ typedef enum vlFound {
 } vlFound;
 
 /* Writes the path of the file `name`: in the folder of the file `naming`, in that of the scene's first file, in the
- * folders of the search path (separated by ':'), in the current folder. The first that exists counts. first and
- * search_path may be null. */
-vlFound vl_find_file(const char *naming, const char *first, const char *search_path, const char *name, char *path,
-                     size_t size);
+ * folders of the search path (separated by ':'), in the current folder. The first that exists counts;
+ * a file outside of the context's sandbox does not. first and search_path may be null. */
+vlFound vl_find_file(vlContext *context, const char *naming, const char *first, const char *search_path,
+                     const char *name, char *path, size_t size);
 
 #endif

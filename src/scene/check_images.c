@@ -16,7 +16,7 @@
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 
 static bool file_is_there(vlCheck *c, const char *path, vlSource source) {
-  if (access(path, R_OK) == 0) return true;
+  if (vl_context_allows(c->context, path) && access(path, R_OK) == 0) return true;
   char *data = NULL;
   size_t size;
   vlError error = {0};

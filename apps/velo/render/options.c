@@ -269,7 +269,7 @@ const Option render_options[] = {
      "largest number of pixels of one texture image; default 268435456", 1, 1e15, NULL},
     {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "DIR",
      "for scenes from untrusted sources: a file that the scene names must be in DIR or below it, after links are "
-     "resolved; may be given several times",
+     "resolved, and the system confines velo where it can; may be given several times",
      0, 0, NULL},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "warn about parts of the scene that velo does not understand, instead of ending with an error; repair invalid "

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/confine.h"
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -116,6 +117,25 @@ static int note_inputs(const Render *render, const Arguments *arguments) {
   return result == VL_ERROR_MEMORY ? report_error(NULL, result, NULL) : -1;
 }
 
+/* --sandbox: what the render opens besides the files of the scene. */
+static void confine(const Render *render, const Arguments *arguments) {
+  static const int inputs[] = {RENDER_CAMERA,      RENDER_TRAJECTORY,         RENDER_RIG,
+                               RENDER_FLOW_CAMERA, RENDER_FLOW_CAMERA_BEFORE, RENDER_DENOISER_LIBRARY};
+  const OptionValue *v = arguments->values;
+  Confine c = {.sockets = v[RENDER_SERVE].given};
+  confine_read(&c, arguments->operands[0]);
+  confine_read(&c, render->again.path);
+  if (v[RENDER_ENVIRONMENT].given) confine_read(&c, v[RENDER_ENVIRONMENT].text);
+  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+    if (v[inputs[i]].given) confine_read_folder(&c, v[inputs[i]].text);
+  for (int i = 0; i < render->outputs.count; i++) confine_write(&c, render->outputs.paths[i]);
+  if (!render->outputs.count) confine_write(&c, "default.exr"); /* its name is chosen later, its folder is this one */
+  confine_write(&c, render->film_plan.path);
+  confine_write(&c, render->film_plan.from);
+  if (render->denoised.outputs.count) confine_write(&c, render->denoised.outputs.paths[0]);
+  confine_apply(&c, arguments);
+}
+
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given) return report_usage("--quiet and --verbose exclude each other");
@@ -156,7 +176,10 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
-  if (!render->context) status = context_open(&def, &render->context);
+  if (!render->context) {
+    confine(render, arguments);
+    status = context_open(&def, &render->context);
+  }
   if (status < 0) report_memory_of(render->context, def.max_memory);
   if (status < 0) status = note_inputs(render, arguments);
   return status;

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "cli/commands.h"
+#include "cli/confine.h"
 #include "cli/context.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
@@ -17,6 +18,10 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
   def.log = log;
   def.log_user = log_user;
   def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  Confine confine = {.read_count = 0};
+  confine_read(&confine, arguments->operands[0]);
+  if (arguments->operand_count > 1) confine_write(&confine, arguments->operands[1]);
+  confine_apply(&confine, arguments);
   return context_open(&def, context);
 }
 

@@ -22,7 +22,8 @@
         "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL \
   }
 
-/* Creates a context with the options' --sandbox folder and a log callback. Returns -1, or the exit code after reporting
+/* Creates a context with the options' --sandbox folder and a log callback, and confines the program to that folder,
+ * the first operand (read) and the folder of the second (written). Returns -1, or the exit code after reporting
  * the error. */
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user);
 

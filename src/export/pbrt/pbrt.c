@@ -88,7 +88,7 @@ static bool put_camera(vlExport *x) {
     def.drop = beyond, def.drop_count = sizeof beyond / sizeof *beyond;
     r = vl_camera_write(x->context, path, &def, &record, &error);
   }
-  if (r == VL_OK) r = vl_file_read(x->context, path, false, &text, &size, &error);
+  if (r == VL_OK) r = vl_file_read_given(x->context, path, false, &text, &size, &error);
   unlink(path);
   if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
   if (r == VL_ERROR_IO || r == VL_ERROR_MISSING) return vl_export_fail(x, VL_ERROR_IO, "%s", error.message);

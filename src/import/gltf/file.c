@@ -198,7 +198,7 @@ bool vl_gltf_uri(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint8_
   char name[4096], whole[4096];
   if (strlen(uri) >= sizeof name) return vl_gltf_fail(g, at, "the file name is too long");
   unescape(uri, name);
-  vlFound found = vl_find_file(g->path, NULL, g->def->search_path, name, whole, sizeof whole);
+  vlFound found = vl_find_file(g->context, g->path, NULL, g->def->search_path, name, whole, sizeof whole);
   if (found == VL_FOUND_TOO_LONG) return vl_gltf_fail(g, at, "the file name is too long");
   *path = whole;
   return vl_scene_copy_string(g->scene, path);

@@ -48,7 +48,8 @@ bool vl_gltf_read_image(vlGltf *g, size_t index) {
   if (uri) {
     if (is_remote(uri)) return report_missing(g, at, image, uri, "velo fetches nothing from the net");
     if (!vl_gltf_uri(g, VL_GLTF_KEY(at, "uri"), uri, &image->data, &image->size, &image->path)) return false;
-    if (image->path && access(image->path, F_OK) != 0 && !g->scene->problem) /* vl_scene_check reports it itself */
+    if (image->path && vl_context_allows(g->context, image->path) && access(image->path, F_OK) != 0 &&
+        !g->scene->problem) /* vl_scene_check reports it itself */
       return report_missing(g, at, image, image->path, "no such file");
   } else if (view >= 0) {
     if (!g->views[view].data) return vl_gltf_fail(g, at, "its bufferView holds nothing that velo can read");

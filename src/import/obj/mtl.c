@@ -33,7 +33,7 @@ static bool exists(const char *path) {
 static bool find_file(vlObj *obj, const char *name, char *path, size_t size) {
   const char *slash = strrchr(name, '/');
   for (int i = 0; i < (slash ? 2 : 1); i++) {
-    vlFound found = vl_find_file(obj->path, NULL, obj->search_path, i ? slash + 1 : name, path, size);
+    vlFound found = vl_find_file(obj->context, obj->path, NULL, obj->search_path, i ? slash + 1 : name, path, size);
     if (found == VL_FOUND && exists(path)) return true;
   }
   return false;

@@ -70,7 +70,7 @@ static bool parse_path(vlParser *parser, vlParserFile *parent, vlSource at, cons
   vlParserFile file = {.parser = parser, .parent = parent, .included = included, .path = path};
   file.depth = parent ? parent->depth + 1 : 0;
   const vlParseTarget *target = parser->target;
-  if (stat(path, &info) == 0) {
+  if ((!parent || vl_context_allows(parser->context, path)) && stat(path, &info) == 0) {
     file.device = info.st_dev;
     file.inode = info.st_ino;
     for (const vlParserFile *f = parent; f; f = f->parent) {
@@ -131,7 +131,8 @@ bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bo
   char path[MAX_PATH];
   const char *text = given_text(target, name);
   if (text) return follow_text(file, place, name, text, included);
-  vlFound found = vl_find_file(file->path, file->parser->first, target->search_path, name, path, sizeof path);
+  vlFound found = vl_find_file(file->parser->context, file->path, file->parser->first, target->search_path, name, path,
+                               sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_parse_fail(file, place, "file name too long");
   if (found == VL_FOUND_CURRENT && target->found_elsewhere) target->found_elsewhere(target->user, place, path);
   return parse_path(file->parser, file, place, path, included);

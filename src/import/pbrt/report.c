@@ -117,7 +117,7 @@ void vl_import_note_elsewhere(void *user, vlSource place, const char *path) {
 }
 
 vlFound vl_import_find(vlImport *import, vlSource place, const char *name, char *path, size_t size) {
-  vlFound found = vl_find_file(place.file, import->first, import->search_path, name, path, size);
+  vlFound found = vl_find_file(import->context, place.file, import->first, import->search_path, name, path, size);
   if (found == VL_FOUND_CURRENT) vl_import_note_elsewhere(import, place, path);
   return found;
 }
@@ -130,7 +130,7 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
     return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" is an empty file name", param->name);
   if (vl_import_find(import, param->place, param->strings.items[0], path, size) == VL_FOUND_TOO_LONG)
     return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\": file name too long", param->name);
-  if (access(path, R_OK) == 0) return true;
+  if (vl_context_allows(import->context, path) && access(path, R_OK) == 0) return true;
   char *data;
   size_t count;
   vlError error = {0};

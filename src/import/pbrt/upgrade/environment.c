@@ -102,7 +102,7 @@ bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const 
                         size_t size) {
   vlUpgrade *u = file->u;
   char path[4096];
-  vlFound found = vl_find_file(file->path, u->first, u->def->search_path, name, path, sizeof path);
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name, path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   if (found == VL_FOUND_NOT) {
     u->missing++;

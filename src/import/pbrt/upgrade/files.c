@@ -50,7 +50,7 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
   vlUpgrade *u = file->u;
   char path[4096], beside[4096], real[PATH_MAX];
   if (is_metal(name, result, size)) return true;
-  vlFound found = vl_find_file(file->path, u->first, u->def->search_path, name, path, sizeof path);
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, name, path, sizeof path);
   if (found == VL_FOUND_TOO_LONG || strlen(name) >= size)
     return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long");
   snprintf(result, size, "%s", name);
@@ -60,7 +60,8 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
     return true;
   }
   struct stat info;
-  bool first = vl_path_join(u->first, name, beside, sizeof beside) && stat(beside, &info) == 0;
+  bool first = vl_path_join(u->first, name, beside, sizeof beside) && vl_context_allows(u->context, beside) &&
+               stat(beside, &info) == 0;
   if (name[0] == '/' || (u->same_folder && first)) return true;
   if (!realpath(first ? beside : path, real) || !relative(u->to_folder, real, result, size))
     return vl_old_fail(file, VL_ERROR_SCENE, line, 0, "file name too long: %s", path);
@@ -180,7 +181,7 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
 bool vl_old_include(vlOldFile *file, vlOldStatement *s) {
   vlUpgrade *u = file->u;
   char path[4096];
-  vlFound found = vl_find_file(file->path, u->first, u->def->search_path, s->name[0], path, sizeof path);
+  vlFound found = vl_find_file(u->context, file->path, u->first, u->def->search_path, s->name[0], path, sizeof path);
   if (found == VL_FOUND_TOO_LONG) return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
   if (u->depth > 64)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "files include each other more than 64 deep");

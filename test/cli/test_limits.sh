@@ -190,7 +190,7 @@ check sandbox_default_output "$V" render in.png.pbrt --sandbox . $small
 check sandbox_stdout "$V" render in.png.pbrt --sandbox . $small -o -.png
 check sandbox_denoise "$V" render in.png.pbrt --sandbox . $small --spp 4 -o ../confined.exr --denoise ../elsewhere/clean.exr
 check sandbox_frames "$V" render in.png.pbrt --sandbox . $small --turntable 2 -o ../elsewhere/turn_%02d.exr
-check sandbox_camera "$V" render in.png.pbrt --sandbox . $small --camera ../scene.pbrt --environment ../wide.png -o ../confined.exr
+check sandbox_camera "$V" render in.png.pbrt --sandbox . $small --camera ../scene.pbrt --environment ../a.exr -o ../confined.exr
 cd ..
 
 # ---- what messages repeat of files -----------------------------------------------------------------------------------

@@ -280,6 +280,24 @@ for file in text.png profile.png; do
   if is_plain_build; then [ "$kilobytes" -lt 60000 ] && pass "memory_of_$file" || fail "memory_of_$file ($kilobytes kB)"; fi
 done
 
+# WebP files whose metadata promise a gigabyte, and one of 46 bytes that promises 2^28 pixels.
+python3 - <<'PY'
+import struct
+def chunk(kind, data, length=None):
+    return kind + struct.pack("<I", len(data) if length is None else length) + data
+def riff(chunks, length=None):
+    return b"RIFF" + struct.pack("<I", 4 + len(chunks) if length is None else length) + b"WEBP" + chunks
+extended = chunk(b"VP8X", bytes([0x2c, 0, 0, 0, 1, 0, 0, 1, 0, 0]))
+for kind in "ICCP", "EXIF", "XMP ":
+    open("huge_%s.webp" % kind.strip(), "wb").write(riff(extended + chunk(kind.encode(), b"abcdefghijkl", 0x3fffffff), 0x7ffffff0))
+open("huge_pixels.webp", "wb").write(riff(chunk(b"VP8L", b"\x2f" + struct.pack("<I", 16383 | 16383 << 14) + bytes(20))))
+PY
+for file in huge_*.webp; do
+  run_measured "$V" image convert "$file" webp.png
+  [ "$code" = 3 ] && pass "$file" || { fail "$file"; show "$file"; }
+  if is_plain_build; then [ "$kilobytes" -lt 60000 ] && pass "memory_of_$file" || fail "memory_of_$file ($kilobytes kB)"; fi
+done
+
 # A camera farther away than Embree's largest coordinate sees nothing of the scene, in a medium too.
 sed 's/^Camera /MakeNamedMedium "fog" "string type" "homogeneous"\nMediumInterface "" "fog"\nTransform [1 0 0 0  0 1 0 0  0 0 1 0  0 1e20 0 1]\nCamera /' scene.pbrt >far.pbrt
 grep -q 1e20 far.pbrt || fail far_camera_scene

@@ -386,11 +386,11 @@ def yaml_recipes_and_shards():
 @case
 def no_file_that_was_read_is_overwritten():
     folder = work("inputs")
-    os.makedirs(folder)
+    os.makedirs(os.path.join(folder, "coco"))
     write_obj(os.path.join(folder, "block.obj"), MESHES["block"])
-    path = os.path.join(folder, "annotations.json")  # what the writer coco calls its table
+    path = os.path.join(folder, "coco", "annotations.json")  # what the writer coco calls its table
     with open(path, "w") as file:
-        json.dump({"models": ["block.obj"], "frames": 1, "spp": 1, "resolution": [32, 24],
+        json.dump({"models": ["../block.obj"], "frames": 1, "spp": 1, "resolution": [32, 24],
                    "cameras": [{"kind": "around", "distance": [1, 2]}]}, file)
     before = open(path).read()
     done = run(path, "-o", folder, "--writers", "coco")

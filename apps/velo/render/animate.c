@@ -133,7 +133,7 @@ static int prepare(const Command *command, const Arguments *arguments, const Ani
 
 int animate_run(const Command *command, const Arguments *arguments, AnimateRender *render) {
   Animation a = {0};
-  AnimateShared shared = {.exposure = NAN};
+  AnimateShared shared = {.exposure = NAN, .whole = arguments};
   int status = check(arguments);
   if (status < 0) status = read_animation(arguments, &a);
   if (status < 0) status = choose_frames(arguments, &a);

@@ -11,10 +11,12 @@
  * what has not changed is neither read nor built again (vlBuildDef.previous). With --turntable only the camera changes:
  * scene and world are those of the first frame. */
 typedef struct AnimateShared {
-  float exposure; /* of all frames, in stops; NaN until the first one has been metered */
-  bool preparing; /* the first frame of all is not rendered: it only sets the exposure and the tracer */
-  bool raced;     /* the first frame had its race, or needed none */
-  RaceKind race;  /* RACE_NONE: none was needed, and choice is not set */
+  float exposure;         /* of all frames, in stops; NaN until the first one has been metered */
+  bool preparing;         /* the first frame of all is not rendered: it only sets the exposure and the tracer */
+  const Arguments *whole; /* the command line, from which those of the frames are made */
+  bool job_checked, tracer_checked; /* options without effect have been reported (needs.h) */
+  bool raced;                       /* the first frame had its race, or needed none */
+  RaceKind race;                    /* RACE_NONE: none was needed, and choice is not set */
   vlTracerChoice choice;
   bool still; /* --turntable */
   vlContext *context;

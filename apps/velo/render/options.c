@@ -279,6 +279,10 @@ const Option render_options[] = {
      "a missing image of a glTF or OBJ file is an error (exit code 4). Default: a warning; its material is used "
      "without the image",
      0, 0, NULL},
+    {RENDER_STRICT_OPTIONS, 0, "strict-options", OPTION_FLAG, NULL,
+     "an option that has no effect in this render, such as --variant if FILE is not glTF, is an error (exit code 2). "
+     "Default: a note",
+     0, 0, NULL},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
     {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL,

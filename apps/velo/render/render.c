@@ -14,6 +14,7 @@
 #include "render/animate.h"
 #include "render/exposure.h"
 #include "render/lens_options.h"
+#include "render/needs.h"
 #include "render/noise.h"
 #include "render/output_names.h"
 #include "render/pattern.h"
@@ -382,7 +383,8 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
-  status = claim_films(render, arguments);
+  status = needs_check_job(render, arguments);
+  if (status < 0) status = claim_films(render, arguments);
   if (status < 0) status = race_plan(render, arguments);
   if (status < 0) status = build_world(render, path);
   if (status >= 0) return status;
@@ -467,6 +469,7 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
   if (status < 0) status = check_outputs(&render);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0) status = race_run(&render, arguments);
+  if (status < 0) status = needs_check_tracer(&render, arguments);
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0) status = meter_model(&render, arguments);
   if (status < 0 && shared && shared->preparing) status = STATUS_OK;

@@ -21,10 +21,14 @@ bool scene_is_model(const char *path) {
   return !ends_with(path, ".pbrt") && !ends_with(path, ".pbrt.gz");
 }
 
+bool scene_is_gltf(const char *path) {
+  return ends_with(path, ".gltf") || ends_with(path, ".glb");
+}
+
 bool scene_camera_is_own(const char *path, const Arguments *arguments) {
   const OptionValue *camera = &arguments->values[RENDER_CAMERA];
   struct stat info;
-  return camera->given && (ends_with(path, ".gltf") || ends_with(path, ".glb")) && stat(camera->text, &info) != 0;
+  return camera->given && scene_is_gltf(path) && stat(camera->text, &info) != 0;
 }
 
 /* Parses studio, sky, white, none, or a file name. */
@@ -134,6 +138,9 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
     choose_up((int)v[RENDER_UP].integer, &complete);
   else if (ends_with(path, ".stl") || ends_with(path, ".stl.gz"))
     choose_up(2, &complete);
+  opening->environment = complete.environment;
+  if (opening->environment == VL_ENVIRONMENT_AUTO)
+    opening->environment = defs->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;
   result = vl_scene_complete(*scene, &complete, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   opening->load = load;

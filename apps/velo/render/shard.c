@@ -93,7 +93,7 @@ static int take_tiles(const OptionValue *v, vlFilmDef *film) {
 
 /* ---- both -------------------------------------------------------------------------------------------------------- */
 
-static bool has_light_paths(vlTracer tracer) {
+bool tracer_has_light_paths(vlTracer tracer) {
   return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING || tracer == VL_TRACER_SPPM ||
          tracer == VL_TRACER_LIGHT_PATH;
 }
@@ -101,7 +101,7 @@ static bool has_light_paths(vlTracer tracer) {
 void shard_warn(const Arguments *arguments, vlTracer tracer) {
   const OptionValue *v = arguments->values;
   bool by_tiles = v[RENDER_SHARD_BY].given && v[RENDER_SHARD_BY].integer == 1;
-  if ((by_tiles || v[RENDER_TILES].given) && has_light_paths(tracer))
+  if ((by_tiles || v[RENDER_TILES].given) && tracer_has_light_paths(tracer))
     report_warning(
         "this tracer follows light from the lamps for the whole image: each part by tiles repeats it; "
         "parts by samples do not");

@@ -12,6 +12,8 @@ int shard_check(const Arguments *arguments);
 bool shard_read(const Arguments *arguments, uint32_t *index, uint32_t *count);
 /* Restricts the defs of film and render to the part. Returns -1 or the exit code. */
 int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render);
+/* Whether the tracer follows paths from the lights. */
+bool tracer_has_light_paths(vlTracer tracer);
 /* Warns of a part by tiles, if the tracer traces light paths for the whole image. */
 void shard_warn(const Arguments *arguments, vlTracer tracer);
 

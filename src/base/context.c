@@ -231,7 +231,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
   pthread_mutex_init(&context->inputs.mutex, NULL);
-  r = vl_sandbox_make(&context->sandbox, d.sandbox, d.sandbox_count);
+  r = vl_sandbox_make(&context->sandbox, &d.allocator, d.sandbox, d.sandbox_count);
   if (r == VL_OK && !d.parallel_for) r = vl_pool_start(&context->pool, d.threads);
   if (r != VL_OK) {
     vl_sandbox_free(&context->sandbox);

@@ -4,27 +4,46 @@
 
 #include <limits.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <stdlib.h> /* realpath */
 #include <string.h>
 #include <unistd.h>
 
 enum { MOST_LINKS = 40 };
 
-vlResult vl_sandbox_make(vlSandbox *sandbox, const char *const *folders, uint32_t count) {
+static void *take(const vlSandbox *sandbox, size_t size) {
+  return sandbox->allocator.allocate(sandbox->allocator.user, size);
+}
+
+static void give_back(const vlSandbox *sandbox, void *block) {
+  if (block) sandbox->allocator.release(sandbox->allocator.user, block);
+}
+
+static char *copy_text(const vlSandbox *sandbox, const char *text) {
+  const size_t size = strlen(text) + 1;
+  char *copy = take(sandbox, size);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}
+
+vlResult vl_sandbox_make(vlSandbox *sandbox, const vlAllocator *allocator, const char *const *folders, uint32_t count) {
+  char real[PATH_MAX];
   pthread_mutex_init(&sandbox->mutex, NULL);
+  sandbox->allocator = *allocator;
   if (!count) return VL_OK;
-  if (!(sandbox->folders = calloc(count, sizeof *sandbox->folders))) return VL_ERROR_MEMORY;
-  sandbox->count = count;
-  for (uint32_t i = 0; i < count; i++)
-    if (!(sandbox->folders[i] = realpath(folders[i], NULL))) return VL_ERROR_MISSING;
+  if (!(sandbox->folders = take(sandbox, count * sizeof *sandbox->folders))) return VL_ERROR_MEMORY;
+  for (uint32_t i = 0; i < count; i++) {
+    if (!realpath(folders[i], real)) return VL_ERROR_MISSING;
+    if (!(sandbox->folders[i] = copy_text(sandbox, real))) return VL_ERROR_MEMORY;
+    sandbox->count++;
+  }
   return VL_OK;
 }
 
 void vl_sandbox_free(vlSandbox *sandbox) {
-  for (uint32_t i = 0; i < sandbox->count; i++) free(sandbox->folders[i]);
-  for (size_t i = 0; i < sandbox->passed_count; i++) free(sandbox->passed[i]);
-  free(sandbox->folders);
-  free(sandbox->passed);
+  for (uint32_t i = 0; i < sandbox->count; i++) give_back(sandbox, sandbox->folders[i]);
+  for (size_t i = 0; i < sandbox->passed_count; i++) give_back(sandbox, sandbox->passed[i]);
+  give_back(sandbox, sandbox->folders);
+  give_back(sandbox, sandbox->passed);
   pthread_mutex_destroy(&sandbox->mutex);
 }
 
@@ -60,6 +79,11 @@ typedef struct Walk {
   bool missing; /* nothing is at `at`: names below it are no links */
 } Walk;
 
+/* The text is shorter than PATH_MAX. */
+static void set(char at[PATH_MAX], const char *text) {
+  memcpy(at, text, strlen(text) + 1);
+}
+
 static void go_up(char *at) {
   char *slash = strrchr(at, '/');
   slash[slash == at] = 0;
@@ -82,7 +106,7 @@ static bool follow(Walk *walk, const char *link) {
   if (n < 0 || (size_t)n >= sizeof rest || ++walk->links > MOST_LINKS) return false;
   memcpy(walk->rest, rest, (size_t)n + 1);
   if (*link == '/')
-    strcpy(walk->at, "/");
+    set(walk->at, "/");
   else
     go_up(walk->at);
   return true;
@@ -112,30 +136,31 @@ bool vl_sandbox_allows(vlSandbox *sandbox, const char *path) {
   Walk walk = {.links = 0};
   if (!sandbox->count) return true;
   if (strlen(path) >= sizeof walk.rest) return false;
-  strcpy(walk.rest, path);
-  if (!getcwd(walk.start, sizeof walk.start) || *walk.start != '/') strcpy(walk.start, "/");
-  strcpy(walk.at, *path == '/' ? "/" : walk.start);
+  set(walk.rest, path);
+  if (!getcwd(walk.start, sizeof walk.start) || *walk.start != '/') set(walk.start, "/");
+  set(walk.at, *path == '/' ? "/" : walk.start);
   while (*walk.rest)
     if (!step(sandbox, &walk)) return false;
   return is_inside(sandbox, walk.at);
 }
 
 void vl_sandbox_pass(vlSandbox *sandbox, const char *path) {
-  char folder[PATH_MAX];
+  char folder[PATH_MAX], real[PATH_MAX];
   if (!sandbox->count) return;
   const char *slash = strrchr(path, '/');
   int n = slash ? snprintf(folder, sizeof folder, "%.*s/", (int)(slash - path), path)
                 : snprintf(folder, sizeof folder, ".");
-  char *real = n > 0 && (size_t)n < sizeof folder ? realpath(folder, NULL) : NULL;
+  if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real)) return;
   pthread_mutex_lock(&sandbox->mutex);
-  bool known = !real;
+  bool known = false;
   for (size_t i = 0; i < sandbox->passed_count && !known; i++) known = strcmp(sandbox->passed[i], real) == 0;
-  char **grown = known ? NULL : realloc(sandbox->passed, (sandbox->passed_count + 1) * sizeof *grown);
+  char **grown = known ? NULL : take(sandbox, (sandbox->passed_count + 1) * sizeof *grown);
   if (grown) {
-    grown[sandbox->passed_count++] = real;
+    if (sandbox->passed) memcpy(grown, sandbox->passed, sandbox->passed_count * sizeof *grown);
+    give_back(sandbox, sandbox->passed);
     sandbox->passed = grown;
-    real = NULL;
+    grown[sandbox->passed_count] = copy_text(sandbox, real);
+    if (grown[sandbox->passed_count]) sandbox->passed_count++;
   }
   pthread_mutex_unlock(&sandbox->mutex);
-  free(real);
 }

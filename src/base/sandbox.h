@@ -7,6 +7,7 @@
 #include "velo/base.h"
 
 typedef struct vlSandbox {
+  vlAllocator allocator;
   char **folders; /* with symbolic links resolved */
   uint32_t count; /* 0: every file is allowed */
   pthread_mutex_t mutex;
@@ -15,7 +16,7 @@ typedef struct vlSandbox {
 } vlSandbox;
 
 /* Errors: MEMORY, MISSING (a folder). To be freed also after an error. */
-vlResult vl_sandbox_make(vlSandbox *sandbox, const char *const *folders, uint32_t count);
+vlResult vl_sandbox_make(vlSandbox *sandbox, const vlAllocator *allocator, const char *const *folders, uint32_t count);
 void vl_sandbox_free(vlSandbox *sandbox);
 /* Whether a path leads into the sandbox, whether there is a file or not. The path may pass through the folders above
  * those of the sandbox, the current folder and folders of given files, and through no other folder outside: the answer

@@ -105,6 +105,20 @@ void vl_mat4_normal(const vlMat4 *inverse, const double n[3], double result[3]) 
   for (int i = 0; i < 3; i++) result[i] = r[i];
 }
 
+double vl_mat4_scale_of(const vlMat4 *a) {
+  return vl_precise_cbrt(fabs(vl_mat4_determinant3(*a)));
+}
+
+void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3], float result[3]) {
+  const double rounding = 1e-4, most = 1e12;
+  double given[3] = {(double)n[0], (double)n[1], (double)n[2]}, q[3];
+  vl_mat4_normal(inverse, given, q);
+  double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), weight = length * scale;
+  if (fabs(weight - 1) <= rounding || !(weight >= 1 / most && weight <= most)) weight = 1;
+  double factor = length > 0 ? weight / length : 0;
+  for (int k = 0; k < 3; k++) result[k] = (float)(q[k] * factor);
+}
+
 void vl_mat3_multiply(const double a[9], const double b[9], double r[9]) {
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) r[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];

@@ -77,14 +77,13 @@ static bool move_points(const vlMat4 *m, const float *from, size_t count, float 
   return all_finite(to, 3 * count);
 }
 
-/* Transforms normals. side is -1 when the transform mirrors; the mirroring is then moved to reverse_orientation, which
- * also flips normals. */
-static void move_normals(const vlMat4 *inverse, double side, const float *from, size_t count, float *to) {
-  for (size_t i = 0; i < count; i++) {
-    double n[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]}, q[3];
-    vl_mat4_normal(inverse, n, q);
-    double l = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-    for (int k = 0; k < 3; k++) to[3 * i + (size_t)k] = (float)(l > 0 ? side * q[k] / l : 0);
+/* Transforms normals. A transform that mirrors moves the mirroring to reverse_orientation, which also flips normals. */
+static void move_normals(const vlMat4 *m, const vlMat4 *inverse, bool mirrored, const float *from, size_t count,
+                         float *to) {
+  double scale = vl_mat4_scale_of(m);
+  for (size_t i = 0; i < 3 * count; i += 3) {
+    vl_mat4_vertex_normal(inverse, scale, from + i, to + i);
+    for (size_t k = 0; mirrored && k < 3; k++) to[i + k] = -to[i + k];
   }
 }
 
@@ -128,7 +127,7 @@ bool vl_import_gather_mesh(vlImport *import, const vlShapeDef *given, const vlSh
   }
   run->positions.count += 3 * n;
   if (def.normals) {
-    move_normals(&inverse, mirrored ? -1 : 1, def.normals, n, run->normals.items + run->normals.count);
+    move_normals(&m, &inverse, mirrored, def.normals, n, run->normals.items + run->normals.count);
     run->normals.count += 3 * n;
   }
   if (def.uvs) {

@@ -31,28 +31,12 @@ static bool move_positions(const vlShapeDef *def, const vlMat4 *m, const float *
   return fine;
 }
 
-/* The normal of vertex i in group space; returns its length. */
-static double move_normal(const vlMat4 *inverse, const float *from, size_t i, double q[3]) {
-  double p[3] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
-  vl_mat4_normal(inverse, p, q);
-  return sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
-}
-
-/* Vertex normals at one end of a motion, transformed to group space. Their lengths are weights where normals are
- * interpolated, as in pbrt, so that a mesh looks the same whether it or its instance is scaled: one factor makes the
- * longest 1. Lengths that differ by rounding alone become 1. */
-static void move_normals(const vlShapeDef *def, const vlMat4 *inverse, const float *from, float *to) {
-  const double nearly = 1 - 1e-4;
-  double q[3], longest = 0;
-  for (size_t i = 0; i < def->vertices; i++) {
-    double l = move_normal(inverse, from, i, q);
-    longest = l > longest ? l : longest;
-  }
-  for (size_t i = 0; i < def->vertices; i++) {
-    double l = move_normal(inverse, from, i, q);
-    double f = longest > 0 ? 1 / (l >= nearly * longest ? l : longest) : 0;
-    if (def->reverse_orientation) f = -f;
-    for (int k = 0; k < 3; k++) to[3 * i + k] = (float)(q[k] * f);
+/* Vertex normals at one end of a motion, transformed to group space. */
+static void move_normals(const vlShapeDef *def, const vlMat4 *m, const vlMat4 *inverse, const float *from, float *to) {
+  double scale = vl_mat4_scale_of(m);
+  for (size_t i = 0; i < 3 * (size_t)def->vertices; i += 3) {
+    vl_mat4_vertex_normal(inverse, scale, from + i, to + i);
+    for (size_t k = 0; def->reverse_orientation && k < 3; k++) to[i + k] = -to[i + k];
   }
 }
 
@@ -90,7 +74,7 @@ static vlResult add_vertex_motion(vlWorld *world, const vlShapeDef *def, const v
   s->positions = positions;
   if (!normals) return VL_OK;
   memcpy(normals, s->normals, n * sizeof(float));
-  move_normals(def, inverse, def->normals_close, normals + steps * n);
+  move_normals(def, m, inverse, def->normals_close, normals + steps * n);
   spread(world, def, normals, s->steps);
   s->normals = normals;
   return VL_OK;
@@ -125,7 +109,7 @@ vlResult vl_mesh_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *m,
   if (same) memcpy(s->positions, def->positions, 3 * n * sizeof(float));
   if (!same && !move_positions(def, m, def->positions, s->positions))
     return fail_shape(def, error, "a vertex leaves the range of floats under the shape's transform");
-  if (def->normals) move_normals(def, inverse, def->normals, s->normals);
+  if (def->normals) move_normals(def, m, inverse, def->normals, s->normals);
   for (size_t i = 0; def->tangents && i < n; i++) {
     double p[3] = {def->tangents[3 * i], def->tangents[3 * i + 1], def->tangents[3 * i + 2]}, q[3];
     vl_mat4_vector(m, p, q);

@@ -1,6 +1,7 @@
 /* cli/signals.c: see signals.h. */
 #include "cli/signals.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -13,10 +14,13 @@ static atomic_int pending, count;
 static atomic_bool remember, on_terminal;
 static _Atomic time_t last; /* time of the last signal that counted, seconds */
 
-/* Calls only async-signal-safe functions. */
+/* Nobody may read the messages: what a pipe does not take at once is dropped, so that the signal still ends velo. Calls
+ * only async-signal-safe functions. */
 static void say(const char *text) {
-  ssize_t n = write(STDERR_FILENO, text, strlen(text));
-  (void)n;
+  struct pollfd ready = {.fd = STDERR_FILENO, .events = POLLOUT};
+  if (poll(&ready, 1, 0) != 1 || !(ready.revents & POLLOUT)) return;
+  ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
+  (void)ignored;
 }
 
 static void handle(int number) {

@@ -88,28 +88,50 @@ static bool is_hidden(uint32_t c) {
          (c >= 0x2028 && c <= 0x202e) || (c >= 0x2060 && c <= 0x206f) || c == 0xfeff || c >= 0xe0000;
 }
 
-vlShortText vl_short_text_of(const char *text, size_t length) {
-  enum { MOST_SHOWN = 12 };
+/* The first `most` characters, as far as they and the mark of what is left out fit into `size` bytes. */
+static void show(const char *text, size_t length, uint32_t most, char *result, size_t size) {
+  const char *const more = "\u2026";
   const unsigned char *bytes = (const unsigned char *)text;
-  vlShortText result;
   size_t used = 0, at = 0;
-  for (uint32_t shown = 0; at < length && shown < MOST_SHOWN; shown++) {
+  for (uint32_t shown = 0; at < length && shown < most; shown++) {
     uint32_t code = 0;
     size_t n = utf8_length(bytes + at, length - at, &code);
+    if (used + (n ? n : 1) + strlen(more) >= size) break;
     if (n == 0 || is_hidden(code)) {
-      result.text[used++] = '?';
+      result[used++] = '?';
     } else {
-      memcpy(result.text + used, text + at, n);
+      memcpy(result + used, text + at, n);
       used += n;
     }
     at += n ? n : 1;
   }
-  snprintf(result.text + used, sizeof result.text - used, "%s", at < length ? "\u2026" : "");
+  snprintf(result + used, size - used, "%s", at < length ? more : "");
+}
+
+vlShortText vl_short_text_of(const char *text, size_t length) {
+  vlShortText result;
+  show(text, length, 12, result.text, sizeof result.text);
+  return result;
+}
+
+vlArgumentText vl_argument_text(const char *text) {
+  vlArgumentText result;
+  show(text ? text : "", text ? strlen(text) : 0, 200, result.text, sizeof result.text);
   return result;
 }
 
 vlShortText vl_short_text(const char *text) {
   return vl_short_text_of(text ? text : "", text ? strlen(text) : 0);
+}
+
+void vl_shorten_quoted(vlError *error, const char *text) {
+  char quoted[sizeof(vlArgumentText) + 2], tail[sizeof error->message];
+  snprintf(quoted, sizeof quoted, "\"%s\"", vl_argument_text(text).text);
+  char *at = strstr(error->message, quoted);
+  if (!at) return;
+  const size_t before = (size_t)(at - error->message) + 1;
+  snprintf(tail, sizeof tail, "%s", at + strlen(quoted) - 1);
+  snprintf(error->message + before, sizeof error->message - before, "%s%s", vl_short_text(text).text, tail);
 }
 
 void vl_make_printable(char *message) {

@@ -15,6 +15,16 @@ void vl_tell_names(char *text, size_t size, const char *name, const char *const 
 void vl_list_name(char *list, size_t size, const char *name);
 /* vl_short_text of `length` bytes, which may hold zeros. */
 vlShortText vl_short_text_of(const char *text, size_t length);
+/* An argument of the caller's, as messages show it. */
+typedef struct vlArgumentText {
+  char text[256];
+} vlArgumentText;
+/* As vl_short_text, but the first 200 characters, or fewer if they take more than 252 bytes: for what the caller has
+ * written, not for text from files. */
+vlArgumentText vl_argument_text(const char *text);
+/* Where the message quotes this text as an argument, it quotes it as vl_short_text: for text from a file that was an
+ * argument of a call. */
+void vl_shorten_quoted(vlError *error, const char *text);
 /* Replaces the same characters as vl_short_text by "?", but in a whole message and without shortening it, so names
  * of files stay complete. Removes an incomplete UTF-8 sequence at the end. */
 void vl_make_printable(char *message);

@@ -163,8 +163,8 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
   if (!found) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, COLMAP_MODELS);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%s\"%s", vl_short_text(model).text,
-                   known);
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown COLMAP camera model \"%s\"%s",
+                   vl_argument_text(model).text, known);
   }
   if (count != found->count)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the COLMAP camera model %s has %u parameters, not %u",

@@ -93,8 +93,8 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree, vlCame
     d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
     return VL_OK;
   }
-  return vl_camera_wrong_in(file, root, "intrinsics", "basalt: there is no camera \"%.60s\" among the %u",
-                            file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_wrong_in(file, root, "intrinsics", "basalt: there is no camera \"%s\" among the %u",
+                            vl_camera_asked(file, "0").text, record->frames);
 }
 
 static bool is_basalt(const json_t *tree) {

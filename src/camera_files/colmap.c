@@ -68,8 +68,9 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
   d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
   vlError error = {0};
   vlResult result = vl_camera_def_colmap(d, model, parameters, count, &error);
-  if (result != VL_OK) return wrong_line(file, path, lines->line, error.message);
-  return VL_OK;
+  if (result == VL_OK) return VL_OK;
+  vl_shorten_quoted(&error, model);
+  return wrong_line(file, path, lines->line, error.message);
 }
 
 /* Reads the camera with this id, or the first camera if id is null. */

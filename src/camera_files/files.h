@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/parts.h"
 #include "velo/camera_file.h"
 
@@ -100,6 +101,8 @@ const char *vl_camera_text(const json_t *object, const char *key);
 /* Returns whether the camera or pose with this index and name is the requested one. The name may be null. */
 bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *name);
 void vl_camera_name(vlCameraRecord *record, const char *name);
+/* The camera that the caller asked for, as messages show it; `otherwise` if none was. */
+vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise);
 /* Reports that the requested camera is not among the `count` cameras of the file. what: the format's word for one. */
 vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count);
 /* Sets fx, fy, cx, cy and skew from a matrix by rows, for which the centre of the first pixel is (0, 0). It is an error

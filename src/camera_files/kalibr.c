@@ -136,7 +136,7 @@ vlResult vl_camera_read_kalibr(const vlCameraFile *file, const json_t *tree, vlC
     vl_camera_name(record, key);
     return read_cam(file, cam, record);
   }
-  return vl_camera_wrong(file, "kalibr: there is no camera \"%.60s\"", file->def->frame ? file->def->frame : "cam0");
+  return vl_camera_wrong(file, "kalibr: there is no camera \"%s\"", vl_camera_asked(file, "cam0").text);
 }
 
 static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {

@@ -166,8 +166,8 @@ static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree, vlCa
     record->frames++;
   }
   if (chosen) return read_view(file, tree, chosen, record);
-  return vl_camera_wrong_in(file, tree, "views", "meshroom: there is no view \"%.60s\" among the %u",
-                            file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_wrong_in(file, tree, "views", "meshroom: there is no view \"%s\" among the %u",
+                            vl_camera_asked(file, "0").text, record->frames);
 }
 
 static bool is_meshroom(const json_t *tree) {

@@ -153,8 +153,8 @@ static vlResult read_document(const vlCameraFile *file, const json_t *root, vlCa
   search(&s, vl_camera_child(chunk, "cameras"), 8);
   record->frames = s.count;
   if (s.chosen) return read_camera(file, chunk, s.chosen, record);
-  return vl_camera_wrong_element(file, chunk, "there is no aligned camera \"%.60s\" among the %u",
-                                 file->def->frame ? file->def->frame : "0", s.count);
+  return vl_camera_wrong_element(file, chunk, "there is no aligned camera \"%s\" among the %u",
+                                 vl_camera_asked(file, "0").text, s.count);
 }
 
 static vlResult read_metashape(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {

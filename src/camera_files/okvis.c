@@ -37,8 +37,8 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree, vlCamer
   for (uint32_t i = 0; i < record->frames && !camera; i++)
     if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(cameras, i);
   if (!camera)
-    return vl_camera_wrong_in(file, tree, "cameras", "okvis: there is no camera \"%.60s\" among the %u",
-                              file->def->frame ? file->def->frame : "0", record->frames);
+    return vl_camera_wrong_in(file, tree, "cameras", "okvis: there is no camera \"%s\" among the %u",
+                              vl_camera_asked(file, "0").text, record->frames);
   vlResult result = vl_camera_numbers(file, camera, "T_SC", m, 16, 16, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, camera, "focal_length", f, 2, 2, NULL);
   if (result == VL_OK) result = vl_camera_numbers(file, camera, "principal_point", c, 2, 2, NULL);

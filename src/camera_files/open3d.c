@@ -48,8 +48,8 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCame
   record->frames = (uint32_t)json_array_size(list);
   for (uint32_t i = 0; i < record->frames; i++)
     if (vl_camera_is_frame(file, i, NULL)) return read_parameters(file, json_array_get(list, i), record);
-  return vl_camera_wrong_in(file, tree, "parameters", "open3d: there is no camera \"%.60s\" among the %u",
-                            file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_wrong_in(file, tree, "parameters", "open3d: there is no camera \"%s\" among the %u",
+                            vl_camera_asked(file, "0").text, record->frames);
 }
 
 /* Recognises a lone intrinsic_matrix. Open3D stores it by columns, so the principal point is in its last numbers. In

@@ -148,8 +148,8 @@ static vlResult read_stereo(const vlCameraFile *file, const json_t *tree, const 
   bool second = vl_camera_is_frame(file, 1, "right"), first = vl_camera_is_frame(file, 0, "left");
   record->frames = 2;
   if (!first && !second)
-    return vl_camera_wrong(file, "opencv: there is no camera \"%.60s\": there are left (0) and right (1)",
-                           file->def->frame ? file->def->frame : "");
+    return vl_camera_wrong(file, "opencv: there is no camera \"%s\": there are left (0) and right (1)",
+                           vl_camera_asked(file, "").text);
   second = second && !first;
   const char *matrix = names[second ? 2 : 0], *lens = names[second ? 3 : 1];
   vlResult result = vl_opencv_read_matrix(file, tree, matrix, d);

@@ -89,8 +89,8 @@ static vlResult read_models(const vlCameraFile *file, const json_t *cameras, vlC
     record->frames++;
   }
   if (!chosen)
-    return vl_camera_wrong_in(file, cameras, NULL, "opensfm: there is no camera \"%.60s\" among the %u",
-                              file->def->frame ? file->def->frame : "0", record->frames);
+    return vl_camera_wrong_in(file, cameras, NULL, "opensfm: there is no camera \"%s\" among the %u",
+                              vl_camera_asked(file, "0").text, record->frames);
   vl_camera_set_origin(&record->camera);
   vl_camera_name(record, chosen);
   return read_camera(file, json_object_get(cameras, chosen), record);

@@ -94,8 +94,7 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
     }
   }
   if (result != VL_OK) return result;
-  if (!found)
-    return vl_camera_wrong(file, "ros: there is no camera \"%.60s\"", file->def->frame ? file->def->frame : "0");
+  if (!found) return vl_camera_wrong(file, "ros: there is no camera \"%s\"", vl_camera_asked(file, "0").text);
   for (int i = 0; i < 2; i++)
     if (!(side[i] >= 1.0 && side[i] <= 1 << 24) || side[i] != floor(side[i]))
       return vl_camera_wrong_at(file, side_line, 1, "ros: [image] needs width and height in whole pixels");

@@ -92,8 +92,8 @@ static vlResult read_svo(const vlCameraFile *file, const json_t *tree, vlCameraR
     if (vl_camera_is_frame(file, i, vl_camera_text(json_object_get(item, "camera"), "label")))
       return read_rig_camera(file, item, record);
   }
-  return vl_camera_wrong_in(file, tree, "cameras", "svo: there is no camera \"%.60s\" among the %u",
-                            file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_wrong_in(file, tree, "cameras", "svo: there is no camera \"%s\" among the %u",
+                            vl_camera_asked(file, "0").text, record->frames);
 }
 
 static bool is_svo(const json_t *tree) {

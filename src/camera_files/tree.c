@@ -250,9 +250,13 @@ void vl_camera_name(vlCameraRecord *record, const char *name) {
   snprintf(record->name, sizeof record->name, "%s", name ? name : "");
 }
 
+vlArgumentText vl_camera_asked(const vlCameraFile *file, const char *otherwise) {
+  return vl_argument_text(file->def->frame ? file->def->frame : otherwise);
+}
+
 vlResult vl_camera_no_frame(const vlCameraFile *file, const char *what, uint32_t count) {
-  return vl_camera_wrong(file, "%s: there is no %s \"%.60s\" among the %u", file->dialect, what,
-                         file->def->frame ? file->def->frame : "0", count);
+  return vl_camera_wrong(file, "%s: there is no %s \"%s\" among the %u", file->dialect, what,
+                         vl_camera_asked(file, "0").text, count);
 }
 
 vlResult vl_camera_set_k(const vlCameraFile *file, const json_t *object, const char *key, const double k[9],

@@ -84,8 +84,8 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCamera
     }
   }
   if (chosen) return read_camera(file, of, chosen, record);
-  return vl_camera_wrong_element(file, root, "there is no camera \"%.60s\" among the %u",
-                                 file->def->frame ? file->def->frame : "0", record->frames);
+  return vl_camera_wrong_element(file, root, "there is no camera \"%s\" among the %u", vl_camera_asked(file, "0").text,
+                                 record->frames);
 }
 
 static bool is_visp(const json_t *tree) {

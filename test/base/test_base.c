@@ -350,7 +350,28 @@ static void names_of_files_are_short(void **state) {
   assert_string_equal(vl_short_text(NULL).text, "");
   assert_string_equal(vl_short_text_of("a\0b", 3).text, "a?b");
 
-  vlError error; /* whole messages and names of files, too; a character that the buffer's end has cut is removed */
+  char argument[1000], shown[1000]; /* what the caller wrote: 200 characters, or 252 bytes */
+  memset(argument, 'x', sizeof argument);
+  argument[200] = 0;
+  assert_string_equal(vl_argument_text(argument).text, argument);
+  argument[200] = 'x', argument[201] = 0;
+  snprintf(shown, sizeof shown, "%.200s\u2026", argument);
+  assert_string_equal(vl_argument_text(argument).text, shown);
+  for (int i = 0; i < 100; i++) memcpy(argument + 4 * i, "\U0001f600", 5);
+  snprintf(shown, sizeof shown, "%.*s\u2026", 4 * 63, argument);
+  assert_int_equal(strlen(vl_argument_text(argument).text), 4 * 63 + 3);
+  assert_string_equal(vl_argument_text(argument).text, shown);
+  assert_string_equal(vl_argument_text("a\x1b[2J").text, "a?[2J");
+
+  vlError error;
+  static const char models[] = "no model \"SIMPLE_PINHOLES\"; SIMPLE_PINHOLES";
+  snprintf(error.message, sizeof error.message, "%s", models);
+  vl_shorten_quoted(&error, "SIMPLE_PINHOLE");
+  assert_string_equal(error.message, models);
+  vl_shorten_quoted(&error, "SIMPLE_PINHOLES");
+  assert_string_equal(error.message, "no model \"SIMPLE_PINHO\u2026\"; SIMPLE_PINHOLES");
+
+  /* whole messages and names of files, too; a character that the buffer's end has cut is removed */
   vl_fail_at(&error, VL_ERROR_SCENE, "a\x1b]0;title\x07.pbrt", 1, 1, "%s", "some\nfile\x1b[2J\u00e4.png");
   assert_string_equal(error.file, "a?]0;title?.pbrt");
   assert_string_equal(error.message, "some file?[2J\u00e4.png");

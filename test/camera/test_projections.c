@@ -445,6 +445,8 @@ static void error_messages(void **state) {
   const double p[12] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   assert_int_equal(vl_camera_def_colmap(&d, "PINHOL", p, 4, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "the nearest is \"PINHOLE\""));
+  assert_int_equal(vl_camera_def_colmap(&d, "A_MODEL_OF_MY_OWN", p, 4, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "\"A_MODEL_OF_MY_OWN\"")); /* the caller's own words are not cut */
   assert_int_equal(vl_camera_def_colmap(&d, "OPENCV", p, 7, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "8 parameters, not 7"));
   assert_int_equal(vl_camera_def_colmap(&d, "SIMPLE_RADIAL", p, 4, &error), VL_OK);

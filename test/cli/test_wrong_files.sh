@@ -159,6 +159,24 @@ for name in KHR_materials_scatter KHR_materials_retroreflection; do
   expect_text "names_$name" "$name"
 done
 
+# What the caller wrote is shown whole, up to 200 characters; text from a file is cut.
+name=a_name_that_is_longer_than_twelve_characters
+long=$(printf 'x%.0s' $(seq 201))
+printf '{"asset": {"version": "2.0"}, "scenes": [{"name": "%s", "nodes": []}]}' $name >named.gltf
+run "$VELO" render named.gltf --scene $name.
+expect_text whole_scene_name "there is no scene \"$name.\" (1 are there: a_name_that_…)"
+run "$VELO" render named.gltf --scene "$long"
+expect_text long_scene_name "\"${long:1}…\" (1 are there"
+printf '%%YAML:1.0\n---\ncam0:\n  camera_model: pinhole\n  intrinsics: [9, 9, 4, 4]\n  resolution: [8, 8]\n' >chain.yaml
+scene whole.pbrt "$sphere"
+run "$VELO" render whole.pbrt --camera chain.yaml --frame "$long"
+expect_text long_frame_name "there is no camera \"${long:1}…\""
+scene colmap.pbrt "$sphere"
+sed -i "1s/.*/Camera \"colmap\" \"string model\" \"$name\"/" colmap.pbrt
+wrong 3 cut_model_name '.*unknown COLMAP camera model "a_name_that_…"' colmap.pbrt
+run "$VELO" render whole.pbrt --max-memory 1K
+if [ "$code" = 1 ] && [[ $err == *'out of memory; --max-memory allows 1.0 kB' ]]; then pass nothing_held; else fail nothing_held; show memory; fi
+
 # What is not there yet: an error with its place, or a warning.
 scene medium.pbrt 'Shape "heightfield" "integer nu" 3' "$sphere"
 wrong 3 not_there_yet 'medium\.pbrt:3:[0-9]+: .*heightfield' medium.pbrt

@@ -216,9 +216,10 @@ int report_error(const vlError *error, vlResult result, const char *file) {
     size_t peak;
     vl_context_memory(state.context, &peak);
     char bytes[32];
-    int n = snprintf(longer, sizeof longer, "%s; at most %s were held", message, bytes_text(bytes, peak));
+    int n = snprintf(longer, sizeof longer, "%s", message);
+    if (peak) n = snprintf(longer, sizeof longer, "%s; at most %s were held", message, bytes_text(bytes, peak));
     if (state.memory_limit && n > 0 && n < (int)sizeof longer)
-      snprintf(longer + n, sizeof longer - (size_t)n, ", --max-memory allows %s",
+      snprintf(longer + n, sizeof longer - (size_t)n, "%s --max-memory allows %s", peak ? "," : ";",
                bytes_text(bytes, state.memory_limit));
     message = longer;
   }

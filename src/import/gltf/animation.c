@@ -204,7 +204,8 @@ static bool fail_animation(vlGltf *g, const char *name) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
     if (own) vl_list_name(names, sizeof names, vl_short_text(own).text);
   }
-  return vl_gltf_fail(g, NULL, "there is no animation \"%.60s\" (%zu are there%s)", name, g->animation_count, names);
+  return vl_gltf_fail(g, NULL, "there is no animation \"%s\" (%zu are there%s)", vl_argument_text(name).text,
+                      g->animation_count, names);
 }
 
 /* One animation, several in this order with commas between them, or "all". A later one overrides properties that an

@@ -128,7 +128,8 @@ bool vl_gltf_choose_camera(vlGltf *g) {
       if (!g->nodes[i].reached || !json_object_get(g->nodes[i].json, "camera") || !own) continue;
       vl_list_name(names, sizeof names, vl_short_text(own).text);
     }
-    return vl_gltf_fail(g, NULL, "the scene has no camera \"%.60s\" (%zu are there%s)", wanted, g->cameras_seen, names);
+    return vl_gltf_fail(g, NULL, "the scene has no camera \"%s\" (%zu are there%s)", vl_argument_text(wanted).text,
+                        g->cameras_seen, names);
   }
   if (chosen < 0) return true;
   const vlGltfNode *node = &g->nodes[chosen];

@@ -24,7 +24,8 @@ bool vl_gltf_choose_variant(vlGltf *g) {
     }
     vl_list_name(names, sizeof names, vl_short_text(name).text);
   }
-  return vl_gltf_fail(g, NULL, "there is no variant \"%.60s\" (%zu are there%s)", g->def->variant, count, names);
+  return vl_gltf_fail(g, NULL, "there is no variant \"%s\" (%zu are there%s)", vl_argument_text(g->def->variant).text,
+                      count, names);
 }
 
 vlResult vl_import_gltf(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error) {

@@ -326,7 +326,8 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
   }
   unsigned long number = strtoul(wanted, &end, 10);
   if (end != wanted && !*end && number < g->scene_count) return *chosen = number, true;
-  return vl_gltf_fail(g, NULL, "there is no scene \"%.60s\" (%zu are there%s)", wanted, g->scene_count, names);
+  return vl_gltf_fail(g, NULL, "there is no scene \"%s\" (%zu are there%s)", vl_argument_text(wanted).text,
+                      g->scene_count, names);
 }
 
 bool vl_gltf_draw(vlGltf *g) {

@@ -164,6 +164,7 @@ static bool read_colmap(vlDict *dict, vlCameraDef *def) {
   read_coefficients(dict, "parameters", values, &count);
   if (dict->import->scene->error.code != VL_OK) return false;
   if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK) return true;
+  vl_shorten_quoted(&error, model);
   return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
                         error.message + strlen("camera: "));
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# velo scene verify: quiet on a scene on which the tracers agree; the same bytes for any number
+# velo scene verify: quiet on a scene on which the tracers agree, exit 1 where moved copies do not; the same bytes for any number
 # of threads; JSON; what is not compared is said.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 cd "$work" || exit 1
@@ -49,6 +49,23 @@ fi
 } >fog.pbrt
 check fog verify fog.pbrt
 expect_text fog_says_so 'bidirectional is not compared: tracer "bidirectional" does not support media that do not fit together'
+
+# A triangle so far away that floats cannot hold its corners: moved copies of the scene differ.
+cat >far.pbrt <<'END'
+LookAt 300000 299999.8 0.1  300000 300000 0  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+WorldBegin
+LightSource "infinite" "rgb L" [.4 .5 .6]
+Translate 300000 300000 0
+Material "diffuse" "rgb reflectance" [.9 .1 .1]
+Shape "trianglemesh" "point3 P" [-.041 -.033 0 .043 -.037 0 .013 .049 .01]
+END
+expect_code 1 disagrees verify far.pbrt
+expect_text names_it 'volpath, turned, '
+expect_text row_says_so 'DIFFERS'
+expect_code 1 disagrees_json verify far.pbrt --json
+expect_text json_says_so '"differs": true'
 
 # Mirrors: no light paths alone, and between tracers no small lights.
 printf '%s\n' "$head" 'LightSource "point" "point3 from" [1 -1 2]' 'Material "conductor" "float roughness" 0' "$body" >mirror.pbrt

@@ -6,7 +6,8 @@
 #include "base/error.h"
 #include "color/rgb_table.h"
 
-_Static_assert(VL_SPECTRUM_VALUES == VL_LAMBDA_COUNT && VL_SPECTRUM_FIRST_NM == VL_LAMBDA_MIN, "the same table");
+_Static_assert((int)VL_SPECTRUM_VALUES == (int)VL_LAMBDA_COUNT, "one number of values");
+_Static_assert((int)VL_SPECTRUM_FIRST_NM == (int)VL_LAMBDA_MIN, "one first wavelength");
 
 /* The internal role of a public one. False: it has none. */
 static bool role_of(vlParameterRole role, vlSpectrumRole *result) {

@@ -104,7 +104,7 @@ static vlFilm *film_of(int first, int last, vlContext *own) {
       for (int32_t x = 0; x < WIDTH; x++) {
         float v[3], a = 1.0f, w = 1.0f;
         for (int c = 0; c < 3; c++) v[c] = ldexpf(stat_float(&rng), (int)(stat_bits(&rng) % 50) - 20);
-        vlFilmSamples samples = {1, &x, &y, &v[0], &v[1], &v[2], &a, &w};
+        vlFilmSamples samples = {1, &x, &y, &v[0], &v[1], &v[2], &a, &w, NULL};
         vl_film_add(film, &samples, NULL, NULL);
       }
   }

@@ -64,7 +64,8 @@ static void shuffle(uint64_t seed) {
   }
 }
 static uint32_t add(vlFilm *film, int from, int count) {
-  vlFilmSamples s = {(uint32_t)count, px_ + from, py_ + from, r_ + from, g_ + from, b_ + from, a_ + from, w_ + from};
+  vlFilmSamples s = {(uint32_t)count, px_ + from, py_ + from, r_ + from, g_ + from,
+                     b_ + from,       a_ + from,  w_ + from,  NULL};
   return vl_film_add(film, &s, NULL, NULL);
 }
 static void whole_pass(vlFilm *film, int from, int count) {
@@ -251,7 +252,7 @@ static void test_wrong_samples(void **state) {
       columns[c][1] = bad[k];
       px_[1] = 7, py_[1] = 3;
       int32_t x = -1, y = -1;
-      vlFilmSamples s = {1, px_ + 1, py_ + 1, r_ + 1, g_ + 1, b_ + 1, a_ + 1, w_ + 1};
+      vlFilmSamples s = {1, px_ + 1, py_ + 1, r_ + 1, g_ + 1, b_ + 1, a_ + 1, w_ + 1, NULL};
       assert_int_equal(vl_film_add(film, &s, &x, &y), 1);
       assert_true(x == 7 && y == 3);
     }

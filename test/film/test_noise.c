@@ -41,7 +41,7 @@ static vlFilm *film_of(vlContext *context, Draw *draw, float mean, float deviati
     for (int32_t x = (int32_t)crop_[0]; x < (int32_t)crop_[2]; x++)
       for (int s = 0; s < SPP; s++) {
         float value = draw(&rng, mean, deviation), alpha = 1, weight = 1;
-        vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &alpha, &weight};
+        vlFilmSamples samples = {1, &x, &y, &value, &value, &value, &alpha, &weight, NULL};
         assert_int_equal(vl_film_add(film, &samples, NULL, NULL), 0);
       }
   vl_film_commit_pass(film);

@@ -60,8 +60,8 @@ static void add(vlFilm *film, int from, int count) {
   vlFilmSpectra s = {.n = (uint32_t)count, .px = px_ + from, .py = py_ + from, .weight = weight_ + from};
   for (int c = 0; c < 4; c++) s.radiance[c] = value_[c] + from, s.lambda[c] = lambda_[c] + from;
   vl_film_add_spectra(film, &s);
-  vlFilmSamples colors = {(uint32_t)count, px_ + from,   py_ + from,   zero_ + from,
-                          zero_ + from,    zero_ + from, zero_ + from, weight_ + from};
+  vlFilmSamples colors = {(uint32_t)count, px_ + from,   py_ + from,     zero_ + from, zero_ + from,
+                          zero_ + from,    zero_ + from, weight_ + from, NULL};
   vl_film_add(film, &colors, NULL, NULL);
 }
 static void pass(vlFilm *film, int from, int count) {

@@ -203,7 +203,7 @@ static Scene make(const Kind *kind, Place place, Map map, bool shines, bool far,
   if (place != PLACED) shape[3] = 3, shape[7] = -2, shape[11] = 7; /* far from the origin of the group */
   memcpy(poses, place == PLACED ? identity : m, sizeof m);
   memcpy(poses + 16, poses, sizeof m);
-  vlWorld *there = build(s.context, kind, PLACED, false, shape, identity);
+  vlWorld *there = build(s.context, kind, PLACED, false, shape, poses);
   s.size = (double)there->radius * (place == PLACED ? 1 : cbrt(fabs(vl_mat4_determinant3(vl_mat4_load(m)))));
   point_of_shape(there, rng, p);
   vl_world_destroy(there);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/lens.h"
 

@@ -86,9 +86,10 @@ def text(value: Any, where: str) -> str:
 
 def file_name(value: Any, where: str) -> str:
     """A part of the names of files."""
-    if not text(value, where) or len(value.encode()) > 100 or "/" in value or value.startswith("."):
+    name = text(value, where)
+    if not name or len(name.encode()) > 100 or "/" in name or name.startswith("."):
         raise wrong_value(where, "a name for files: 1 to 100 letters, without / and not beginning with a dot", value)
-    return value
+    return name
 
 
 def flag(value: Any, where: str) -> bool:
@@ -253,7 +254,7 @@ def _part(value: Any, where: str) -> dict[str, Any]:
             raise UsageError(f"{where}: unknown name {velo._errors.shown(name)} (known: name, pose)")
     if "pose" not in found:
         raise UsageError(f"{where}: needs a pose, 4 x 4")
-    made = {"pose": pose(found["pose"], f"{where}.pose")}
+    made: dict[str, Any] = {"pose": pose(found["pose"], f"{where}.pose")}
     if "name" in found:
         made["name"] = file_name(found["name"], f"{where}.name")
     return made

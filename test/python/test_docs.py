@@ -97,7 +97,7 @@ def notebooks():
     for path in paths:
         book = json.load(open(path, encoding="utf-8"))
         assert book["nbformat"] == 4 and all(not cell.get("outputs") for cell in book["cells"])
-        if subprocess.run([sys.executable, "-c", "import nbconvert, ipykernel"], stderr=subprocess.DEVNULL).returncode == 0:
+        if subprocess.run([sys.executable, "-c", "import nbconvert.__main__, ipykernel.kernelapp"], stderr=subprocess.DEVNULL).returncode == 0:
             folder = work("book")
             os.makedirs(folder, exist_ok=True)
             subprocess.run([sys.executable, "-m", "nbconvert", "--execute", "--to", "notebook", "--output-dir", folder, path],

@@ -435,7 +435,8 @@ def test_many(view):
     page.close()
     check("heir_steers", other.wait_text("role")["steers"])
     check("heir_edits", edit(other, fov=20)["type"] == "state")
-    wait_done(other)
+    # not by the status: one from before the edit may still be on its way, and the film would have no sample
+    other.wait_frame(lambda f: f.change == other.change and f.scale == 1 and f.spp == 3)
     other.close()
 
 

@@ -15,8 +15,9 @@ class Refused(Exception):
 class View:
     """A running `velo view`."""
 
-    def __init__(self, program, scene, *options, cwd=None, env=None):
-        self.process = subprocess.Popen([program, "view", scene, "--no-open", *options], stdout=subprocess.PIPE,
+    def __init__(self, program, scene, *options, cwd=None, env=None, opens=False):
+        no = [] if opens else ["--no-open"]
+        self.process = subprocess.Popen([program, "view", scene, *no, *options], stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True, cwd=cwd, env=env,
                                         preexec_fn=heed_interrupts)
         ready, _, _ = select.select([self.process.stdout], [], [], 60)

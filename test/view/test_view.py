@@ -442,14 +442,16 @@ def test_many(view):
 
 # ---- files that change ----
 
+SMALL = ('LookAt 0 0 5 0 0 0 0 1 0\nCamera "perspective" "float fov" 40\nSampler "halton" "integer pixelsamples" 4\n'
+         'Film "rgb" "integer xresolution" 64 "integer yresolution" 48\nWorldBegin\nLightSource "infinite"\n')
+
+
 def test_watch(folder):
     inner = os.path.join(folder, "things.pbrt")
     outer = os.path.join(folder, "watched.pbrt")
     thing = 'Material "diffuse" "rgb reflectance" [%s]\nShape "sphere"\n'
     open(inner, "w").write(thing % "0.8 0.1 0.1")
-    open(outer, "w").write('LookAt 0 0 5 0 0 0 0 1 0\nCamera "perspective" "float fov" 40\nSampler "halton" "integer '
-                           'pixelsamples" 4\nFilm "rgb" "integer xresolution" 64 "integer yresolution" 48\nWorldBegin\n'
-                           'LightSource "infinite"\nInclude "things.pbrt"\n')
+    open(outer, "w").write(SMALL + 'Include "things.pbrt"\n')
     view = View(VELO, outer, cwd=folder)
     page = Page(view)
     middle = lambda: struct.unpack_from("<3e", page.pixels, 6 * (24 * 64 + 32))
@@ -478,6 +480,67 @@ def test_watch(folder):
     check("watch_mended", True)
     page.close()
     check("watch_ends", view.end()[0] == 0)
+
+
+# ---- a sandbox ----
+
+def threads_of(process):
+    """The status of each thread, as a dict."""
+    for thread in os.listdir(f"/proc/{process}/task"):
+        with open(f"/proc/{process}/task/{thread}/status") as file:
+            yield dict(line.rstrip("\n").split(":\t", 1) for line in file if ":\t" in line)
+
+
+def test_sandbox(folder):
+    """The system confines velo and all its threads; the page, the browser, saved files and reloads work."""
+    for name in ("box", "work", "films", "programs", "elsewhere"):
+        os.mkdir(os.path.join(folder, name))
+    scene, opener = os.path.join(folder, "confined.pbrt"), os.path.join(folder, "programs/xdg-open")
+    opened, work = os.path.join(folder, "opened"), os.path.join(folder, "work")
+    with open(opener, "w") as file:
+        file.write(f'#!/bin/sh\nprintf %s "$1" >{shlex.quote(opened)}.part && mv {shlex.quote(opened)}.part {shlex.quote(opened)}\n')
+    os.chmod(opener, 0o755)
+
+    def replace(more):
+        with open(scene + ".new", "w") as file:
+            file.write(SMALL + more)
+        os.rename(scene + ".new", scene)
+    replace("")
+    for name in ("box", "elsewhere"):
+        with open(os.path.join(folder, name, "inner.pbrt"), "w") as file:
+            file.write('Material "diffuse"\n')
+    view = View(VELO, scene, "--sandbox", os.path.join(folder, "box"), "--film",
+                os.path.join(folder, "films/a.film"), "--threads", "2", cwd=work, opens=True,
+                env={**os.environ, "DISPLAY": ":none", "PATH": f"{folder}/programs:{os.environ['PATH']}"})
+    page = Page(view)
+    page.lists = page.wait_text("lists")
+    wait_done(page)
+    threads = list(threads_of(view.process.pid))
+    until = time.monotonic() + 20
+    while not os.path.exists(opened) and time.monotonic() < until:
+        time.sleep(0.05)
+    check("sandbox_opens_the_browser", os.path.exists(opened) and open(opened).read() == view.address)
+    saved = answer(page, "saved", type="save", what="camera", name="camera.json", dialect="velo")
+    check("sandbox_saves_a_camera", saved["type"] == "saved" and os.path.exists(os.path.join(work, "camera.json")), saved)
+    saved = answer(page, "saved", type="save", what="image", name="shown.png", view="standard", exposure=0)
+    check("sandbox_saves_an_image", saved["type"] == "saved" and os.path.exists(os.path.join(work, "shown.png")), saved)
+    replace('Include "box/inner.pbrt"\n')
+    check("sandbox_reloads", bool(page.wait_text("loaded")))
+    replace('Include "elsewhere/inner.pbrt"\n')
+    error = page.wait_text("error")
+    check("sandbox_refuses_others", "outside of the sandbox" in error["message"], error)
+    replace("")
+    page.wait_text("loaded")
+    wait_done(page)
+    page.close()
+    code, errors = view.end()
+    check("sandbox_ends", code == 0 and os.path.exists(os.path.join(folder, "films/a.film")), code, errors)
+    if "files by folder" in errors and "network open" not in errors:
+        check("sandbox_confines_each_thread", len(threads) > 5 and
+              all(thread["NoNewPrivs"] == "1" and thread["Seccomp"] == "2" for thread in threads), [(thread["Name"], thread["Seccomp"]) for thread in threads])
+        check("sandbox_has_no_network", "no network but the page" in errors, errors)
+    else:
+        print("skip sandbox_confines_each_thread: this system lacks Landlock or seccomp")
 
 
 def test_serve(folder):
@@ -538,6 +601,7 @@ def main():
     test_other_tracer(folder)
     test_trajectory(folder)
     test_watch(folder)
+    test_sandbox(folder)
     test_serve(folder)
     info = subprocess.run([VELO, "film", "info", film], capture_output=True, text=True)
     check("film", info.returncode == 0, info.stderr)

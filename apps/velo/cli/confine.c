@@ -32,7 +32,9 @@ void confine_apply(Confine *confine, const Arguments *arguments) {
   for (int i = 0; i < arguments->folder_count; i++) confine_read(confine, arguments->folders[i]);
   const vlConfined done =
       vl_confine(confine->read, confine->read_count, confine->write, confine->write_count, confine->sockets);
-  const char *network = done.network ? "no network" : confine->sockets ? "network open for --serve" : "network open";
+  const char *network = done.network       ? confine->listens ? "no network but the page" : "no network"
+                        : confine->sockets ? "network open for --serve"
+                                           : "network open";
   if (done.files || done.network || done.programs)
     report_note("--sandbox: the system confines velo: %s, %s, %s",
                 done.files ? "files by folder" : "files by their names only (no Landlock)", network,

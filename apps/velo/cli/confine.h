@@ -12,7 +12,8 @@ typedef struct Confine {
   uint32_t read_count, write_count;
   char folders[8][4096]; /* of files that are read with others beside them */
   uint32_t folder_count;
-  bool sockets; /* it opens a port */
+  bool sockets; /* it opens a port later */
+  bool listens; /* a port is open already */
 } Confine;
 
 void confine_read(Confine *confine, const char *path);

@@ -68,9 +68,10 @@ int serve_start(const Job *job, const vlWorld *world, vlView view, float exposur
   s->exposure = exposure;
   s->camera = (ViewCamera){.def = job->defs->camera, .made = job->camera, .units = {1, 1, 36, 1}};
   vl_world_info(world, &s->info);
-  const ServerDef def = {
-      .home = "index.html", .query = "", .calls = {.user = s, .greet = greet, .message = refuse, .clients = count}};
-  int status = server_start(&def, &s->server);
+  const ServerDef def = {.home = "index.html", .query = ""};
+  const ServerCalls calls = {.user = s, .greet = greet, .message = refuse, .clients = count};
+  int status = server_open(&def, &s->server);
+  if (status < 0) status = server_start(s->server, &calls);
   if (status < 0) report_note("the image while it renders: %s", server_address(s->server));
   return status;
 }

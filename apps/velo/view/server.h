@@ -26,12 +26,13 @@ typedef struct ServerDef {
   const char *home;    /* file of the page: "index.html" */
   const char *query;   /* what the address ends with: "", "?language=it" */
   bool steering;       /* one page steers; false: all only look */
-  ServerCalls calls;
 } ServerDef;
 
-/* Starts the thread. Returns -1 with *server, or the exit code after reporting the error. */
-int server_start(const ServerDef *def, Server **server);
-/* Ends the thread and frees the server. Null is allowed. */
+/* Opens the port; pages that come wait. Returns -1 with *server, or the exit code after reporting the error. */
+int server_open(const ServerDef *def, Server **server);
+/* Starts the thread. It needs no further sockets of the system. Returns -1 or the exit code. */
+int server_start(Server *server, const ServerCalls *calls);
+/* Ends the thread, if there is one, and frees the server. Null is allowed. */
 void server_stop(Server *server);
 /* The address of the page, with its token and query. */
 const char *server_address(const Server *server);

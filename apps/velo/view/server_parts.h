@@ -40,12 +40,14 @@ typedef struct Client {
 
 struct Server {
   ServerDef def;
+  ServerCalls calls;
   char listen[256]; /* copy of the address; empty: 127.0.0.1 */
   char token[TOKEN_SIZE], address[420];
   int port;
   struct lws_context *lws;
   struct lws_vhost *vhost;
   pthread_t thread;
+  bool started;
   atomic_bool quit;
   _Atomic double seconds;
   /* Under the lock: the clients, their texts, the frame. The server's thread alone changes the list of clients. */

@@ -64,8 +64,8 @@ static int begin(struct lws *wsi, Connection *connection) {
   }
   connection->client = client;
   post_role(server, client);
-  server->def.calls.greet(server->def.calls.user, client->id);
-  server->def.calls.clients(server->def.calls.user, count);
+  server->calls.greet(server->calls.user, client->id);
+  server->calls.clients(server->calls.user, count);
   lws_callback_on_writable(wsi);
   return 0;
 }
@@ -99,7 +99,7 @@ static void end(struct lws *wsi, Connection *connection) {
   pthread_mutex_unlock(&server->lock);
   free_client(client);
   if (heir) post_role(server, heir);
-  server->def.calls.clients(server->def.calls.user, kept);
+  server->calls.clients(server->calls.user, kept);
 }
 
 /* ---- sending ----------------------------------------------------------------------------------------------------- */
@@ -201,7 +201,7 @@ static int handle(struct lws *wsi, Client *client, const char *text, size_t size
   } else if (message.kind == MESSAGE_STEER) {
     take_over(server, client);
   } else {
-    server->def.calls.message(server->def.calls.user, client->id, client->steers, &message);
+    server->calls.message(server->calls.user, client->id, client->steers, &message);
   }
   return 0;
 }

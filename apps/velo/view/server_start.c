@@ -55,7 +55,7 @@ static int open_port(Server *server) {
                         info.iface ? info.iface : server->listen, server->def.port);
 }
 
-int server_start(const ServerDef *def, Server **result) {
+int server_open(const ServerDef *def, Server **result) {
   *result = NULL;
   Server *server = calloc(1, sizeof *server);
   if (!server) return report_failure(STATUS_OTHER, "out of memory");
@@ -71,10 +71,6 @@ int server_start(const ServerDef *def, Server **result) {
     bool six = strchr(name, ':') != NULL;
     snprintf(server->address, sizeof server->address, "http://%s%s%s:%d/%s/%s", six ? "[" : "", name, six ? "]" : "",
              server->port, server->token, def->query);
-    if (pthread_create(&server->thread, NULL, serve, server) != 0)
-      status = report_failure(STATUS_OTHER, "the system refuses to start a thread");
-  }
-  if (status < 0) {
     *result = server;
     return -1;
   }
@@ -84,11 +80,17 @@ int server_start(const ServerDef *def, Server **result) {
   return status;
 }
 
+int server_start(Server *server, const ServerCalls *calls) {
+  server->calls = *calls;
+  server->started = pthread_create(&server->thread, NULL, serve, server) == 0;
+  return server->started ? -1 : report_failure(STATUS_OTHER, "the system refuses to start a thread");
+}
+
 void server_stop(Server *server) {
   if (!server) return;
   server->quit = true;
   lws_cancel_service(server->lws);
-  pthread_join(server->thread, NULL);
+  if (server->started) pthread_join(server->thread, NULL);
   lws_context_destroy(server->lws);
   frame_drop(server->frame);
   pthread_mutex_destroy(&server->lock);

@@ -1,35 +1,21 @@
 /* view/view_run.c: runs `velo view`: loads the scene, starts server and render thread, and waits for Ctrl-C. */
-#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "cli/confine.h"
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/film_claim.h"
 #include "render/job.h"
 #include "render/output_names.h"
+#include "view/browser.h"
 #include "view/engine.h"
 #include "view/lecture.h"
 #include "view/view.h"
-
-/* Opens the page where there is a display. */
-static void open_browser(const char *address) {
-  if (!getenv("DISPLAY") && !getenv("WAYLAND_DISPLAY")) return;
-  char *const words[] = {"xdg-open", (char *)(uintptr_t)address, NULL};
-  posix_spawn_file_actions_t actions;
-  pid_t child;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", 1 /* O_WRONLY */, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", 1 /* O_WRONLY */, 0);
-  if (posix_spawnp(&child, words[0], &actions, NULL, words, environ) != 0)
-    report_note("xdg-open is missing: open the address in a browser");
-  posix_spawn_file_actions_destroy(&actions);
-}
 
 /* The line for the user's own machine, where this one was reached by ssh. */
 static void tell_tunnel(const Server *server) {
@@ -53,12 +39,37 @@ static int open_context(const Arguments *arguments, vlContext **context) {
   return status;
 }
 
-static void wait_for_end(void) {
+static void wait_for_end(Browser *browser) {
   const struct timespec pause = {.tv_nsec = 20000000};
   while (!signals_pending()) {
     nanosleep(&pause, NULL);
-    waitpid(-1, NULL, WNOHANG); /* xdg-open */
+    browser_collect(browser);
   }
+}
+
+static int open_server(const Arguments *arguments, Server **server) {
+  const OptionValue *v = arguments->values;
+  const bool lecture = v[VIEW_LECTURE].given;
+  const ServerDef def = {.address = v[VIEW_LISTEN].given ? v[VIEW_LISTEN].text : NULL,
+                         .port = v[VIEW_PORT].given ? (int)v[VIEW_PORT].integer : 0,
+                         .home = lecture ? "lecture.html" : "index.html",
+                         .query = lecture ? lecture_query(arguments) : "",
+                         .steering = true};
+  return server_open(&def, server);
+}
+
+/* --sandbox: what the page reads and writes besides the files of the scene. The folders of its inputs are read, since
+ * an editor replaces a file that it changes by another one. Cameras and images are saved in the current folder. */
+static void confine(const Arguments *arguments) {
+  static const int inputs[] = {RENDER_CAMERA, RENDER_TRAJECTORY, RENDER_ENVIRONMENT};
+  const OptionValue *v = arguments->values;
+  Confine c = {.listens = true};
+  if (arguments->operand_count) confine_read_folder(&c, arguments->operands[0]);
+  for (size_t i = 0; i < sizeof inputs / sizeof *inputs; i++)
+    if (v[inputs[i]].given) confine_read_folder(&c, v[inputs[i]].text);
+  confine_write(&c, "saved.exr");
+  if (v[RENDER_FILM].given) confine_write(&c, v[RENDER_FILM].text);
+  confine_apply(&c, arguments);
 }
 
 /* Locks the file of --film, which must not be there already. Returns -1 or the exit code. */
@@ -91,6 +102,7 @@ int view_run(const Arguments *arguments) {
   vlContext *context = NULL;
   Engine *engine = NULL;
   Server *server = NULL;
+  Browser browser = {0};
   FilmClaim claim = {.lock = NULL};
   report_setup(false, v[RENDER_QUIET].given ? REPORT_QUIET : REPORT_NORMAL);
   bool lecture = v[VIEW_LECTURE].given;
@@ -98,7 +110,10 @@ int view_run(const Arguments *arguments) {
                          .lecture = lecture,
                          .arguments = arguments,
                          .film_path = v[RENDER_FILM].given ? v[RENDER_FILM].text : NULL};
-  int status = open_context(arguments, &context);
+  if (!v[VIEW_NO_OPEN].given) browser_prepare(&browser);
+  int status = open_server(arguments, &server);
+  if (status < 0) confine(arguments);
+  if (status < 0) status = open_context(arguments, &context);
   if (status < 0) status = claim_film(&claim, context, arguments);
   if (status < 0) {
     EngineDef complete = def;
@@ -108,17 +123,10 @@ int view_run(const Arguments *arguments) {
   }
   if (status < 0 && def.film_path) status = check_film(context, def.film_path);
   if (status < 0) {
-    const ServerDef server_def = {.address = v[VIEW_LISTEN].given ? v[VIEW_LISTEN].text : NULL,
-                                  .port = v[VIEW_PORT].given ? (int)v[VIEW_PORT].integer : 0,
-                                  .home = lecture ? "lecture.html" : "index.html",
-                                  .query = lecture ? lecture_query(arguments) : "",
-                                  .steering = true,
-                                  .calls = engine_calls(engine)};
-    status = server_start(&server_def, &server);
-  }
-  if (status < 0) {
+    const ServerCalls calls = engine_calls(engine);
     signals_remember();
     status = engine_start(engine, server);
+    if (status < 0) status = server_start(server, &calls);
   }
   if (status < 0) {
     if (v[VIEW_LISTEN].given)
@@ -130,9 +138,11 @@ int view_run(const Arguments *arguments) {
     fflush(stdout);
     tell_tunnel(server);
     report_note("Ctrl-C ends it");
-    if (!v[VIEW_NO_OPEN].given) open_browser(server_address(server));
-    wait_for_end();
+    browser_open(&browser, server_address(server));
+    wait_for_end(&browser);
     status = STATUS_OK;
+  } else {
+    browser_open(&browser, NULL);
   }
   int stopped = engine ? engine_stop(engine) : STATUS_OK;
   server_stop(server);

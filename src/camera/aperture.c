@@ -210,7 +210,7 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
   while (kind < 4 && strcmp(name, names[kind]) != 0) kind++;
   if (kind == 4) {
     const char *near = vl_nearest_name(name, names, 4);
-    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s", vl_short_text(name).text,
+    return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s", vl_argument_text(name).text,
                    near ? "; did you mean \"" : " (known: gaussian, square, pentagon, star)", near ? near : "",
                    near ? "\"?" : "");
   }

@@ -14,9 +14,9 @@ static vlResult unknown_name(const char *name, vlError *error) {
   for (uint32_t i = 0; i < count; i++) names[i] = vl_table_named[i].name;
   const char *nearest = name ? vl_nearest_name(name, names, count) : NULL;
   if (nearest)
-    return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?", vl_short_text(name).text,
+    return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"; did you mean \"%s\"?", vl_argument_text(name).text,
                    nearest);
-  return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", vl_short_text(name).text);
+  return vl_fail(error, VL_ERROR_SCENE, "unknown spectrum \"%s\"", vl_argument_text(name).text);
 }
 
 /* Validates a spectrum. */

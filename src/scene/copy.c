@@ -80,7 +80,7 @@ static bool check_name(vlScene *scene, const char *name, vlSource source, const 
   const char *near = vl_nearest_name(name, names, count);
   vl_scene_fail(scene, VL_ERROR_SCENE, source,
                 near ? "%s: no spectrum is named \"%s\" (did you mean \"%s\"?)" : "%s: no spectrum is named \"%s\"",
-                what, vl_short_text(name).text, near);
+                what, vl_argument_text(name).text, near);
   return false;
 }
 

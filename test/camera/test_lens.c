@@ -116,6 +116,8 @@ static void named_images(void **state) {
   }
   vlError error;
   vlAperture *a;
+  assert_int_equal(vl_aperture_create_named(context, "a regular heptagon", &a, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "unknown shape \"a regular heptagon\" (known: "));
   assert_int_equal(vl_aperture_create_named(context, "pentagram", &a, &error), VL_ERROR_ARGUMENT);
   assert_non_null(strstr(error.message, "pentagon"));
   float bad[2] = {1, -1};

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Options of velo render that have no effect without something else: each is named in a note, and with --strict-options
+# Options of velo render (and of the commands that have some of them) that have no effect without something else: each is named in a note, and with --strict-options
 # refused, where it is missing, and silent where it is there. Every option of the help page is in one of the lists.
 . "${VELO_SOURCE_DIR:-$(dirname "$0")/../..}/test/harness.sh"
 . "$VELO_SOURCE_DIR/test/cli/common.sh"
@@ -28,6 +28,8 @@ scene = {
     "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
                     "samplers": [{"input": 1, "output": 2}]}]}
 json.dump(scene, open("model.gltf", "w"))
+del scene["animations"]
+json.dump(scene, open("still.gltf", "w"))
 json.dump({"camera_angle_x": 0.7, "frames": [{"file_path": "a", "transform_matrix": [
     [1, 0, 0, 0], [0, 1, 0, 1], [0, 0, 1, 4], [0, 0, 0, 1]]}]}, open("transforms.json", "w"))
 PYTHON
@@ -53,7 +55,7 @@ with() {
   if [ "$code" = 0 ] && [[ $err != *'has no effect'* ]]; then pass "$name: silent"; else fail "$name: silent"; show "$*"; fi
 }
 
-P=scene.pbrt G=model.gltf O=model.obj
+P=scene.pbrt G=model.gltf O=model.obj S=still.gltf
 # the file and what velo adds to it
 without scene $P --scene 0
 with scene $G --scene 0
@@ -61,13 +63,16 @@ without variant $P --variant red
 without variant $O --variant red
 with variant $G --variant red
 without at $P --at 0.5
+without at $S --at 0.5
 with at $G --at 0.5
 without shutter $P --at 0.5 --shutter 0.1
+without shutter $S --at 0.5 --shutter 0.1
 with shutter $G --at 0.5 --shutter 0.1
 without animation $P --animation 0
 without animation $G --animation 0
 with animation $G --animation 0 --at 0.5
 without animate $P --animate 0:1 -o f%d.png
+without animate $S --animate 0:1 -o f%d.png
 with animate $G --animate 0:1 -o f%d.png
 without fps $P --fps 10
 without fps $G --turntable 2 --fps 10 -o f%d.png
@@ -203,6 +208,11 @@ if [ "$(wc -l <options)" -gt 90 ] && [ -z "$missing" ]; then pass all_options; e
 run "$VELO" render $P --spp 1 --resolution 8x8 --variant red --merge-radius 1 -o a.exr
 if [ "$code" = 0 ] && [ -s a.exr ] && [ "$(grep -c 'has no effect' <<<"$err")" = 2 ]; then pass a_note_each; else fail a_note_each; show notes; fi
 expect_text names_the_file '--variant has no effect: scene.pbrt is not a glTF file'
+run "$VELO" render $S --dry-run --at 1
+expect_text names_the_lack '--at has no effect: still.gltf has no animations'
+run "$VELO" render $G --dry-run --animation 0
+expect_text names_what_plays '--animation has no effect: no animation is played (--at, --animate)'
+run "$VELO" render $P --spp 1 --resolution 8x8 --variant red --merge-radius 1 -o a.exr
 expect_text names_the_tracer '--merge-radius has no effect: path: only merging and sppm merge'
 run "$VELO" render $P --spp 1 --resolution 8x8 --merge-radius 1 --up z --strict-options --film b.film -o b.exr
 if [ "$code" = 2 ] && [ ! -e b.exr ] && [ ! -e b.film ]; then pass strict_before_the_render; else fail strict_before_the_render; show strict; fi
@@ -215,5 +225,35 @@ check strict_render "$VELO" render $P --spp 1 --resolution 8x8 --strict-options 
 check plain_render "$VELO" render $P --spp 1 --resolution 8x8 -o e.exr
 check again "$VELO" render --again d.exr --strict-options -o g.exr
 same same_bytes d.exr g.exr
+
+# The other commands that have these options: a note, with --strict-options an error before they do anything.
+others() {
+  local name=$1 missing=$2
+  shift 2
+  run timeout 20 "$VELO" "$@" --strict-options
+  if [ "$code" = 2 ] && [[ $err == *"velo: --$missing has no effect: "* ]]; then pass "$name: strict"; else fail "$name: strict"; show "$*"; fi
+}
+others verify frame scene verify $P --rays 0.01 --camera scene.pbrt --frame 0
+others paths frame camera paths $P --pixel 1,1 --camera scene.pbrt --frame 0
+others paths_of_tracer max-depth camera paths $P --pixel 1,1 --tracer raycast --max-depth 3
+others draw frame camera draw $P --camera scene.pbrt --frame 0 -o drawing.png
+run "$VELO" camera draw $P --camera scene.pbrt --frame 0 --size 64x48 --spp 2 -o drawing.png
+if [ "$code" = 0 ] && [ -s drawing.png ]; then pass draw_note; else fail draw_note; show draw; fi
+expect_text draw_says '--frame has no effect'
+run "$VELO" view $P --no-open --strict-options --resolution 8x8 --variant red
+if [[ $err == *'without libwebsockets'* ]]; then
+  skip view "velo was built without libwebsockets"
+else
+  if [ "$code" = 2 ] && [[ $err == *'velo: --variant has no effect: scene.pbrt is not a glTF file'* ]]; then pass view_strict; else fail view_strict; show view; fi
+  others view_of_tracer merge-radius view $P --no-open --tracer volpath --merge-radius 0.1
+  others view_at at view $S --no-open --at 0.5
+  others view_frame frame view $P --no-open --frame 0
+  # what the page can change later has an effect, and so has the tracer of a race
+  run timeout 3 "$VELO" view $G --no-open --strict-options --at 0.5 --focus-distance 2 --view agx --exposure 1
+  if [ "$code" = 124 ] && [[ $err != *'has no effect'* && $out == http* ]]; then pass view_silent; else fail view_silent; show view; fi
+  run timeout 3 "$VELO" view $P --no-open --variant red
+  if [[ $out == http* ]]; then pass view_goes_on; else fail view_goes_on; show view; fi
+  expect_text view_says '--variant has no effect: scene.pbrt is not a glTF file'
+fi
 
 finish

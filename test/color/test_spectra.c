@@ -298,7 +298,7 @@ static void test_errors(void **state) {
   s = vl_spectrum_named(NULL);
   expect(&s, VL_ERROR_SCENE, "unknown spectrum");
   s = vl_spectrum_named("what on earth is this supposed to be");
-  expect(&s, VL_ERROR_SCENE, "unknown spectrum");
+  expect(&s, VL_ERROR_SCENE, "unknown spectrum \"what on earth is this supposed to be\"");
   float l[2] = {500, 500}, v[2] = {1, 1};
   s = (vlSpectrum){.kind = VL_SPECTRUM_SAMPLED, .scale = 1, .count = 2, .wavelengths = l, .values = v};
   expect(&s, VL_ERROR_SCENE, "ascend");

@@ -12,6 +12,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/lens_options.h"
+#include "render/needs.h"
 #include "render/output_names.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
@@ -112,11 +113,11 @@ static int read_options(State *s, const Arguments *arguments) {
 
 /* ---- the cameras ------------------------------------------------------------------------------------------------- */
 
-static int load(State *s, const Arguments *arguments) {
+static int load(State *s, const Command *command, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   const OptionValue *v = arguments->values;
   vlError error = {0};
-  int status = scene_world_open(&s->in, arguments);
+  int status = scene_world_open(&s->in, command, arguments);
   if (status >= 0) return status;
   if (v[RENDER_TRAJECTORY].given) {
     vlResult result =
@@ -190,11 +191,10 @@ static int draw(State *s, const OptionValue *v) {
 }
 
 static int run_draw(const Command *command, const Arguments *arguments) {
-  (void)command;
   State s;
   memset(&s, 0, sizeof s);
   int status = read_options(&s, arguments);
-  if (status < 0) status = load(&s, arguments);
+  if (status < 0) status = load(&s, command, arguments);
   if (status < 0) status = output_check(s.in.context, arguments->values[DRAW_OUT].text, VL_OUTPUT_PLAIN);
   if (status < 0) status = draw(&s, arguments->values);
   draw_close(&s.outside);
@@ -246,6 +246,7 @@ static const Option draw_options[] = {
      NULL},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    STRICT_OPTIONS_OPTION,
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 static const Section draw_sections[] = {

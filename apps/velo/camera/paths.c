@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/lens_options.h"
+#include "render/needs.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum { PATHS_PIXEL = RENDER_OPTIONS, PATHS_SAMPLES, PATHS_FIRST, PATHS_SHOW, PATHS_SORT, PATHS_JSON, PATHS_OPTIONS };
@@ -71,7 +72,6 @@ static int print(State *s, const OptionValue *v) {
 }
 
 static int run_paths(const Command *command, const Arguments *arguments) {
-  (void)command;
   const OptionValue *v = arguments->values;
   uint32_t pixel[2];
   if (!v[PATHS_PIXEL].given) return report_usage("--pixel x,y is needed");
@@ -79,7 +79,7 @@ static int run_paths(const Command *command, const Arguments *arguments) {
     return report_usage("--pixel \"%s\": a pixel is x,y, counted from 0,0 at the top left", v[PATHS_PIXEL].text);
   State s;
   memset(&s, 0, sizeof s);
-  int status = scene_world_open(&s.in, arguments);
+  int status = scene_world_open(&s.in, command, arguments);
   if (status < 0) status = trace(&s, pixel, v);
   if (status < 0) status = print(&s, v);
   paths_free(&s.traced);
@@ -122,6 +122,7 @@ static const Option paths_options[] = {
      color_choices},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    STRICT_OPTIONS_OPTION,
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 static const Section paths_sections[] = {

@@ -4,8 +4,9 @@
 #include "cli/context.h"
 #include "cli/report.h"
 #include "render/lens_options.h"
+#include "render/needs.h"
 
-int scene_world_open(SceneWorld *s, const Arguments *arguments) {
+int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arguments) {
   const char *path = arguments->operands[0];
   vlContextDef def = vl_default_context_def();
   vlError error = {0};
@@ -13,9 +14,18 @@ int scene_world_open(SceneWorld *s, const Arguments *arguments) {
   int status = context_open(&def, &s->context);
   if (status < 0) status = scene_open(s->context, path, arguments, &s->scene, &s->opening);
   if (status < 0) status = job_make(&s->job, s->context, s->scene, path, arguments);
+  const Needs needs = {.options = command->options,
+                       .values = arguments->values,
+                       .arguments = arguments,
+                       .scene = s->scene,
+                       .opening = &s->opening,
+                       .job = &s->job};
+  if (status < 0) status = needs_check_scene(&needs);
   if (status >= 0) return status;
   vlResult result = vl_world_build(s->scene, &s->job.defs->build, &s->world, &error);
   if (result != VL_OK) return report_error(&error, result, path);
+  status = needs_check_tracer(&needs, s->world);
+  if (status >= 0) return status;
   return lens_autofocus(&s->job, s->scene, s->world);
 }
 

@@ -12,6 +12,7 @@
 typedef enum Need {
   NEED_NOTHING,
   NEED_GLTF,
+  NEED_ANIMATIONS,
   NEED_PLAYED_TIME,
   NEED_ANIMATE,
   NEED_ADDED,
@@ -38,11 +39,11 @@ typedef enum Need {
 } Need;
 
 /* Options that are not here always have an effect, or their command line is refused without what they need. */
-static const Need needs[MAX_OPTIONS] = {
+static const Need needs_of[MAX_OPTIONS] = {
     [RENDER_SCENE] = NEED_GLTF,
-    [RENDER_AT] = NEED_GLTF,
-    [RENDER_SHUTTER] = NEED_GLTF,
-    [RENDER_ANIMATE] = NEED_GLTF,
+    [RENDER_AT] = NEED_ANIMATIONS,
+    [RENDER_SHUTTER] = NEED_ANIMATIONS,
+    [RENDER_ANIMATE] = NEED_ANIMATIONS,
     [RENDER_VARIANT] = NEED_GLTF,
     [RENDER_ANIMATION] = NEED_PLAYED_TIME,
     [RENDER_FPS] = NEED_ANIMATE,
@@ -80,20 +81,24 @@ static const Need needs[MAX_OPTIONS] = {
 
 /* ---- when it is there -------------------------------------------------------------------------------------------- */
 
-/* What the tests of needs look at. */
+/* What the tests look at. */
 typedef struct Facts {
-  const Render *render;
-  const OptionValue *v;       /* of the whole command */
-  const Arguments *arguments; /* of this frame */
+  const Needs *needs;
+  const Render *render; /* may be null */
+  const OptionValue *v; /* of the whole command */
   vlTracer tracer;
 } Facts;
 
 static bool has_gltf(const Facts *f) {
-  return scene_is_gltf(f->render->job.path);
+  return scene_is_gltf(f->needs->job->path);
+}
+
+static bool has_animations(const Facts *f) {
+  return vl_scene_choice_count(f->needs->scene, VL_CHOICE_ANIMATION) > 0;
 }
 
 static bool has_played_time(const Facts *f) {
-  return has_gltf(f) && (f->v[RENDER_AT].given || f->v[RENDER_ANIMATE].given);
+  return f->v[RENDER_AT].given || f->v[RENDER_ANIMATE].given;
 }
 
 static bool has_animate(const Facts *f) {
@@ -101,15 +106,15 @@ static bool has_animate(const Facts *f) {
 }
 
 static bool has_added_camera(const Facts *f) {
-  return f->render->opening.camera_added;
+  return f->needs->opening->camera_added;
 }
 
 static bool has_added_light(const Facts *f) {
-  return f->render->opening.environment != VL_ENVIRONMENT_NONE;
+  return f->needs->opening->environment != VL_ENVIRONMENT_NONE;
 }
 
 static bool has_added_ground(const Facts *f) {
-  return f->render->opening.model && has_added_camera(f) && f->render->opening.environment == VL_ENVIRONMENT_STUDIO;
+  return f->needs->opening->model && has_added_camera(f) && f->needs->opening->environment == VL_ENVIRONMENT_STUDIO;
 }
 
 static bool has_added(const Facts *f) {
@@ -119,7 +124,8 @@ static bool has_added(const Facts *f) {
 
 static bool has_camera_file(const Facts *f) {
   const OptionValue *camera = &f->v[RENDER_CAMERA];
-  return camera->given && !camera_is_scene(camera->text) && !scene_camera_is_own(f->render->job.path, f->arguments);
+  return camera->given && !camera_is_scene(camera->text) &&
+         !scene_camera_is_own(f->needs->job->path, f->needs->arguments);
 }
 
 static bool has_camera_or_poses(const Facts *f) {
@@ -127,12 +133,13 @@ static bool has_camera_or_poses(const Facts *f) {
 }
 
 static bool has_lens(const Facts *f) {
-  const vlCamera *camera = &f->render->job.camera;
-  return f->render->many || camera->lens_radius > 0 || camera->lens.optics;
+  const vlCamera *camera = &f->needs->job->camera;
+  const bool others = f->needs->edited || (f->render && f->render->many);
+  return others || camera->lens_radius > 0 || camera->lens.optics;
 }
 
 static bool has_film(const Facts *f) {
-  return f->render->film_plan.path != NULL;
+  return !f->render || f->render->film_plan.path != NULL;
 }
 
 static bool is_display(const char *path) {
@@ -142,6 +149,7 @@ static bool is_display(const char *path) {
 
 /* Whether a film, or an image for which the test is true, is written. */
 static bool has_output(const Facts *f, bool (*test)(const char *path)) {
+  if (!f->render) return true;
   const Outputs *all[] = {&f->render->outputs, &f->render->denoised.outputs};
   for (int k = 0; k < 2; k++)
     for (int i = 0; i < all[k]->count; i++)
@@ -162,16 +170,16 @@ static bool has_alpha(const Facts *f) {
 }
 
 static bool has_channels(const Facts *f) {
-  return has_exr(f) && (f->render->channels.bits || f->render->channels.gbuffer);
+  return !f->render || (has_exr(f) && (f->render->channels.bits || f->render->channels.gbuffer));
 }
 
 static bool has_crypto(const Facts *f) {
   const uint32_t crypto = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
-  return has_exr(f) && f->render->channels.bits & crypto;
+  return !f->render || (has_exr(f) && f->render->channels.bits & crypto);
 }
 
 static bool has_other_denoiser(const Facts *f) {
-  return f->render->denoised.def.denoiser != VL_DENOISER_VELO;
+  return !f->render || f->render->denoised.def.denoiser != VL_DENOISER_VELO;
 }
 
 static bool has_merging(const Facts *f) {
@@ -195,9 +203,11 @@ static const struct {
   const char *why;   /* after "--option has no effect: " */
   bool names_scene;  /* the path of the scene goes before */
   bool is_warned_of; /* each output has its warning already (render.c) */
+  Need before;       /* is needed for it, too, and looked at first */
 } rows[NEED_COUNT] = {
     [NEED_GLTF] = {has_gltf, " is not a glTF file", .names_scene = true},
-    [NEED_PLAYED_TIME] = {has_played_time, "no animation of a glTF file is played (--at, --animate)"},
+    [NEED_ANIMATIONS] = {has_animations, " has no animations", .names_scene = true, .before = NEED_GLTF},
+    [NEED_PLAYED_TIME] = {has_played_time, "no animation is played (--at, --animate)", .before = NEED_ANIMATIONS},
     [NEED_ANIMATE] = {has_animate, "it goes with --animate"},
     [NEED_ADDED] = {has_added, " has a camera and light of its own", .names_scene = true},
     [NEED_ADDED_CAMERA] = {has_added_camera, "no camera is added, the camera is given"},
@@ -224,7 +234,7 @@ static const struct {
 
 static int report_option(const Facts *f, const Option *option, Need need) {
   const bool strict = f->v[RENDER_STRICT_OPTIONS].given;
-  const char *scene = rows[need].names_scene ? f->render->job.path : "", *why = rows[need].why;
+  const char *scene = rows[need].names_scene ? f->needs->job->path : "", *why = rows[need].why;
   const bool of_tracer = need > NEED_OF_TRACER;
   const char *tracer = of_tracer ? kind_name("tracers", (int)f->tracer) : "", *gap = of_tracer ? ": " : "";
   if (strict) return report_usage("--%s has no effect: %s%s%s%s", option->name, tracer, gap, scene, why);
@@ -232,40 +242,66 @@ static int report_option(const Facts *f, const Option *option, Need need) {
   return -1;
 }
 
+/* What is missing of a need: itself, or one before it. NEED_NOTHING: it is there. */
+static Need missing(const Facts *f, Need need) {
+  if (need == NEED_NOTHING) return need;
+  const Need before = missing(f, rows[need].before);
+  if (before != NEED_NOTHING) return before;
+  return rows[need].has(f) ? NEED_NOTHING : need;
+}
+
 static int check(const Facts *f, bool of_tracer) {
   int status = -1;
-  for (const Option *option = render_options; option->name; option++) {
-    const Need need = needs[option->id];
-    if (need == NEED_NOTHING || !f->v[option->id].given || (need > NEED_OF_TRACER) != of_tracer) continue;
-    if (rows[need].has(f)) continue;
-    const int code = report_option(f, option, need);
+  for (const Option *option = f->needs->options; option->name; option++) {
+    if (option->id >= RENDER_OPTIONS || !f->v[option->id].given) continue; /* an option of another command */
+    const Need need = needs_of[option->id];
+    if ((need > NEED_OF_TRACER) != of_tracer) continue;
+    const Need lacking = missing(f, need);
+    const int code = lacking == NEED_NOTHING ? -1 : report_option(f, option, lacking);
     if (code >= 0) status = code;
   }
   return status;
 }
 
-/* A frame of an animation has other options than the command: --at in place of --animate. */
-static Facts facts_of(const Render *render, const Arguments *arguments) {
-  const Arguments *whole = render->shared ? render->shared->whole : arguments;
-  return (Facts){.render = render, .v = whole->values, .arguments = arguments};
-}
-
-int needs_check_job(Render *render, const Arguments *arguments) {
-  AnimateShared *shared = render->shared;
-  if (shared && shared->job_checked) return -1;
-  if (shared) shared->job_checked = true;
-  const Facts facts = facts_of(render, arguments);
+int needs_check_scene(const Needs *needs) {
+  const Facts facts = {.needs = needs, .render = needs->render, .v = needs->values};
   return check(&facts, false);
 }
 
-int needs_check_tracer(Render *render, const Arguments *arguments) {
+int needs_check_tracer(const Needs *needs, const vlWorld *world) {
+  const Job *job = needs->job;
+  const vlTracer tracer = job->defs->render.tracer;
+  const bool replaced = vl_tracer_lacks(world, &job->camera, &job->defs->film, tracer) != 0;
+  const Facts facts = {
+      .needs = needs, .render = needs->render, .v = needs->values, .tracer = replaced ? VL_TRACER_VOLPATH : tracer};
+  return check(&facts, true);
+}
+
+/* A frame of an animation has other options than the command: --at in place of --animate. */
+static Needs needs_of_render(const Render *render, const Arguments *arguments) {
+  const Arguments *whole = render->shared ? render->shared->whole : arguments;
+  return (Needs){.options = render_options,
+                 .values = whole->values,
+                 .arguments = arguments,
+                 .scene = render->scene,
+                 .opening = &render->opening,
+                 .job = &render->job,
+                 .render = render};
+}
+
+int needs_check_render_scene(Render *render, const Arguments *arguments) {
   AnimateShared *shared = render->shared;
-  const vlSceneDefs *defs = render->job.defs;
+  if (shared && shared->job_checked) return -1;
+  if (shared) shared->job_checked = true;
+  const Needs needs = needs_of_render(render, arguments);
+  return needs_check_scene(&needs);
+}
+
+int needs_check_render_tracer(Render *render, const Arguments *arguments) {
+  AnimateShared *shared = render->shared;
   if (shared && shared->tracer_checked) return -1;
   if (shared) shared->tracer_checked = true;
   if (render->job.race == RACE_TRACERS && arguments->values[RENDER_DRY_RUN].given) return -1; /* there was no race */
-  Facts facts = facts_of(render, arguments);
-  facts.tracer = defs->render.tracer;
-  if (vl_tracer_lacks(render->world, &render->job.camera, &defs->film, facts.tracer)) facts.tracer = VL_TRACER_VOLPATH;
-  return check(&facts, true);
+  const Needs needs = needs_of_render(render, arguments);
+  return needs_check_tracer(&needs, render->world);
 }

@@ -383,7 +383,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
     if (status < 0) status = check_metering(&render->outputs, arguments);
     if (status >= 0) return status;
   }
-  status = needs_check_job(render, arguments);
+  status = needs_check_render_scene(render, arguments);
   if (status < 0) status = claim_films(render, arguments);
   if (status < 0) status = race_plan(render, arguments);
   if (status < 0) status = build_world(render, path);
@@ -469,7 +469,7 @@ static int render_once(const Command *command, const Arguments *arguments, Anima
   if (status < 0) status = check_outputs(&render);
   if (status < 0 && !render.many) status = lens_autofocus(&render.job, render.scene, render.world);
   if (status < 0) status = race_run(&render, arguments);
-  if (status < 0) status = needs_check_tracer(&render, arguments);
+  if (status < 0) status = needs_check_render_tracer(&render, arguments);
   if (status < 0) status = reckon_memory(&render, arguments);
   if (status < 0) status = meter_model(&render, arguments);
   if (status < 0 && shared && shared->preparing) status = STATUS_OK;

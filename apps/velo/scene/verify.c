@@ -13,6 +13,7 @@
 #include "cli/signals.h"
 #include "image/image.h"
 #include "render/lens_options.h"
+#include "render/needs.h"
 #include "velo/edit.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
@@ -32,7 +33,7 @@ static void logged(void *user, vlLogLevel level, const vlError *where, const cha
   }
 }
 
-static int open_scene(Verify *v, const Arguments *arguments) {
+static int open_scene(Verify *v, const Command *command, const Arguments *arguments) {
   const OptionValue *o = arguments->values;
   vlContextDef def = vl_default_context_def();
   vlError error = {0};
@@ -42,6 +43,14 @@ static int open_scene(Verify *v, const Arguments *arguments) {
   int status = context_open(&def, &v->context);
   if (status < 0) status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
   if (status < 0) status = job_make(&v->job, v->context, v->scene, v->path, arguments);
+  if (status >= 0) return status;
+  const Needs needs = {.options = command->options,
+                       .values = o,
+                       .arguments = arguments,
+                       .scene = v->scene,
+                       .opening = &v->opening,
+                       .job = &v->job};
+  status = needs_check_scene(&needs);
   if (status >= 0) return status;
   vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, &error);
   status = result == VL_OK ? lens_autofocus(&v->job, v->scene, world) : report_error(&error, result, v->path);
@@ -98,13 +107,12 @@ static void close_all(Verify *v) {
 }
 
 static int run_verify(const Command *command, const Arguments *arguments) {
-  (void)command;
   static Verify v;
   const OptionValue *o = arguments->values;
   v.path = arguments->operands[0];
   v.budget = 1e6 * (o[VERIFY_RAYS].given ? o[VERIFY_RAYS].number : DEFAULT_RAYS);
   v.seed = o[RENDER_SEED].given ? (uint32_t)o[RENDER_SEED].integer : 0;
-  int status = open_scene(&v, arguments);
+  int status = open_scene(&v, command, arguments);
   if (status < 0) status = verify(&v, arguments);
   if (status < 0) {
     if (o[VERIFY_JSON].given)
@@ -135,6 +143,7 @@ static const Option options[] = {
      "parts of the scene that velo does not understand are warnings, not errors", 0, 0, NULL},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+    STRICT_OPTIONS_OPTION,
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 
 static const Section sections[] = {

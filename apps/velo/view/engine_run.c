@@ -8,8 +8,10 @@
 #include <time.h>
 
 #include "cli/report.h"
+#include "render/needs.h"
 #include "view/engine_parts.h"
 #include "view/engine_status.h"
+#include "view/view.h"
 
 /* The coarsest image has 1/COARSEST of the width and height. Pixels of the first image: before speed is known, at
  * least. */
@@ -370,6 +372,20 @@ int engine_take_model(Engine *e) {
   return -1;
 }
 
+/* Reports options that have no effect. The page can open the lens; a race may take any tracer. */
+static int check_options(const Engine *e) {
+  const Arguments *arguments = e->def.arguments;
+  const Needs needs = {.options = view_options,
+                       .values = arguments->values,
+                       .arguments = arguments,
+                       .scene = e->model.scene,
+                       .opening = &e->model.opening,
+                       .job = &e->model.job,
+                       .edited = true};
+  const int status = needs_check_scene(&needs);
+  return status >= 0 || needs.job->race == RACE_TRACERS ? status : needs_check_tracer(&needs, e->model.world);
+}
+
 int engine_create(const EngineDef *def, Engine **result) {
   Engine *engine = calloc(1, sizeof *engine);
   if (!engine) return report_failure(STATUS_OTHER, "out of memory");
@@ -383,6 +399,7 @@ int engine_create(const EngineDef *def, Engine **result) {
   int status = made ? -1 : report_failure(STATUS_OTHER, "out of memory");
   if (status < 0)
     status = model_load(def->context, def->path, def->arguments, NULL, NULL, &engine->model, &engine->files);
+  if (status < 0) status = check_options(engine);
   if (status < 0) status = engine_take_model(engine);
   engine->wanted.paused = def->lecture; /* until a page chooses a scene */
   *result = engine;

@@ -139,12 +139,13 @@ static void put_word(FILE *out, const char *word) {
 
 /* Options that the camera file and the following words of the command replace, or that do not matter. */
 static bool option_is_replaced(int id) {
-  static const int replaced[] = {
-      VIEW_PORT,       VIEW_LISTEN,        VIEW_NO_OPEN,       RENDER_SPP,      RENDER_FILM,     RENDER_RESOLUTION,
-      RENDER_CROP,     RENDER_CAMERA,      RENDER_FRAME,       RENDER_SIZE,     RENDER_SEQUENCE, RENDER_VIEW,
-      RENDER_EXPOSURE, RENDER_FOCUS_PIXEL, RENDER_LENS_RADIUS, RENDER_F_NUMBER, RENDER_THREADS,  RENDER_FOCUS_DISTANCE,
-      RENDER_QUIET,    RENDER_MAX_MEMORY,  RENDER_ISO,         RENDER_SECONDS,  RENDER_TURN,     RENDER_TRAJECTORY,
-      RENDER_TRACER,   RENDER_LIGHT_PATHS};
+  static const int replaced[] = {VIEW_PORT,       VIEW_LISTEN,           VIEW_NO_OPEN,         RENDER_SPP,
+                                 RENDER_FILM,     RENDER_RESOLUTION,     RENDER_CROP,          RENDER_CAMERA,
+                                 RENDER_FRAME,    RENDER_SIZE,           RENDER_SEQUENCE,      RENDER_VIEW,
+                                 RENDER_EXPOSURE, RENDER_FOCUS_PIXEL,    RENDER_LENS_RADIUS,   RENDER_F_NUMBER,
+                                 RENDER_THREADS,  RENDER_FOCUS_DISTANCE, RENDER_QUIET,         RENDER_MAX_MEMORY,
+                                 RENDER_ISO,      RENDER_SECONDS,        RENDER_TURN,          RENDER_TRAJECTORY,
+                                 RENDER_TRACER,   RENDER_LIGHT_PATHS,    RENDER_STRICT_OPTIONS};
   for (size_t i = 0; i < sizeof replaced / sizeof *replaced; i++)
     if (replaced[i] == id) return true;
   return false;

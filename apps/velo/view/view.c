@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "render/needs.h"
 #include "render/race_rules.h"
 #include "view/serve.h"
 
@@ -149,6 +150,7 @@ const Option view_options[] = {
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL, "warn of unsupported features instead of refusing them", 0,
      0, NULL},
     {RENDER_STRICT, 0, "strict", OPTION_FLAG, NULL, "glTF, OBJ: a missing image is an error", 0, 0, NULL},
+    STRICT_OPTIONS_OPTION,
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR", "further folder in which files of the scene are looked for",
      0, 0, NULL},
     {RENDER_IMITATE_PBRT, 0, "imitate-pbrt", OPTION_FLAG, NULL, "reproduce a known error of pbrt-v4", 0, 0, NULL},

@@ -1,117 +1,80 @@
 /* accelerator.c: a tree of boxes (bounding volume hierarchy, pbrt book 7.3). A ray that misses a box misses all that is
  * in it. Each box is split at the middle of its longest side. */
-#include <stdlib.h>
-
+#include "refuse.h"
 #include "texture.h"
 #include "world.h"
 
 struct node {
   vector low, high;
-  uint32_t first; /* leaf: first entry of `order`; else the second child; the first child is the next node */
-  uint32_t count; /* primitives of a leaf; 0: an inner node */
-  int axis;       /* along which an inner node is split */
+  uint32_t first, count; /* a leaf's primitives */
+  uint32_t second;       /* 0: a leaf; else the second child; the first child is the next node */
+  int axis;              /* along which an inner node is split */
 };
 
-enum { LEAF = 4, DEPTH = 128 };
+enum { LEAF = 4, DEPTH = 64 };
 
 static double along(vector v, int axis) {
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/* ---- building ---------------------------------------------------------------------------------------------------- */
-
-static void bound_all(const world *w, uint32_t first, uint32_t count, vector *low, vector *high) {
-  bound_shape(w, &w->primitives[w->order[first]], low, high);
-  for (uint32_t i = first + 1; i < first + count; i++) {
-    vector l, h;
-    bound_shape(w, &w->primitives[w->order[i]], &l, &h);
-    *low = make_vector(fmin(low->x, l.x), fmin(low->y, l.y), fmin(low->z, l.z));
-    *high = make_vector(fmax(high->x, h.x), fmax(high->y, h.y), fmax(high->z, h.z));
-  }
-}
-
-/* Moves the primitives whose middle lies below a plane to the front; returns their number. */
-static uint32_t divide(world *w, uint32_t first, uint32_t count, int axis, double plane) {
+/* Moves the primitives whose middle lies below the middle of the node to the front; returns their number. */
+static uint32_t divide(primitive *primitives, const node *n) {
+  double plane = (along(n->low, n->axis) + along(n->high, n->axis)) / 2;
   uint32_t below = 0;
-  for (uint32_t i = 0; i < count; i++) {
-    vector low, high;
-    uint32_t index = w->order[first + i];
-    bound_shape(w, &w->primitives[index], &low, &high);
-    if ((along(low, axis) + along(high, axis)) / 2 >= plane) continue;
-    w->order[first + i] = w->order[first + below];
-    w->order[first + below++] = index;
+  for (uint32_t i = 0; i < n->count; i++) {
+    primitive p = primitives[n->first + i];
+    if ((along(p.low, n->axis) + along(p.high, n->axis)) / 2 >= plane) continue;
+    primitives[n->first + i] = primitives[n->first + below];
+    primitives[n->first + below++] = p;
   }
-  return below;
+  return below > 0 && below < n->count ? below : n->count / 2; /* all in one place: any half */
 }
 
 /* Makes the node of some primitives, and those below it. Returns the number of nodes so far. */
-static uint32_t build(world *w, uint32_t node_count, uint32_t first, uint32_t count, int depth) {
-  node *n = &w->nodes[node_count++];
-  bound_all(w, first, count, &n->low, &n->high);
-  n->first = first;
-  n->count = count;
-  if (count <= LEAF || depth > DEPTH / 2) return node_count;
+static uint32_t build(world *w, uint32_t index, uint32_t first, uint32_t count, int depth) {
+  node *n = &w->nodes[index];
+  *n = (node){w->primitives[first].low, w->primitives[first].high, first, count, 0, 0};
+  for (uint32_t i = first; i < first + count; i++) {
+    n->low = least(n->low, w->primitives[i].low);
+    n->high = greatest(n->high, w->primitives[i].high);
+  }
+  if (count <= LEAF || depth > DEPTH) return index + 1;
   vector size = subtract(n->high, n->low);
   n->axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  double plane = (along(n->low, n->axis) + along(n->high, n->axis)) / 2;
-  uint32_t below = divide(w, first, count, n->axis, plane);
-  if (below == 0 || below == count) below = count / 2; /* all in one place: any half */
-  n->count = 0;
-  node_count = build(w, node_count, first, below, depth + 1);
-  n->first = node_count;
-  return build(w, node_count, first + below, count - below, depth + 1);
+  uint32_t below = divide(w->primitives, n);
+  n->second = build(w, index + 1, first, below, depth + 1);
+  return build(w, n->second, first + below, count - below, depth + 1);
 }
 
-bool make_accelerator(world *w) {
-  w->nodes = malloc((2 * (size_t)w->primitive_count + 1) * sizeof *w->nodes);
-  w->order = malloc(((size_t)w->primitive_count + 1) * sizeof *w->order);
-  if (!w->nodes || !w->order) return false;
-  for (uint32_t i = 0; i < w->primitive_count; i++) w->order[i] = i;
-  if (w->primitive_count == 0) return true;
+void make_accelerator(world *w) {
+  w->nodes = resize(NULL, 2 * (size_t)w->primitive_count, sizeof *w->nodes);
+  if (w->primitive_count == 0) return;
   build(w, 0, 0, w->primitive_count, 0);
-  w->low = w->nodes[0].low;
-  w->high = w->nodes[0].high;
-  w->radius = length(subtract(w->high, w->low)) / 2;
-  return true;
+  w->radius = length(subtract(w->nodes[0].high, w->nodes[0].low)) / 2;
 }
-
-/* ---- rays -------------------------------------------------------------------------------------------------------- */
 
 /* The ray is inside the box where it is between all three pairs of planes. A little slack covers rounding. */
 static bool meets_box(const node *n, ray r) {
-  double from = r.t_min, to = r.t_max;
   for (int axis = 0; axis < 3; axis++) {
-    double inverse = 1 / along(r.direction, axis);
-    double near = (along(n->low, axis) - along(r.origin, axis)) * inverse;
-    double far = (along(n->high, axis) - along(r.origin, axis)) * inverse;
-    if (near > far) {
-      double swap = near;
-      near = far;
-      far = swap;
-    }
-    near -= fabs(near) * 1e-12;
-    far += fabs(far) * 1e-12;
-    if (near > from) from = near; /* comparisons with NaN, for a ray in a plane, are false: the plane does not count */
-    if (far < to) to = far;
+    double t1 = (along(n->low, axis) - along(r.origin, axis)) / along(r.direction, axis);
+    double t2 = (along(n->high, axis) - along(r.origin, axis)) / along(r.direction, axis);
+    if (isnan(t1) || isnan(t2)) continue; /* the ray lies in a plane of the box: the plane does not count */
+    r.t_min = fmax(r.t_min, fmin(t1, t2));
+    r.t_max = fmin(r.t_max, fmax(t1, t2));
   }
-  return from <= to;
+  return r.t_min * (1 - 1e-12) <= r.t_max * (1 + 1e-12);
 }
 
-/* Alpha is the share of the surface that is there. */
-static bool is_there(const world *w, const shade_record *record, sampler *s) {
-  double alpha = number_at(w, record->where->def->alpha, record);
-  if (alpha >= 1) return true;
-  return alpha > 0 && next_number(s) < alpha;
-}
-
-/* The nearest hit of one primitive that is there; a ray may meet a curved one twice. */
+/* The nearest hit of one primitive that is there; a ray may meet a curved one twice. Alpha is the share of the surface
+ * that is there. */
 static bool meet_primitive(const world *w, const primitive *p, ray r, sampler *s, shade_record *hit) {
   meeting m;
   while (meet_shape(w, p, r, &m)) {
-    shade_record record;
+    shade_record record = {.arrival = r.direction};
     shape_surface(w, p, m.a, m.b, &record);
     record.t = m.t;
-    if (is_there(w, &record, s)) {
+    double alpha = number_at(w, record.where->def->alpha, &record);
+    if (alpha >= 1 || (alpha > 0 && next_number(s) < alpha)) {
       *hit = record;
       return true;
     }
@@ -120,26 +83,24 @@ static bool meet_primitive(const world *w, const primitive *p, ray r, sampler *s
   return false;
 }
 
-bool find_hit(const world *w, ray r, sampler *s, shade_record *hit) {
-  uint32_t stack[DEPTH], waiting = 0;
+/* Looks into the nearer half first. r->t_max becomes the distance of the nearest hit so far. */
+static bool search(const world *w, uint32_t index, ray *r, sampler *s, shade_record *hit) {
+  const node *n = &w->nodes[index];
   bool found = false;
-  if (w->primitive_count == 0) return false;
-  stack[waiting++] = 0;
-  while (waiting > 0) {
-    uint32_t index = stack[--waiting];
-    const node *n = &w->nodes[index];
-    if (!meets_box(n, r)) continue;
-    if (n->count == 0) { /* the nearer child last, so that it comes first */
-      bool backwards = along(r.direction, n->axis) < 0;
-      stack[waiting++] = backwards ? index + 1 : n->first;
-      stack[waiting++] = backwards ? n->first : index + 1;
-      continue;
-    }
-    for (uint32_t i = n->first; i < n->first + n->count; i++) {
-      if (!meet_primitive(w, &w->primitives[w->order[i]], r, s, hit)) continue;
-      r.t_max = hit->t;
-      found = true;
-    }
+  if (!meets_box(n, *r)) return false;
+  if (n->second) {
+    bool backwards = along(r->direction, n->axis) < 0;
+    found = search(w, backwards ? n->second : index + 1, r, s, hit);
+    return search(w, backwards ? index + 1 : n->second, r, s, hit) || found;
+  }
+  for (uint32_t i = n->first; i < n->first + n->count; i++) {
+    if (!meet_primitive(w, &w->primitives[i], *r, s, hit)) continue;
+    r->t_max = hit->t;
+    found = true;
   }
   return found;
+}
+
+bool find_hit(const world *w, ray r, sampler *s, shade_record *hit) {
+  return w->primitive_count > 0 && search(w, 0, &r, s, hit);
 }

@@ -1,52 +1,47 @@
 /* bsdf.c: the kinds of BSDFs by name, and the simplest of them. */
 #include "bsdf.h"
 
+#include "more/more.h"
+
 /* A diffuse surface looks equally bright from everywhere: f = reflectance / pi, on the side that the light comes from.
  */
-spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density) {
-  if (wo.z * wi.z <= 0) {
-    *density = 0;
-    return gray(0);
-  }
-  *density = fabs(wi.z) / PI;
-  return scaled(fabs(wi.z) / PI, b->reflectance);
+static spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density) {
+  *density = wo.z * wi.z > 0 ? fabs(wi.z) / PI : 0;
+  return scaled(*density, b->reflectance);
 }
 
-bool sample_diffuse(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  vector wi = sample_cosine_hemisphere(s);
-  if (wo.z < 0) wi.z = -wi.z;
-  result->wi = wi;
-  result->density = fabs(wi.z) / PI;
-  result->weight = b->reflectance; /* f cos / density */
-  result->specular = false;
-  result->transmitted = false;
-  return wi.z != 0;
+static spectrum local_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
+  *density = 0;
+  switch (b->kind) {
+    case BSDF_DIFFUSE: return diffuse_value(b, wo, wi, density);
+    case BSDF_CONDUCTOR: return conductor_value(b, wo, wi, density);
+    case BSDF_DIELECTRIC: return dielectric_value(b, wo, wi, density);
+    default: return more_bsdf_value(b, wo, wi, s, density);
+  }
+}
+
+static bool sample_direction(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
+  switch (b->kind) {
+    case BSDF_DIFFUSE: result->wi = face_forward(sample_cosine_hemisphere(s), make_vector(0, 0, wo.z)); return true;
+    case BSDF_CONDUCTOR: sample_conductor(b, wo, s, result); return true;
+    case BSDF_DIELECTRIC: return sample_dielectric(b, wo, s, result);
+    default: return sample_more_bsdf(b, wo, s, result);
+  }
 }
 
 spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
-  vector o = to_local(b->frame, wo);
-  vector i = to_local(b->frame, wi);
-  switch (b->kind) {
-    case BSDF_DIFFUSE: return diffuse_value(b, o, i, density);
-    case BSDF_CONDUCTOR: return conductor_value(b, o, i, density);
-    case BSDF_DIELECTRIC: return dielectric_value(b, o, i, density);
-    case BSDF_COATED_DIFFUSE: return coated_value(b, o, i, s, density);
-  }
-  *density = 0;
-  return gray(0);
+  return local_value(b, to_local(b->frame, wo), to_local(b->frame, wi), s, density);
 }
 
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   vector o = to_local(b->frame, wo);
-  bool found = false;
-  if (o.z == 0) return false;
-  switch (b->kind) {
-    case BSDF_DIFFUSE: found = sample_diffuse(b, o, s, result); break;
-    case BSDF_CONDUCTOR: found = sample_conductor(b, o, s, result); break;
-    case BSDF_DIELECTRIC: found = sample_dielectric(b, o, s, result); break;
-    case BSDF_COATED_DIFFUSE: found = sample_coated(b, o, s, result); break;
+  *result = (bsdf_sample){.weight = gray(1), .density = 1};
+  if (o.z == 0 || !sample_direction(b, o, s, result)) return false;
+  if (!result->specular) {
+    spectrum value = local_value(b, o, result->wi, s, &result->density);
+    if (!(result->density > 0)) return false;
+    result->weight = scaled(1 / result->density, value);
   }
-  if (!found) return false;
   result->wi = normalize(from_local(b->frame, result->wi));
   return true;
 }

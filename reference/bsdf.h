@@ -4,9 +4,10 @@
 #define REFERENCE_BSDF_H
 
 #include "color.h"
+#include "more/kinds.h"
 #include "vector.h"
 
-typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_COATED_DIFFUSE } bsdf_kind;
+typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_MORE } bsdf_kind;
 
 typedef struct bsdf {
   bsdf_kind kind;
@@ -15,34 +16,27 @@ typedef struct bsdf {
   spectrum eta, k;         /* conductor: complex index of refraction */
   double ior;              /* dielectric: index inside over index outside */
   double alpha_x, alpha_y; /* roughness along the tangent and across it */
-  double coat_thickness;   /* coated: sigma_t is 1 */
-  uint32_t coat_depth;     /* coated: most surfaces that a walk inside meets */
+  more_bsdf more;          /* of kinds of more/ */
 } bsdf;
 
 typedef struct bsdf_sample {
   vector wi;
-  spectrum weight;  /* f cos / density */
-  double density;   /* per solid angle; not used if specular */
-  bool specular;    /* the only direction there is: no other sampling can find it */
-  bool transmitted; /* to the other side */
+  spectrum weight; /* f cos / density */
+  double density;  /* per solid angle; not used if specular */
+  bool specular;   /* the only direction there is: no other sampling can find it */
 } bsdf_sample;
 
 /* Values and densities for directions in the world. A specular BSDF has value 0: no two given directions fit. */
 spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 
-/* The kinds, for directions in the local frame (z is the normal). */
-spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density);
-bool sample_diffuse(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+/* The kinds, for directions in the local frame (z is the normal). Sampling finds wi; the weight only if specular. */
 spectrum conductor_value(const bsdf *b, vector wo, vector wi, double *density);
-bool sample_conductor(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+void sample_conductor(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* more/coated.c: values are found by random walks, which draw numbers. */
-spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
-bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 
-/* dielectric.c: Fresnel's and Snell's laws, which the coat needs, too. */
+/* dielectric.c: Fresnel's and Snell's laws. */
 double reflected_by_glass(double cosine, double eta);
 bool refract(vector wo, vector m, double ior, double *eta, vector *wi);
 

@@ -3,25 +3,17 @@
 
 /* ---- the wavelengths of a path (pbrt book 4.5.4) ----------------------------------------------------------------- */
 
-static const double LOWEST = 360, HIGHEST = 830;
-
-/* The density of wavelengths: high where the eye sees well. It is the derivative of a tanh, so that it can be inverted:
- * p(l) = .0039398042 / cosh^2(.0072 (l - 538)), zero outside of 360 to 830 nm. */
-static double wavelength_density(double nm) {
-  return nm < LOWEST || nm > HIGHEST ? 0 : 0.0039398042 / square(cosh(0.0072 * (nm - 538)));
-}
-static double wavelength_of(double u) {
-  return 538 - 138.888889 * atanh(0.85691062 - 1.82750197 * u);
-}
-
-/* One random number serves all four: they lie a quarter of the distribution apart. */
+/* One random number serves all four: they lie a quarter of the distribution apart. Wavelengths that the eye sees well
+ * are dense: p(l) = .0039398042 / cosh^2(.0072 (l - 538)) from 360 to 830 nm, the derivative of a tanh, so that it can
+ * be inverted. */
 wavelengths sample_wavelengths(bool rgb, sampler *s) {
   wavelengths w = {.rgb = rgb};
   double u = next_number(s);
   for (int i = 0; i < CHANNELS; i++) {
     double shifted = u + (double)i / CHANNELS;
-    w.nm[i] = wavelength_of(shifted - floor(shifted));
-    w.density[i] = wavelength_density(w.nm[i]);
+    shifted -= floor(shifted);
+    w.nm[i] = 538 - 138.888889 * atanh(0.85691062 - 1.82750197 * shifted);
+    w.density[i] = 0.0039398042 / square(cosh(0.0072 * (w.nm[i] - 538)));
   }
   return w;
 }
@@ -34,12 +26,16 @@ void keep_first_wavelength(wavelengths *w) {
   w->density[0] /= CHANNELS;
 }
 
+uint32_t channels_of(const wavelengths *w) {
+  if (w->rgb) return 3;
+  return w->density[1] == 0 ? 1 : CHANNELS;
+}
+
 /* ---- spectra of the scene ---------------------------------------------------------------------------------------- */
 
 /* The value of a table with one number per nm, linear between them. */
 static double table_at(const float *table, int stride, double nm) {
-  double x = nm - VL_SPECTRUM_FIRST_NM;
-  if (x < 0 || x > VL_SPECTRUM_VALUES - 1) return 0;
+  double x = clamp(nm - VL_SPECTRUM_FIRST_NM, 0, VL_SPECTRUM_VALUES - 1);
   int i = x < VL_SPECTRUM_VALUES - 1 ? (int)x : VL_SPECTRUM_VALUES - 2;
   double a = (double)table[stride * i];
   double b = (double)table[stride * (i + 1)];
@@ -56,72 +52,38 @@ bool read_color(const vlSpectrum *s, vlParameterRole role, color *result, vlErro
   return true;
 }
 
-void white_light(vlColorSpace space, color *result) {
-  static const float white[3] = {1, 1, 1};
-  vlSpectrum s = vl_spectrum_rgb(white[0], white[1], white[2]);
-  s.space = space;
-  double luminance = vl_spectrum_luminance(&s, NULL);
-  vl_white_tabulate(space, result->nm);
-  for (int i = 0; i < VL_SPECTRUM_VALUES; i++) result->nm[i] = (float)((double)result->nm[i] / luminance);
-  for (int i = 0; i < 3; i++) result->rgb[i] = white[i];
-}
-
 spectrum color_at(const color *c, const wavelengths *w) {
-  spectrum result = {{0}};
+  spectrum result;
+  for (int i = 0; i < CHANNELS; i++)
+    result.c[i] = w->rgb ? (double)c->rgb[i < 3 ? i : 2] : table_at(c->nm, 1, w->nm[i]);
+  return result;
+}
+
+/* Colours above 1 are twice the largest component times a reflectance (pbrt book 4.6.6). */
+spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w) {
+  double factor = role == VL_PARAMETER_ALBEDO ? 1 : 2 * fmax(rgb[0], fmax(rgb[1], rgb[2]));
+  if (!(factor > 0)) return gray(0);
+  spectrum result;
+  float reflectance[CHANNELS];
   for (int i = 0; i < CHANNELS; i++) {
-    if (!w->rgb) result.c[i] = table_at(c->nm, 1, w->nm[i]);
-    if (w->rgb) result.c[i] = (double)c->rgb[i < 3 ? i : 2];
+    result.c[i] = clamp(rgb[i < 3 ? i : 2] / factor, 0, 1);
+    reflectance[i] = (float)result.c[i];
   }
-  return result;
+  if (!w->rgb) vl_reflectance_at(space, reflectance, CHANNELS, w->nm, result.c);
+  return scaled(factor, result);
 }
-
-/* ---- texels ------------------------------------------------------------------------------------------------------ */
-
-spectrum reflectance_of(vlColorSpace space, const double rgb[3], const wavelengths *w) {
-  spectrum result = {{0}};
-  if (w->rgb) {
-    for (int i = 0; i < CHANNELS; i++) result.c[i] = clamp(rgb[i < 3 ? i : 2], 0, 1);
-    return result;
-  }
-  float clamped[3];
-  for (int i = 0; i < 3; i++) clamped[i] = (float)clamp(rgb[i], 0, 1);
-  vl_reflectance_at(space, clamped, CHANNELS, w->nm, result.c);
-  return result;
-}
-
-/* Colours above 1: twice the largest component times a reflectance (pbrt book 4.6.6). */
-spectrum unbounded_of(vlColorSpace space, const double rgb[3], const wavelengths *w) {
-  double most = fmax(rgb[0], fmax(rgb[1], rgb[2]));
-  if (!(most > 0)) return gray(0);
-  double half[3];
-  for (int i = 0; i < 3; i++) half[i] = rgb[i] / (2 * most);
-  return scaled(2 * most, reflectance_of(space, half, w));
-}
-
-/* ---- radiance to RGB --------------------------------------------------------------------------------------------- */
 
 /* X, Y and Z are integrals of the radiance times the observer's curves. Each wavelength estimates them: its value times
  * the curve, divided by its density; the four estimates are averaged. */
-void radiance_to_rgb(spectrum radiance, const wavelengths *w, vlColorSpace space, double rgb[3]) {
-  static float observer[3 * VL_SPECTRUM_VALUES];
-  static double to_rgb[9];
-  static vlColorSpace space_of_matrix;
-  static bool ready = false;
-  if (!ready || space != space_of_matrix) {
-    vl_observer_tabulate(observer);
-    vl_color_space_matrix(space, to_rgb);
-    space_of_matrix = space;
-    ready = true;
-  }
-  if (w->rgb) {
-    for (int i = 0; i < 3; i++) rgb[i] = radiance.c[i];
-    return;
-  }
+void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]) {
   double xyz[3] = {0, 0, 0};
   for (int i = 0; i < CHANNELS; i++) {
     if (w->density[i] == 0) continue;
     for (int k = 0; k < 3; k++)
-      xyz[k] += radiance.c[i] * table_at(observer + k, 3, w->nm[i]) / (w->density[i] * CHANNELS);
+      xyz[k] += radiance.c[i] * table_at(o->xyz + k, 3, w->nm[i]) / (w->density[i] * CHANNELS);
   }
-  for (int k = 0; k < 3; k++) rgb[k] = to_rgb[3 * k] * xyz[0] + to_rgb[3 * k + 1] * xyz[1] + to_rgb[3 * k + 2] * xyz[2];
+  for (int k = 0; k < 3; k++) {
+    const double *row = o->rgb_from_xyz + 3 * k;
+    rgb[k] = w->rgb ? radiance.c[k] : row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2];
+  }
 }

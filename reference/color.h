@@ -40,38 +40,36 @@ static inline spectrum times(spectrum a, spectrum b) {
   return a;
 }
 static inline spectrum scaled(double s, spectrum a) {
-  for (int i = 0; i < CHANNELS; i++) a.c[i] *= s;
-  return a;
-}
-static inline bool is_black(spectrum a) {
-  return a.c[0] == 0 && a.c[1] == 0 && a.c[2] == 0 && a.c[3] == 0;
+  return times(gray(s), a);
 }
 static inline double largest(spectrum a) {
   return fmax(fmax(a.c[0], a.c[1]), fmax(a.c[2], a.c[3]));
 }
-static inline double mean_of(spectrum a) {
-  return 0.25 * (a.c[0] + a.c[1] + a.c[2] + a.c[3]);
-}
 static inline bool is_finite(spectrum a) {
-  return isfinite(a.c[0]) && isfinite(a.c[1]) && isfinite(a.c[2]) && isfinite(a.c[3]);
+  return isfinite(a.c[0] + a.c[1] + a.c[2] + a.c[3]);
 }
 
 /* The wavelengths of a new path. */
 wavelengths sample_wavelengths(bool rgb, sampler *s);
 /* Glass bends each wavelength another way: from here on the path belongs to its first wavelength alone. */
 void keep_first_wavelength(wavelengths *w);
+/* The numbers of a path that count: three in RGB, one where only the first wavelength is left. */
+uint32_t channels_of(const wavelengths *w);
 
 /* Reads a spectrum of the scene. A light's is divided by its luminance, so that its scale alone sets its brightness.
  * The result is false, with an error, for a spectrum that is none. */
 bool read_color(const vlSpectrum *s, vlParameterRole role, color *result, vlError *error);
-/* The white of sRGB with luminance 1: what the texels of a light's image multiply. */
-void white_light(vlColorSpace space, color *result);
 spectrum color_at(const color *c, const wavelengths *w);
-/* The spectrum of a texel, linear RGB. */
-spectrum reflectance_of(vlColorSpace space, const double rgb[3], const wavelengths *w);
-spectrum unbounded_of(vlColorSpace space, const double rgb[3], const wavelengths *w);
+/* The spectrum of a texel, linear RGB: a reflectance (VL_PARAMETER_ALBEDO), or any value from 0. */
+spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w);
+
+/* The eye: the observer's curves, and the matrix from X, Y, Z to the film's colours. */
+typedef struct observer {
+  float xyz[3 * VL_SPECTRUM_VALUES];
+  double rgb_from_xyz[9];
+} observer;
 
 /* What a path adds to its pixel: its radiance as linear RGB of the film's colour space. */
-void radiance_to_rgb(spectrum radiance, const wavelengths *w, vlColorSpace space, double rgb[3]);
+void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]);
 
 #endif

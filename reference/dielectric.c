@@ -4,11 +4,8 @@
 /* Fresnel's equations for unpolarised light. The cosine is negative on the inside; eta is the index inside over the
  * index outside. */
 double reflected_by_glass(double cosine, double eta) {
-  if (cosine < 0) {
-    cosine = -cosine;
-    eta = 1 / eta;
-  }
-  cosine = clamp(cosine, 0, 1);
+  if (cosine < 0) eta = 1 / eta;
+  cosine = fmin(fabs(cosine), 1);
   double sine2 = (1 - square(cosine)) / square(eta);
   if (sine2 >= 1) return 1; /* total reflection */
   double inner = sqrt(1 - sine2);
@@ -19,13 +16,9 @@ double reflected_by_glass(double cosine, double eta) {
 
 /* Snell's law at a mirror's normal m. *eta: the index on the other side over the index on this one. */
 bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
+  *eta = dot(wo, m) < 0 ? 1 / ior : ior;
+  m = face_forward(m, wo);
   double cosine = dot(wo, m);
-  *eta = ior;
-  if (cosine < 0) {
-    *eta = 1 / ior;
-    cosine = -cosine;
-    m = negate(m);
-  }
   double sine2 = (1 - square(cosine)) / square(*eta);
   if (sine2 >= 1) return false;
   *wi = add(scale(-1 / *eta, wo), scale(cosine / *eta - sqrt(1 - sine2), m));
@@ -35,13 +28,10 @@ bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
 /* Walter et al. 2007. Light that enters glass is refracted into a smaller cone: radiance seen through the surface is
  * divided by eta^2. */
 spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density) {
-  *density = 0;
   if (is_smooth(b) || b->ior == 1 || wo.z == 0 || wi.z == 0) return gray(0);
   bool reflects = wo.z * wi.z > 0;
   double eta = reflects ? 1 : wo.z > 0 ? b->ior : 1 / b->ior;
-  vector m = add(scale(eta, wi), wo);
-  if (length(m) == 0) return gray(0);
-  m = face_forward(normalize(m), make_vector(0, 0, 1));
+  vector m = face_forward(normalize(add(scale(eta, wi), wo)), make_vector(0, 0, 1));
   /* a mirror must be seen from the same side as the surface */
   if (dot(m, wi) * wi.z < 0 || dot(m, wo) * wo.z < 0) return gray(0);
   double reflected = reflected_by_glass(dot(wo, m), b->ior);
@@ -50,43 +40,21 @@ spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density) 
     *density = visible_density(b, wo, m) / (4 * fabs(dot(wo, m))) * reflected;
     return gray(mirrors * reflected / (4 * fabs(wo.z)));
   }
-  double denominator = square(dot(wi, m) + dot(wo, m) / eta);
-  double solid_angle = fabs(dot(wi, m)) / denominator; /* of m, per solid angle of wi */
+  double solid_angle = fabs(dot(wi, m)) / square(dot(wi, m) + dot(wo, m) / eta); /* of m, per solid angle of wi */
   *density = visible_density(b, wo, m) * solid_angle * (1 - reflected);
   double value = mirrors * (1 - reflected) * solid_angle * fabs(dot(wo, m) / wo.z);
   return gray(value / square(eta));
 }
 
-static bool sample_smooth(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  double reflected = reflected_by_glass(wo.z, b->ior);
-  result->specular = true;
-  result->density = 1;
-  result->transmitted = next_number(s) >= reflected;
-  if (!result->transmitted) {
-    result->wi = make_vector(-wo.x, -wo.y, wo.z);
-    result->weight = gray(1);
-    return true;
-  }
-  double eta;
-  if (!refract(wo, make_vector(0, 0, 1), b->ior, &eta, &result->wi)) return false;
-  result->weight = gray(1 / square(eta));
-  return true;
-}
-
 bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  if (is_smooth(b) || b->ior == 1) return sample_smooth(b, wo, s, result);
-  vector m = sample_visible_normal(b, wo, s);
-  double reflected = reflected_by_glass(dot(wo, m), b->ior);
-  result->specular = false;
-  result->transmitted = next_number(s) >= reflected;
-  double eta;
-  if (!result->transmitted)
+  result->specular = is_smooth(b) || b->ior == 1;
+  vector m = result->specular ? make_vector(0, 0, 1) : sample_visible_normal(b, wo, s);
+  bool transmits = next_number(s) >= reflected_by_glass(dot(wo, m), b->ior);
+  double eta = 1;
+  if (!transmits)
     result->wi = reflect(wo, m);
   else if (!refract(wo, m, b->ior, &eta, &result->wi))
     return false;
-  if ((wo.z * result->wi.z > 0) == result->transmitted) return false;
-  spectrum value = dielectric_value(b, wo, result->wi, &result->density);
-  if (!(result->density > 0)) return false;
-  result->weight = scaled(1 / result->density, value);
-  return true;
+  result->weight = gray(1 / square(eta));
+  return (wo.z * result->wi.z < 0) == transmits;
 }

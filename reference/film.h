@@ -13,16 +13,17 @@ typedef struct view_plane {
   uint32_t width, height;
   uint32_t samples; /* per pixel */
   vlPixelFilter filter;
-  double filter_integral;
-  vlColorSpace space;
+  observer eye;
   double exposure;
   pixel *pixels;
 } view_plane;
 
 bool make_view_plane(const vlSceneDefs *defs, uint32_t samples, view_plane *v, vlError *error);
-/* A point around the middle of a pixel, in pixels, and its weight. */
-square_point sample_filter(const view_plane *v, sampler *s, double *weight);
-void add_sample(view_plane *v, uint32_t x, uint32_t y, const double rgb[3], bool covered);
+/* A point around the middle of a pixel, in pixels. */
+square_point sample_filter(const view_plane *v, sampler *s);
+/* The lecture's display_pixel, for one sample of the pixel. */
+void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance, const wavelengths *lambda,
+                bool covered);
 /* The image: R G B A, and error.R error.G error.B, the standard errors of the means. */
 bool make_image(const view_plane *v, vlContext *context, vlImage **image);
 

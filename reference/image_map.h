@@ -5,17 +5,19 @@
 #include <velo/velo.h>
 
 typedef struct image_map {
+  const vlImage *image;
+  vlImage *owned; /* the same, if it is the map's own */
   uint32_t width, height;
-  uint32_t channels; /* 1: grey, 2: grey and coverage, 3: colour, 4: colour and coverage */
-  float *values;     /* row by row from the top */
-  bool space_given;  /* the file names its colour space */
-  vlColorSpace space;
+  uint32_t channels;   /* 1: grey, 2: grey and coverage, 3: colour, 4: colour and coverage */
+  uint32_t channel[4]; /* which of the image's channels they are */
 } image_map;
 
-/* Copies the linear values of an image. `encoding`: what the file's integers mean; null: what the file says. False:
- * without memory, or the encoding needs more than this renderer has. */
-bool make_image_map(const vlImage *image, const vlEncoding *encoding, double gamma, image_map *map);
+/* The map of an image; `owned`, which may be null, is destroyed with it. */
+image_map make_image_map(const vlImage *image, vlImage *owned);
+/* Reads the image of a texture. False, with an error. */
+bool read_image_map(vlContext *context, const vlTextureDef *def, image_map *map, vlError *error);
 void free_image_map(image_map *map);
+bool has_coverage(const image_map *map);
 
 /* The pixel at (x, y), which may lie outside: `wrap` says what is there. All four values are set: grey fills the
  * colours, a missing coverage is 1. */

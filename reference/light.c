@@ -4,156 +4,129 @@
 
 #include <stdlib.h>
 
+#include "more/more.h"
 #include "refuse.h"
 #include "texture.h"
-
-static bool is_set(double value) {
-  return value == value;
-}
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static bool read_light(const world *w, const vlLightDef *def, light *l, vlError *error) {
   matrix m = load_matrix(def->world_from_light);
-  vector from = transform_point(&m, from_floats(def->from));
   vector to = transform_point(&m, from_floats(def->to));
-  l->position = from;
-  l->direction = normalize(subtract(to, from));
-  l->factor = (double)def->scale;
-  l->space = def->space;
+  *l = (light){.factor = (double)def->scale, .space = def->space};
+  l->position = transform_point(&m, from_floats(def->from));
+  l->direction = normalize(subtract(to, l->position));
+  l->cos_outer = cos((double)def->cone_angle);
+  l->cos_inner = cos((double)def->cone_angle - (double)def->cone_delta);
+  l->cone_squared = def->cone_squared;
+  double solid_angle = 4 * PI; /* that an even light of the same power fills */
   if (!read_color(&def->color, VL_PARAMETER_ILLUMINANT, &l->emitted, error)) return false;
   switch (def->kind) {
-    case VL_LIGHT_POINT:
-      l->kind = LIGHT_POINT;
-      if (is_set(def->power)) l->factor *= def->power / (4 * PI);
-      return true;
-    case VL_LIGHT_SPOT: {
+    case VL_LIGHT_POINT: l->kind = LIGHT_POINT; break;
+    case VL_LIGHT_SPOT:
       l->kind = LIGHT_SPOT;
-      l->cos_outer = cos((double)def->cone_angle);
-      l->cos_inner = cos((double)def->cone_angle - (double)def->cone_delta);
-      l->cone_squared = def->cone_squared;
-      double cone = 2 * PI * ((1 - l->cos_inner) + (l->cos_inner - l->cos_outer) / 2);
-      if (is_set(def->power)) l->factor *= def->power / cone;
-      return true;
-    }
+      solid_angle = 2 * PI * ((1 - l->cos_inner) + (l->cos_inner - l->cos_outer) / 2);
+      break;
     case VL_LIGHT_DISTANT:
       l->kind = LIGHT_DISTANT;
       l->direction = negate(l->direction);
-      if (is_set(def->illuminance)) l->factor *= def->illuminance;
+      if (!isnan(def->illuminance)) l->factor *= def->illuminance;
       return true;
     case VL_LIGHT_INFINITE: l->kind = LIGHT_SKY; return read_sky(w, def, l, error);
-    default: return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
+    default: l->kind = LIGHT_MORE; return read_more_light(w, def, l, error);
   }
+  if (!isnan(def->power)) l->factor *= def->power / solid_angle;
+  return true;
 }
 
 /* A primitive of an emissive shape. `power` is that of each primitive: radiance times area times pi, on each side. */
 static bool read_surface_light(const world *w, const primitive *p, light *l, vlError *error) {
   const vlShapeDef *shape = w->placements[p->placement].def;
   const vlEmissionDef *def = vl_scene_emission(w->scene, shape->emission);
-  l->kind = LIGHT_SURFACE;
-  l->what = p;
-  l->emission = def;
-  l->factor = (double)def->scale;
-  l->space = VL_SPACE_SRGB;
+  *l = (light){.kind = LIGHT_SURFACE, .what = p, .emission = def, .factor = (double)def->scale};
   l->invisible = !shape->alpha.texture.index && shape->alpha.value == 0;
-  if (def->image) return refuse(error, def->source, "an emission image", NULL);
+  if (def->image) return refuse(error, def->source, "an emission image");
+  vlSpectrum radiance = def->radiance;
   if (def->texture.index) {
     l->space = vl_scene_texture(w->scene, def->texture)->space;
-    white_light(l->space, &l->emitted);
-  } else if (!read_color(&def->radiance, VL_PARAMETER_ILLUMINANT, &l->emitted, error)) {
-    return false;
+    radiance = vl_spectrum_rgb(1, 1, 1);
+    radiance.space = l->space;
   }
-  if (!is_set(def->power) || !(def->power > 0)) return true;
+  if (!(def->power > 0)) return read_color(&radiance, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
   if (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index)
-    return refuse(error, def->source, "this emission by power", NULL);
-  shade_record center;
-  shape_surface(w, p, 0, 0, &center);
-  l->factor *= def->power * center.area_density / (PI * (def->two_sided ? 2 : 1));
-  return true;
-}
-
-static bool emits(const world *w, const primitive *p) {
-  const vlShapeDef *def = w->placements[p->placement].def;
-  return def->emission.index && !def->group.index && !def->positions_close;
+    return refuse(error, def->source, "this emission by power");
+  shade_record corner = {0};
+  shape_surface(w, p, 0, 0, &corner);
+  l->factor *= def->power * corner.area_density / (PI * (def->two_sided ? 2 : 1));
+  return read_color(&radiance, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
 }
 
 bool read_lights(world *w, vlError *error) {
-  uint32_t count = 0;
-  while (vl_scene_light(w->scene, (vlLightId){count + 1})) count++;
-  uint32_t most = count;
-  for (uint32_t i = 0; i < w->primitive_count; i++) most += emits(w, &w->primitives[i]);
-  w->lights = calloc(most + 1, sizeof *w->lights);
-  if (!w->lights) return refuse_memory(error);
-  for (uint32_t i = 0; i < count; i++) {
-    if (!read_light(w, vl_scene_light(w->scene, (vlLightId){i + 1}), &w->lights[w->light_count++], error)) return false;
+  const vlLightDef *def;
+  for (; (def = vl_scene_light(w->scene, (vlLightId){w->light_count + 1})); w->light_count++) {
+    w->lights = resize(w->lights, w->light_count + 1, sizeof *w->lights);
+    if (!read_light(w, def, &w->lights[w->light_count], error)) return false;
   }
   for (uint32_t i = 0; i < w->primitive_count; i++) {
-    primitive *p = &w->primitives[i];
-    p->light = -1;
-    if (!emits(w, p)) continue;
-    p->light = (int32_t)w->light_count;
-    if (!read_surface_light(w, p, &w->lights[w->light_count++], error)) return false;
+    const vlShapeDef *shape = w->placements[w->primitives[i].placement].def;
+    if (!shape->emission.index || shape->group.index || shape->positions_close) continue;
+    w->lights = resize(w->lights, w->light_count + 1, sizeof *w->lights);
+    w->primitives[i].light = (int32_t)w->light_count;
+    if (!read_surface_light(w, &w->primitives[i], &w->lights[w->light_count++], error)) return false;
   }
   return true;
 }
 
 void free_lights(world *w) {
   for (uint32_t i = 0; i < w->light_count; i++) {
-    free_image_map(&w->lights[i].sky.image);
-    free(w->lights[i].sky.rows);
-    free(w->lights[i].sky.columns);
+    free_image_map(&w->lights[i].sky.map);
+    free(w->lights[i].sky.sums);
   }
   free(w->lights);
 }
 
 /* ---- surfaces ---------------------------------------------------------------------------------------------------- */
 
-static spectrum radiance_of(const world *w, const light *l, const shade_record *at, vector towards,
-                            const wavelengths *lambda) {
+spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda) {
+  if (at->what->light < 0) return gray(0);
+  const light *l = &w->lights[at->what->light];
   if (!l->emission->two_sided && dot(towards, at->normal) <= 0) return gray(0);
   spectrum radiance = scaled(l->factor, color_at(&l->emitted, lambda));
   if (!l->emission->texture.index) return radiance;
-  double rgb[3];
-  texel_at(w, l->emission->texture, at, rgb);
-  return times(radiance, unbounded_of(l->space, rgb, lambda));
-}
-
-spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda) {
-  if (at->what->light < 0) return gray(0);
-  return radiance_of(w, &w->lights[at->what->light], at, towards, lambda);
+  vlSpectrumInput texture = {.texture = l->emission->texture};
+  return times(radiance, spectrum_at(w, texture, NULL, VL_PARAMETER_UNBOUNDED, at, lambda));
 }
 
 /* An area looks smaller by its cosine and by the square of the distance: density per solid angle = density per area
  * times distance^2 / cosine. */
-static double solid_angle_density(const shade_record *at, vector point) {
+double density_of_surface(const world *w, const shade_record *at, vector point) {
   vector to_light = subtract(at->point, point);
   double distance2 = dot(to_light, to_light);
   double cosine = fabs(dot(at->normal, to_light)) / sqrt(distance2);
-  return cosine > 0 ? at->area_density * distance2 / cosine : 0;
-}
-
-double density_of_surface(const world *w, const shade_record *at, vector point) {
-  return solid_angle_density(at, point) / w->light_count;
+  return cosine > 0 ? at->area_density * distance2 / cosine / w->light_count : 0;
 }
 
 static bool sample_surface(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                            light_sample *result) {
-  shade_record at;
+  shade_record at = {0};
   sample_shape(w, l->what, s, &at);
-  vector to_light = subtract(at.point, point);
-  result->distance = length(to_light);
-  if (result->distance == 0) return false;
-  result->direction = scale(1 / result->distance, to_light);
-  result->density = solid_angle_density(&at, point);
-  if (!(result->density > 0)) return false;
-  result->radiance = radiance_of(w, l, &at, negate(result->direction), lambda);
-  double alpha = number_at(w, at.where->def->alpha, &at);
-  if (!l->invisible && alpha < 1) result->radiance = scaled(alpha, result->radiance);
+  if (!aim_at(at.point, point, result)) return false;
+  double alpha = l->invisible ? 1 : number_at(w, at.where->def->alpha, &at);
+  spectrum radiance = emitted_by_surface(w, &at, negate(result->direction), lambda);
+  result->radiance = scaled(fmin(alpha, 1), radiance);
+  result->density = density_of_surface(w, &at, point);
   result->single = l->invisible;
   return true;
 }
 
 /* ---- one light for a point --------------------------------------------------------------------------------------- */
+
+bool aim_at(vector place, vector point, light_sample *result) {
+  vector to_light = subtract(place, point);
+  result->distance = length(to_light);
+  result->direction = normalize(to_light);
+  return result->distance > 0;
+}
 
 /* pbrt's smooth step between the cone's two cosines; glTF's is a square. */
 static double spot_share(const light *l, double cosine) {
@@ -162,49 +135,31 @@ static double spot_share(const light *l, double cosine) {
   return l->cone_squared ? t * t : t * t * (3 - 2 * t);
 }
 
-static bool sample_this_light(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
-                              light_sample *result) {
-  result->single = true;
-  result->density = 1;
-  result->radiance = scaled(l->factor, color_at(&l->emitted, lambda));
-  switch (l->kind) {
-    case LIGHT_POINT:
-    case LIGHT_SPOT: {
-      vector to_light = subtract(l->position, point);
-      result->distance = length(to_light);
-      if (result->distance == 0) return false;
-      result->direction = scale(1 / result->distance, to_light);
-      double share = l->kind == LIGHT_SPOT ? spot_share(l, -dot(result->direction, l->direction)) : 1;
-      result->radiance = scaled(share / square(result->distance), result->radiance);
-      return true;
-    }
-    case LIGHT_DISTANT:
-      result->direction = l->direction;
-      result->distance = INFINITY;
-      return true;
-    case LIGHT_SKY:
-      result->direction = sample_sky(l, s, &result->density);
-      result->distance = INFINITY;
-      result->radiance = sky_radiance(l, result->direction, lambda);
-      result->single = false;
-      return result->density > 0;
-    case LIGHT_SURFACE: return sample_surface(w, l, point, s, lambda, result);
-  }
-  return false;
-}
-
-/* All lights are drawn with the same probability: simple, and wasteful where some are far. */
+/* All lights are drawn with the same probability: simple, and wasteful where some are far. The intensity of a point
+ * becomes radiance by the square of the distance. */
 bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result) {
   if (w->light_count == 0) return false;
   const light *l = &w->lights[choose(s, w->light_count)];
-  if (!sample_this_light(w, l, point, s, lambda, result)) return false;
-  result->density /= w->light_count;
+  *result = (light_sample){.distance = INFINITY, .single = true, .density = 1.0 / w->light_count};
+  result->radiance = scaled(l->factor, color_at(&l->emitted, lambda));
+  switch (l->kind) {
+    case LIGHT_DISTANT: result->direction = l->direction; return true;
+    case LIGHT_SKY:
+      result->direction = sample_sky(l, s);
+      result->single = false;
+      return emitted_by_sky(w, l, result->direction, lambda, &result->radiance, &result->density);
+    case LIGHT_SURFACE: return sample_surface(w, l, point, s, lambda, result) && result->density > 0;
+    case LIGHT_MORE: return sample_more_light(w, l, point, s, lambda, result);
+    default: break;
+  }
+  if (!aim_at(l->position, point, result)) return false;
+  double share = l->kind == LIGHT_SPOT ? spot_share(l, -dot(result->direction, l->direction)) : 1;
+  result->radiance = scaled(share / square(result->distance), result->radiance);
   return true;
 }
 
-bool emitted_by_sky(const world *w, uint32_t index, vector direction, const wavelengths *lambda, spectrum *radiance,
+bool emitted_by_sky(const world *w, const light *l, vector direction, const wavelengths *lambda, spectrum *radiance,
                     double *density) {
-  const light *l = &w->lights[index];
   if (l->kind != LIGHT_SKY) return false;
   *radiance = sky_radiance(l, direction, lambda);
   *density = sky_density(l, direction) / w->light_count;

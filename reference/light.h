@@ -2,17 +2,16 @@
 #ifndef REFERENCE_LIGHT_H
 #define REFERENCE_LIGHT_H
 
-#include "medium.h"
+#include "more/kinds.h"
 #include "world.h"
 
-typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_SKY, LIGHT_SURFACE } light_kind;
+typedef enum light_kind { LIGHT_POINT, LIGHT_SPOT, LIGHT_DISTANT, LIGHT_SKY, LIGHT_SURFACE, LIGHT_MORE } light_kind;
 
-/* The sky's image and the tables from which directions are drawn in proportion to it. */
+/* The sky's image and the table from which directions are drawn in proportion to it. */
 typedef struct sky {
-  image_map image;
+  image_map map;
   matrix world_from_light, light_from_world;
-  double *rows;    /* shares of the rows above, size + 1 numbers */
-  double *columns; /* of each row: shares of the pixels to the left, size + 1 numbers */
+  double *sums; /* of all pixels before each one, row by row, over the sum of all: width^2 + 1 numbers */
 } sky;
 
 struct light {
@@ -25,10 +24,10 @@ struct light {
   double cos_inner, cos_outer;
   bool cone_squared;
   const vlEmissionDef *emission; /* of a surface */
-  image_map emission_image;
   const primitive *what;
   bool invisible; /* a surface with alpha 0 everywhere: rays pass, light samples do not notice */
   sky sky;
+  more_light more;
 };
 
 /* Light that arrives at a point from a sample of a light. */
@@ -44,18 +43,22 @@ bool read_lights(world *w, vlError *error);
 void free_lights(world *w);
 /* One sample of one light, both drawn; the density includes the choice. */
 bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result);
-/* What a surface emits towards a direction. */
+/* The sample's direction and distance, if it comes from this place. */
+bool aim_at(vector place, vector point, light_sample *result);
+/* What a surface emits towards a direction, and the density with which sample_light finds it from a point. */
 spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda);
-/* The density with which sample_light finds the surface at `at` from a point. */
 double density_of_surface(const world *w, const shade_record *at, vector point);
 /* The same for a light of the sky, which a ray finds when it leaves the world. False: another kind of light. */
-bool emitted_by_sky(const world *w, uint32_t index, vector direction, const wavelengths *lambda, spectrum *radiance,
+bool emitted_by_sky(const world *w, const light *l, vector direction, const wavelengths *lambda, spectrum *radiance,
                     double *density);
 
 /* sky.c */
 bool read_sky(const world *w, const vlLightDef *def, light *l, vlError *error);
 spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda);
-vector sample_sky(const light *l, sampler *s, double *density);
+vector sample_sky(const light *l, sampler *s);
 double sky_density(const light *l, vector direction);
+/* The equal-area octahedral map: from a direction to a point of the unit square, and back. */
+square_point square_of(vector direction);
+vector direction_of(square_point p);
 
 #endif

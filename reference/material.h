@@ -10,6 +10,7 @@ struct material {
   vlMaterialDef def;
   color reflectance, eta, k;
   bool disperses; /* its index of refraction differs between wavelengths */
+  more_material more;
 };
 
 bool read_materials(world *w, vlError *error);
@@ -19,5 +20,10 @@ const material *material_at(const world *w, const shade_record *at, sampler *s);
 bool is_interface(const material *m);
 /* The BSDF at the point. It may keep only the first wavelength: glass whose index depends on it. */
 bsdf make_bsdf(const world *w, const material *m, const shade_record *at, wavelengths *lambda);
+
+/* Inputs at the point. An RGB render has one index of refraction: that of catalogues, at the yellow line of sodium. */
+spectrum reflectance_at(const world *w, const material *m, const shade_record *at, const wavelengths *lambda);
+double alpha_at(const world *w, const material *m, vlFloatInput roughness, const shade_record *at);
+double ior_of(const color *eta, const wavelengths *lambda);
 
 #endif

@@ -2,13 +2,16 @@
 #ifndef REFERENCE_MEDIUM_H
 #define REFERENCE_MEDIUM_H
 
+#include "more/kinds.h"
 #include "world.h"
 
 struct medium {
+  bool homogeneous;        /* else a medium of more/ */
   color absorbs, scatters; /* sigma_a and sigma_s, per unit of length */
   color emission;          /* emitted radiance per unit of length, over sigma_a */
   double scale, emission_scale;
   double g; /* mean cosine of the phase function */
+  more_medium more;
 };
 
 bool read_media(world *w, vlError *error);
@@ -18,12 +21,12 @@ const medium *medium_of(const world *w, vlMediumId id);
  * separate media. */
 const medium *medium_beyond(const world *w, const shade_record *at, vector direction, const medium *now);
 
-spectrum absorption(const medium *m, const wavelengths *lambda);
-spectrum scattering(const medium *m, const wavelengths *lambda);
-/* Beer's law: the share of light that is left after a distance. */
-spectrum transmittance(const medium *m, double distance, const wavelengths *lambda);
-/* What the medium itself adds along a distance. */
-spectrum medium_emission(const medium *m, double distance, const wavelengths *lambda);
+/* The share of light that is left after a distance along the ray. */
+spectrum transmittance(const medium *m, ray r, double distance, sampler *s, const wavelengths *lambda);
+/* Draws where a path along the ray scatters, before a distance; the throughput becomes what is left there, over the
+ * density of the draw. False: not before `distance`. Adds what the medium emits on the way. */
+bool scatters_before(const medium *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
+                     spectrum *throughput, spectrum *emitted);
 
 /* The phase function of Henyey and Greenstein: the density of the direction wi, for light that came from -wo. */
 double phase(const medium *m, vector wo, vector wi);

@@ -1,26 +1,29 @@
-/* refuse.c: errors. */
+/* refuse.c: errors, and memory. */
 #include "refuse.h"
 
 #include <stdio.h>
-#include <velo/schema.h>
+#include <stdlib.h>
 
-bool refuse(vlError *error, vlSource source, const char *what, const char *why) {
+bool refuse(vlError *error, vlSource source, const char *what) {
   error->code = VL_ERROR_UNSUPPORTED;
   snprintf(error->file, sizeof error->file, "%s", source.file ? source.file : "");
   error->line = source.line;
   error->column = source.column;
-  snprintf(error->message, sizeof error->message, "%s %s", what, why ? why : "is not part of the reference renderer");
+  snprintf(error->message, sizeof error->message, "%s is not part of the reference renderer", what);
   return false;
 }
 
 bool refuse_kind(vlError *error, vlSource source, const char *family, uint32_t kind) {
   const vlKindFamily *rows = vl_kind_family_find(family);
-  char what[200] = "this kind";
-  if (rows && kind < rows->kind_count && rows->rows[kind]->name)
-    snprintf(what, sizeof what, "%s \"%s\"", rows->thing, rows->rows[kind]->name);
-  return refuse(error, source, what, NULL);
+  const char *name = rows && kind < rows->kind_count ? rows->rows[kind]->name : NULL;
+  char what[200];
+  snprintf(what, sizeof what, "%s \"%s\"", rows ? rows->thing : family, name ? name : "of this kind");
+  return refuse(error, source, what);
 }
 
-bool refuse_memory(vlError *error) {
-  return refuse(error, (vlSource){0}, "memory", "is used up");
+void *resize(void *array, size_t count, size_t size) {
+  void *more = count < SIZE_MAX / size ? realloc(array, (count + 1) * size) : NULL;
+  if (more) return more;
+  fprintf(stderr, "velo-reference: no memory\n");
+  exit(1);
 }

@@ -1,27 +1,24 @@
 /* sky.c: light from infinitely far away: uniform, or an image of all directions (pbrt book 3.8.3, 12.5). */
-#include <stdlib.h>
-
 #include "light.h"
 #include "refuse.h"
 
 /* ---- the equal-area octahedral map (Clarberg 2008) --------------------------------------------------------------- */
 
-/* A direction becomes a point of the square -1 to 1: the upper hemisphere fills the diamond |x| + |y| <= 1 in its
- * middle, the lower one the four corners; equal solid angles fill equal areas. */
-static square_point square_of(vector d) {
+/* The upper hemisphere fills the diamond |u| + |v| <= 1 in the middle of the square -1 to 1, the lower one the four
+ * corners; equal solid angles fill equal areas. */
+square_point square_of(vector d) {
   double r = sqrt(fmax(0, 1 - fabs(d.z)));
-  double phi = d.x == 0 && d.y == 0 ? 0 : atan2(fabs(d.y), fabs(d.x)) * 2 / PI;
-  double y = phi * r;
-  double x = r - y;
+  double v = r * atan2(fabs(d.y), fabs(d.x)) * 2 / PI;
+  double u = r - v;
   if (d.z < 0) {
-    double swap = x;
-    x = 1 - y;
-    y = 1 - swap;
+    double swap = u;
+    u = 1 - v;
+    v = 1 - swap;
   }
-  return (square_point){(copysign(x, d.x) + 1) / 2, (copysign(y, d.y) + 1) / 2};
+  return (square_point){(copysign(u, d.x) + 1) / 2, (copysign(v, d.y) + 1) / 2};
 }
 
-static vector direction_of(square_point p) {
+vector direction_of(square_point p) {
   double u = 2 * p.x - 1, v = 2 * p.y - 1;
   double side = 1 - (fabs(u) + fabs(v)); /* positive in the diamond */
   double r = 1 - fabs(side);
@@ -33,135 +30,102 @@ static vector direction_of(square_point p) {
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-static double pixel_luminance(const image_map *image, uint32_t x, uint32_t y) {
-  double v[4];
-  pixel_of(image, (long)x, (long)y, VL_WRAP_CLAMP, VL_WRAP_CLAMP, v);
-  return fmax(0, 0.2126 * v[0] + 0.7152 * v[1] + 0.0722 * v[2]);
+static void sky_pixel(const sky *k, uint32_t index, double rgb[4]) {
+  pixel_of(&k->map, index % k->map.width, index / k->map.width, VL_WRAP_CLAMP, VL_WRAP_CLAMP, rgb);
+  for (int c = 0; c < 3; c++) rgb[c] = fmax(0, rgb[c]);
 }
 
-/* Tables of running sums: a number drawn from 0 to 1 lies between two of them, which is the pixel. A tenth of the
- * samples is spread evenly, so that no direction that shines is left out. */
-static bool make_tables(sky *k) {
-  uint32_t n = k->image.width;
-  k->rows = calloc((size_t)n + 1, sizeof *k->rows);
-  k->columns = calloc((size_t)n * (n + 1), sizeof *k->columns);
-  if (!k->rows || !k->columns) return false;
+static double pixel_luminance(const sky *k, uint32_t index) {
+  double rgb[4];
+  sky_pixel(k, index, rgb);
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
+/* The table of sums: a number drawn from 0 to 1 lies between two of them, which is the pixel. A tenth of the samples is
+ * spread evenly, so that no direction that shines is left out. */
+static void make_table(sky *k) {
+  uint32_t count = k->map.width * k->map.width;
   double total = 0;
-  for (uint32_t y = 0; y < n; y++) {
-    for (uint32_t x = 0; x < n; x++) total += pixel_luminance(&k->image, x, y);
-  }
-  double even = total > 0 ? 0.1 * total / ((double)n * n) : 1;
-  for (uint32_t y = 0; y < n; y++) {
-    double *row = k->columns + (size_t)y * (n + 1);
-    for (uint32_t x = 0; x < n; x++) row[x + 1] = row[x] + pixel_luminance(&k->image, x, y) + even;
-    k->rows[y + 1] = k->rows[y] + row[n];
-    for (uint32_t x = 1; x <= n; x++) row[x] /= row[n] > 0 && x < n ? row[n] : 1;
-    row[n] = 1;
-  }
-  double sum = k->rows[n];
-  for (uint32_t y = 1; y <= n; y++) k->rows[y] /= sum;
-  return true;
+  for (uint32_t i = 0; i < count; i++) total += pixel_luminance(k, i);
+  double even = total > 0 ? 0.1 * total / count : 1;
+  k->sums = resize(NULL, (size_t)count + 1, sizeof *k->sums);
+  k->sums[0] = 0;
+  for (uint32_t i = 0; i < count; i++) k->sums[i + 1] = k->sums[i] + pixel_luminance(k, i) + even;
+  for (uint32_t i = 0; i < count; i++) k->sums[i] /= k->sums[count];
+  k->sums[count] = 1;
 }
 
 /* The illuminance of a surface that faces up, light space +z, by the image with factor 1. */
 static double illuminance_of(const sky *k) {
-  uint32_t n = k->image.width;
+  uint32_t n = k->map.width;
   double sum = 0;
-  for (uint32_t y = 0; y < n; y++) {
-    for (uint32_t x = 0; x < n; x++) {
-      vector d = direction_of((square_point){(x + 0.5) / n, (y + 0.5) / n});
-      if (d.z > 0) sum += pixel_luminance(&k->image, x, y) * d.z;
-    }
+  for (uint32_t i = 0; i < n * n; i++) {
+    vector d = direction_of((square_point){(i % n + 0.5) / n, (i / n + 0.5) / n});
+    sum += pixel_luminance(k, i) * fmax(0, d.z);
   }
   return sum * 4 * PI / ((double)n * n);
 }
 
 bool read_sky(const world *w, const vlLightDef *def, light *l, vlError *error) {
   sky *k = &l->sky;
-  bool lux = def->illuminance == def->illuminance;
-  if (def->has_portal) return refuse(error, def->source, "a portal", NULL);
+  bool lux = !isnan(def->illuminance);
+  if (def->has_portal) return refuse(error, def->source, "a portal");
   if (!def->path && !def->image) {
     if (lux) l->factor *= def->illuminance / PI;
     return true;
   }
   vlImage *image = NULL;
   if (def->path && vl_image_read(w->context, def->path, &image, error) != VL_OK) return false;
-  bool ok = make_image_map(image ? image : def->image, NULL, 1, &k->image);
-  vl_image_destroy(image);
-  if (!ok || k->image.width != k->image.height) return refuse(error, def->source, "a sky that is not square", NULL);
+  k->map = make_image_map(image ? image : def->image, image);
+  if (k->map.width != k->map.height || k->map.width > 8192) return refuse(error, def->source, "a sky of this size");
   k->world_from_light = load_matrix(def->world_from_light);
   k->light_from_world = invert(&k->world_from_light);
-  white_light(l->space, &l->emitted);
-  if (!make_tables(k)) return refuse_memory(error);
+  make_table(k);
   if (lux) l->factor *= def->illuminance / illuminance_of(k);
-  return true;
+  vlSpectrum white = vl_spectrum_rgb(1, 1, 1);
+  white.space = l->space;
+  return read_color(&white, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
 }
 
 /* ---- radiance, samples, density ---------------------------------------------------------------------------------- */
 
-static bool is_uniform(const light *l) {
-  return !l->sky.image.values;
-}
-
 /* The pixel of a direction. */
-static void pixel_at(const sky *k, vector direction, uint32_t *x, uint32_t *y) {
+static uint32_t pixel_at(const sky *k, vector direction) {
   square_point p = square_of(normalize(transform_vector(&k->light_from_world, direction)));
-  uint32_t n = k->image.width;
-  *x = (uint32_t)clamp(floor(p.x * n), 0, n - 1);
-  *y = (uint32_t)clamp(floor(p.y * n), 0, n - 1);
+  uint32_t n = k->map.width;
+  return (uint32_t)clamp(floor(p.y * n), 0, n - 1) * n + (uint32_t)clamp(floor(p.x * n), 0, n - 1);
 }
 
 spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda) {
   spectrum radiance = scaled(l->factor, color_at(&l->emitted, lambda));
-  if (is_uniform(l)) return radiance;
-  uint32_t x, y;
-  double v[4];
-  pixel_at(&l->sky, direction, &x, &y);
-  pixel_of(&l->sky.image, (long)x, (long)y, VL_WRAP_CLAMP, VL_WRAP_CLAMP, v);
-  for (int c = 0; c < 3; c++) v[c] = fmax(0, v[c]);
-  return times(radiance, unbounded_of(l->space, v, lambda));
+  if (!l->sky.sums) return radiance;
+  double rgb[4];
+  sky_pixel(&l->sky, pixel_at(&l->sky, direction), rgb);
+  return times(radiance, texel_spectrum(l->space, rgb, VL_PARAMETER_UNBOUNDED, lambda));
 }
 
 /* The pixel's share of all samples over its solid angle, 4 pi / n^2. */
-static double density_of_pixel(const sky *k, uint32_t x, uint32_t y) {
-  uint32_t n = k->image.width;
-  const double *row = k->columns + (size_t)y * (n + 1);
-  double share = (k->rows[y + 1] - k->rows[y]) * (row[x + 1] - row[x]);
-  return share * n * n / (4 * PI);
-}
-
 double sky_density(const light *l, vector direction) {
-  uint32_t x, y;
-  if (is_uniform(l)) return 1 / (4 * PI);
-  pixel_at(&l->sky, direction, &x, &y);
-  return density_of_pixel(&l->sky, x, y);
+  const sky *k = &l->sky;
+  if (!k->sums) return 1 / (4 * PI);
+  uint32_t i = pixel_at(k, direction);
+  return (k->sums[i + 1] - k->sums[i]) * square(k->map.width) / (4 * PI);
 }
 
-/* The interval of a table that u falls into, by halving. *rest: where in it, 0 to 1. */
-static uint32_t find_interval(const double *table, uint32_t count, double u, double *rest) {
-  uint32_t low = 0, high = count;
+/* Halves the table until one pixel is left. */
+vector sample_sky(const light *l, sampler *s) {
+  const sky *k = &l->sky;
+  if (!k->sums) return sample_sphere(s);
+  uint32_t n = k->map.width, low = 0, high = n * n;
+  double u = next_number(s);
   while (high - low > 1) {
     uint32_t middle = (low + high) / 2;
-    if (table[middle] <= u)
+    if (k->sums[middle] <= u)
       low = middle;
     else
       high = middle;
   }
-  *rest = (u - table[low]) / (table[low + 1] - table[low]);
-  return low;
-}
-
-vector sample_sky(const light *l, sampler *s, double *density) {
-  if (is_uniform(l)) {
-    *density = 1 / (4 * PI);
-    return sample_sphere(s);
-  }
-  const sky *k = &l->sky;
-  uint32_t n = k->image.width;
-  square_point u = sample_unit_square(s), at;
-  uint32_t y = find_interval(k->rows, n, u.y, &at.y);
-  uint32_t x = find_interval(k->columns + (size_t)y * (n + 1), n, u.x, &at.x);
-  *density = density_of_pixel(k, x, y);
-  vector d = direction_of((square_point){(x + at.x) / n, (y + at.y) / n});
+  square_point in_pixel = sample_unit_square(s);
+  vector d = direction_of((square_point){(low % n + in_pixel.x) / n, (low / n + in_pixel.y) / n});
   return normalize(transform_vector(&k->world_from_light, d));
 }

@@ -13,7 +13,7 @@ double number_at(const world *w, vlFloatInput input, const shade_record *at);
 /* `own`: the spectrum of the input, read. */
 spectrum spectrum_at(const world *w, vlSpectrumInput input, const color *own, vlParameterRole role,
                      const shade_record *at, const wavelengths *lambda);
-/* The linear RGB of an image texture, for surfaces that emit it. */
-void texel_at(const world *w, vlTextureId texture, const shade_record *at, double rgb[3]);
+/* Where in the texture the point is. */
+square_point texture_coordinates(const vlTextureDef *def, const shade_record *at);
 
 #endif

@@ -19,114 +19,93 @@ typedef struct path {
   bool chosen_alone; /* no light could have been asked for this direction */
 } path;
 
-static ray ray_from(const world *w, vector origin, vector direction) {
-  return (ray){origin, direction, surface_distance(w, origin), INFINITY};
+static ray ray_from(const world *w, vector origin, vector direction, double time) {
+  return (ray){origin, direction, surface_distance(w, origin), INFINITY, time};
+}
+
+/* Where a ray leaves a surface. A curve turns to face each ray: so that the new one does not meet it, it starts as far
+ * off as the curve is thick. */
+static vector start_from(const shade_record *at, vector direction) {
+  double side = dot(direction, at->normal) < 0 ? -1 : 1;
+  return add(at->point, scale(side * 5 * at->thickness, at->normal));
 }
 
 /* Both ways of finding a light, asking it and meeting it, have a density. Each result is multiplied by its share of the
  * squares, so that the sum counts once (power heuristic, Veach 1997). */
 static double share_of(double own, double other) {
-  if (!isfinite(own)) return 1;
-  return square(own) / (square(own) + square(other));
+  return isfinite(own) ? square(own) / (square(own) + square(other)) : 1;
 }
 
-/* ---- shadow rays ------------------------------------------------------------------------------------------------- */
+/* ---- the lecture's direct light ---------------------------------------------------------------------------------- */
 
-/* The share of light that gets from a distance to a point: 0 behind a surface, less than 1 through media. */
-static spectrum visibility(const world *w, vector from, const light_sample *asked, const medium *inside, sampler *s,
+/* The shadow ray: the share of light that gets from a light to a point, 0 behind a surface, less than 1 through media.
+ */
+static spectrum visibility(const world *w, ray r, double distance, const medium *inside, sampler *s,
                            const wavelengths *lambda) {
   spectrum share = gray(1);
-  ray r = ray_from(w, from, asked->direction);
-  double left = asked->distance;
   for (;;) {
     shade_record at;
-    r.t_max = left * (1 - 1e-10) - surface_distance(w, r.origin);
+    r.t_max = distance * (1 - 1e-10) - surface_distance(w, r.origin);
     bool found = find_hit(w, r, s, &at);
     if (found && !is_interface(material_at(w, &at, s))) return gray(0);
-    double distance = found ? at.t : left;
-    if (inside) share = times(share, transmittance(inside, distance, lambda));
-    if (!found || is_black(share)) return share;
+    double step = found ? at.t : distance;
+    if (inside) share = times(share, transmittance(inside, r, step, s, lambda));
+    if (!found || largest(share) == 0) return share;
     inside = medium_beyond(w, &at, r.direction, inside);
-    left -= distance;
-    r = ray_from(w, at.point, r.direction);
+    distance -= step;
+    r = ray_from(w, at.point, r.direction, r.time);
   }
 }
 
-/* The lecture's direct light: asks one light. The BSDF, or else the medium's phase function, scatters it. */
+/* Asks one light. The surface's BSDF at `at`, or else (null) the medium's phase function, scatters its light. */
 static void add_direct_light(const world *w, path *p, vector point, vector wo, const bsdf *b, const shade_record *at,
                              sampler *s, const wavelengths *lambda) {
   light_sample asked;
-  if (!sample_light(w, point, s, lambda, &asked) || is_black(asked.radiance)) return;
-  double density;
-  spectrum value;
-  const medium *inside = p->inside;
-  if (b) {
-    value = bsdf_value(b, wo, asked.direction, s, &density);
-    inside = medium_beyond(w, at, asked.direction, inside);
-  } else {
-    density = phase(p->inside, wo, asked.direction);
-    value = gray(density);
-  }
-  if (is_black(value)) return;
-  spectrum arriving = times(asked.radiance, visibility(w, point, &asked, inside, s, lambda));
+  if (!sample_light(w, point, s, lambda, &asked)) return;
+  double density = b ? 0 : phase(p->inside, wo, asked.direction);
+  spectrum value = b ? bsdf_value(b, wo, asked.direction, s, &density) : gray(density);
+  value = times(value, asked.radiance);
+  if (largest(value) == 0) return;
+  const medium *inside = b ? medium_beyond(w, at, asked.direction, p->inside) : p->inside;
+  ray shadow = ray_from(w, b ? start_from(at, asked.direction) : point, asked.direction, p->r.time);
+  spectrum arriving = times(value, visibility(w, shadow, asked.distance, inside, s, lambda));
   double share = asked.single ? 1 : share_of(asked.density, density);
-  p->radiance = plus(p->radiance, scaled(share / asked.density, times(p->throughput, times(value, arriving))));
+  p->radiance = plus(p->radiance, scaled(share / asked.density, times(p->throughput, arriving)));
 }
 
-/* ---- light that the path meets ----------------------------------------------------------------------------------- */
-
+/* Light that the path meets by itself. */
 static void add_met_light(path *p, spectrum emitted, double light_density) {
+  if (largest(emitted) == 0) return;
   double share = p->chosen_alone ? 1 : share_of(p->chosen_density, light_density);
   p->radiance = plus(p->radiance, scaled(share, times(p->throughput, emitted)));
 }
 
-/* ---- media ------------------------------------------------------------------------------------------------------- */
-
-/* The channels that count: three in RGB, one where only the first wavelength is left. */
-static uint32_t channels_of(const wavelengths *lambda) {
-  if (lambda->rgb) return 3;
-  return lambda->density[1] == 0 ? 1 : CHANNELS;
-}
-
-/* Draws where the path scatters, with the density sigma_s exp(-sigma_s x) of one channel; absorption is a factor. The
- * result is divided by the mean density over all channels, so that each may have been the one (single-sample balance
- * heuristic). False: not before `distance`. */
-static bool scatters_before(const medium *m, double *distance, sampler *s, const wavelengths *lambda,
-                            spectrum *throughput) {
-  spectrum sigma_s = scattering(m, lambda);
-  uint32_t channels = channels_of(lambda);
-  double by = sigma_s.c[choose(s, channels)];
-  double flight = by > 0 ? -log1p(-next_number(s)) / by : INFINITY;
-  bool scatters = flight < *distance;
-  if (scatters) *distance = flight;
-  double density = 0;
-  for (uint32_t i = 0; i < channels; i++) {
-    double passes = sigma_s.c[i] > 0 ? exp(-sigma_s.c[i] * *distance) : 1;
-    density += passes * (scatters ? sigma_s.c[i] : 1) / channels;
+static void add_skies(const world *w, path *p, const wavelengths *lambda) {
+  for (uint32_t i = 0; i < w->light_count; i++) {
+    double density;
+    spectrum emitted;
+    if (emitted_by_sky(w, &w->lights[i], p->r.direction, lambda, &emitted, &density))
+      add_met_light(p, emitted, density);
   }
-  spectrum left = transmittance(m, *distance, lambda);
-  *throughput = times(*throughput, scatters ? times(sigma_s, left) : left);
-  *throughput = density > 0 ? scaled(1 / density, *throughput) : gray(0);
-  return scatters;
 }
 
-static void go_on(path *p, const world *w, vector point, vector direction, double density, bool alone) {
-  p->r = ray_from(w, point, direction);
+/* ---- the next ray ------------------------------------------------------------------------------------------------ */
+
+static void go_on(const world *w, path *p, vector point, vector direction, double density, bool alone) {
+  p->r = ray_from(w, point, direction, p->r.time);
   p->chosen_at = point;
   p->chosen_density = density;
   p->chosen_alone = alone;
 }
 
-/* The path scatters in the medium at a point. */
+/* The path scatters in the medium. */
 static void scatter_in_medium(const world *w, path *p, double distance, sampler *s, const wavelengths *lambda) {
   vector point = add(p->r.origin, scale(distance, p->r.direction));
   vector wo = negate(p->r.direction);
   add_direct_light(w, p, point, wo, NULL, NULL, s, lambda);
   vector wi = sample_phase(p->inside, wo, s);
-  go_on(p, w, point, wi, phase(p->inside, wo, wi), false);
+  go_on(w, p, point, wi, phase(p->inside, wo, wi), false);
 }
-
-/* ---- surfaces ---------------------------------------------------------------------------------------------------- */
 
 /* The path is reflected or goes on through the surface. False: it ends. */
 static bool scatter_at_surface(const world *w, path *p, const material *m, const shade_record *at, sampler *s,
@@ -137,8 +116,8 @@ static bool scatter_at_surface(const world *w, path *p, const material *m, const
   bsdf_sample next;
   if (!sample_bsdf(&b, wo, s, &next)) return false;
   p->throughput = times(p->throughput, next.weight);
-  go_on(p, w, at->point, next.wi, next.density, next.specular);
   p->inside = medium_beyond(w, at, next.wi, p->inside);
+  go_on(w, p, start_from(at, next.wi), next.wi, next.density, next.specular);
   return true;
 }
 
@@ -146,12 +125,10 @@ static bool scatter_at_surface(const world *w, path *p, const material *m, const
  */
 static bool survives(path *p, sampler *s) {
   double most = largest(p->throughput);
-  if (most == 0) return false;
-  if (p->depth < 4 || most >= 1) return true;
+  if (p->depth < 4 || most >= 1) return most > 0;
   double chance = fmax(0.1, most);
-  if (next_number(s) >= chance) return false;
   p->throughput = scaled(1 / chance, p->throughput);
-  return true;
+  return most > 0 && next_number(s) < chance;
 }
 
 spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_depth, sampler *s, wavelengths *lambda,
@@ -161,36 +138,29 @@ spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_dep
   while (survives(&p, s)) {
     shade_record at;
     bool found = find_hit(w, p.r, s, &at);
-    double distance = found ? at.t : INFINITY;
-    if (p.inside) {
-      spectrum before = p.throughput;
-      if (p.depth < max_depth)
-        p.radiance = plus(p.radiance, times(before, medium_emission(p.inside, distance, lambda)));
-      if (scatters_before(p.inside, &distance, s, lambda, &p.throughput)) {
-        if (p.depth++ >= max_depth) break;
-        scatter_in_medium(w, &p, distance, s, lambda);
-        continue;
-      }
+    double distance = found ? at.t : (double)INFINITY;
+    spectrum glow = gray(0);
+    bool in_medium = p.inside && scatters_before(p.inside, p.r, &distance, s, lambda, &p.throughput, &glow);
+    if (p.depth < max_depth) p.radiance = plus(p.radiance, glow);
+    if (in_medium) {
+      if (p.depth++ >= max_depth) break;
+      scatter_in_medium(w, &p, distance, s, lambda);
+      continue;
     }
     if (!found) {
-      for (uint32_t i = 0; i < w->light_count; i++) {
-        double density;
-        spectrum emitted;
-        if (emitted_by_sky(w, i, p.r.direction, lambda, &emitted, &density)) add_met_light(&p, emitted, density);
-      }
+      add_skies(w, &p, lambda);
       break;
     }
     *met = true;
-    spectrum emitted = emitted_by_surface(w, &at, negate(p.r.direction), lambda);
-    if (!is_black(emitted)) add_met_light(&p, emitted, density_of_surface(w, &at, p.chosen_at));
+    add_met_light(&p, emitted_by_surface(w, &at, negate(p.r.direction), lambda),
+                  density_of_surface(w, &at, p.chosen_at));
     const material *m = material_at(w, &at, s);
     if (is_interface(m)) {
       p.inside = medium_beyond(w, &at, p.r.direction, p.inside);
-      p.r = ray_from(w, at.point, p.r.direction);
+      p.r = ray_from(w, at.point, p.r.direction, p.r.time);
       continue;
     }
-    if (p.depth++ >= max_depth) break;
-    if (!scatter_at_surface(w, &p, m, &at, s, lambda)) break;
+    if (p.depth++ >= max_depth || !scatter_at_surface(w, &p, m, &at, s, lambda)) break;
   }
   return p.radiance;
 }

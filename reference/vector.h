@@ -18,9 +18,6 @@ static const double PI = 3.14159265358979323846;
 static inline vector make_vector(double x, double y, double z) {
   return (vector){x, y, z};
 }
-static inline vector from_array(const double a[3]) {
-  return (vector){a[0], a[1], a[2]};
-}
 static inline vector from_floats(const float *a) {
   return (vector){(double)a[0], (double)a[1], (double)a[2]};
 }
@@ -52,6 +49,12 @@ static inline vector normalize(vector a) {
 /* a on the side of b: negated where they point apart. */
 static inline vector face_forward(vector a, vector b) {
   return dot(a, b) < 0 ? negate(a) : a;
+}
+static inline vector least(vector a, vector b) {
+  return (vector){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)};
+}
+static inline vector greatest(vector a, vector b) {
+  return (vector){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
 }
 static inline double clamp(double x, double low, double high) {
   return x < low ? low : x > high ? high : x;

@@ -9,10 +9,11 @@
 #include "image_map.h"
 #include "vector.h"
 
-/* A ray: the points origin + t direction for t between t_min and t_max. */
+/* A ray: the points origin + t direction for t between t_min and t_max; the direction has length 1. */
 typedef struct ray {
   vector origin, direction;
   double t_min, t_max;
+  double time; /* for what moves, see more/ */
 } ray;
 
 /* A shape of the scene at one place: in the world itself, or in one instance of its group. */
@@ -23,12 +24,13 @@ typedef struct placement {
   bool flip;          /* normals of quadrics point to the inside */
 } placement;
 
-/* What rays are tested against: a triangle, or a sphere, disk or cylinder. */
+/* What rays are tested against: a triangle, or a whole quadric. */
 typedef struct primitive {
   uint32_t placement; /* in the world's list */
   uint32_t face;      /* of a mesh */
   int32_t light;      /* in the world's list of lights; -1: it emits none */
-  vector corner[4];   /* of a triangle or a patch, in the world */
+  vector corner[4];   /* of a face, in the world */
+  vector low, high;   /* its box */
 } primitive;
 
 /* The lecture's shade record: all that is known of the point where a ray meets a surface. */
@@ -39,14 +41,14 @@ typedef struct shade_record {
   vector shading_normal; /* interpolated between the vertices, on the same side */
   vector tangent;        /* along u */
   double u, v;
-  double area_density; /* of a point that sample_surface draws, 1 / area */
+  double area_density; /* with which sample_shape draws this point, per area */
+  vector arrival;      /* direction of the ray that met the point */
+  double thickness;    /* of a curve, else 0: how far off the surface a new ray starts */
   const primitive *what;
   const placement *where;
 } shade_record;
 
 typedef struct node node; /* of the accelerator */
-
-/* A spectrum-valued or a number-valued input of a material, its spectrum read. */
 typedef struct material material;
 typedef struct light light;
 typedef struct medium medium;
@@ -58,18 +60,14 @@ typedef struct world {
   bool media_are_absent; /* the tracer "path" looks past media */
   placement *placements;
   primitive *primitives;
-  uint32_t placement_count, primitive_count;
   node *nodes;
-  uint32_t *order; /* primitives in the order of the accelerator's leaves */
   material *materials;
   medium *media;
   color *texture_colors; /* per texture: its four spectrum inputs */
   image_map *images;     /* per texture; empty for kinds without an image */
-  uint32_t material_count, medium_count, texture_count;
   light *lights;
-  uint32_t light_count;
-  vector low, high; /* bounding box of all surfaces */
-  double radius;    /* of a sphere around it */
+  uint32_t placement_count, primitive_count, material_count, medium_count, texture_count, light_count;
+  double radius; /* of a sphere around all surfaces */
 } world;
 
 /* Makes the world of a scene, which must outlive it. False, with an error that names what the reference renderer cannot
@@ -78,7 +76,7 @@ bool make_world(vlContext *context, vlScene *scene, world *w, vlError *error);
 void free_world(world *w);
 
 /* accelerator.c: a tree of boxes over the primitives. */
-bool make_accelerator(world *w);
+void make_accelerator(world *w);
 /* The nearest surface along the ray, or false. Surfaces that are partly transparent (alpha) count with that
  * probability. */
 bool find_hit(const world *w, ray r, sampler *s, shade_record *hit);
@@ -94,15 +92,15 @@ bool meet_shape(const world *w, const primitive *p, ray r, meeting *m);
 void shape_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
 /* A point of a primitive that emits light, drawn with the density record->area_density. */
 void sample_shape(const world *w, const primitive *p, sampler *s, shade_record *record);
-void bound_shape(const world *w, const primitive *p, vector *low, vector *high);
+void bound_shape(const world *w, primitive *p);
+/* Makes the box of a primitive contain a point. */
+void include_point(primitive *p, vector point);
 
-/* triangle.c, quadric.c, more/patch.c: the kinds. */
+/* triangle.c, quadric.c: the kinds. */
 bool meet_triangle(const primitive *p, ray r, meeting *m);
 void triangle_surface(const world *w, const primitive *p, double b1, double b2, shade_record *record);
 bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m);
 void quadric_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
-bool meet_patch(const primitive *p, ray r, meeting *m);
-void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
 
 /* What meshes share: the normal by the rules for sides, and the vertex normals' blend. */
 typedef struct mesh_corner {

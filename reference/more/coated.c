@@ -2,6 +2,8 @@
  * is scattered by the base, and is reflected between base and coat until it leaves. The coat absorbs; it does not
  * scatter. Walks give values with noise; directions are drawn from a simple density, so that density and value may be
  * asked for any direction. */
+#include "coated.h"
+
 #include "microfacet.h"
 
 static bsdf coat_of(const bsdf *b) {
@@ -10,7 +12,7 @@ static bsdf coat_of(const bsdf *b) {
 
 /* The share of light that is left after one way through the coat. */
 static double absorbed(const bsdf *b, vector w) {
-  return b->coat_thickness > 0 ? exp(-b->coat_thickness / fabs(w.z)) : 1;
+  return b->more.coat_thickness > 0 ? exp(-b->more.coat_thickness / fabs(w.z)) : 1;
 }
 
 static vector mirror_normal(const bsdf *coat, vector w, sampler *s) {
@@ -44,7 +46,7 @@ static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, samp
   vector down;
   double entered = go_through(coat, wo, s, &down, &eta);
   throughput = gray(entered / square(eta));
-  for (uint32_t depth = 0; depth < b->coat_depth && largest(throughput) > 0; depth += 2) {
+  for (uint32_t depth = 0; depth < b->more.coat_depth && largest(throughput) > 0; depth += 2) {
     throughput = scaled(absorbed(b, down), throughput);
     vector in; /* the direction in which light from wi reaches the base */
     double out_eta, out = go_through(coat, wi, s, &in, &out_eta);
@@ -91,16 +93,8 @@ bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   vector o = wo.z < 0 ? negate(wo) : wo;
   double reflected = is_smooth(&coat) ? reflected_by_glass(o.z, coat.ior) : 0.5;
   bool reflects = next_number(s) < reflected;
-  result->transmitted = false;
-  result->specular = reflects && is_smooth(&coat);
-  result->density = 1;
-  result->weight = gray(1);
   vector wi = reflects ? reflect(o, mirror_normal(&coat, o, s)) : sample_cosine_hemisphere(s);
+  result->specular = reflects && is_smooth(&coat);
   result->wi = wo.z < 0 ? negate(wi) : wi;
-  if (result->specular) return true;
-  if (wi.z <= 0) return false;
-  spectrum value = coated_value(b, wo, result->wi, s, &result->density);
-  if (!(result->density > 0)) return false;
-  result->weight = scaled(1 / result->density, value);
-  return true;
+  return wi.z > 0;
 }

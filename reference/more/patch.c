@@ -1,5 +1,5 @@
 /* more/patch.c: bilinear patches, p(u, v) between four corners p00, p10, p01, p11 (pbrt book 6.6). */
-#include "world.h"
+#include "patch.h"
 
 static vector mix(vector a, vector b, double t) {
   return add(scale(1 - t, a), scale(t, b));
@@ -88,6 +88,4 @@ void patch_surface(const world *w, const primitive *p, double u, double v, shade
   patch_coordinates(where->def, corners, u, v, dpdu, dpdv, record);
   double area = length(by_edges);
   record->area_density = area > 0 ? 1 / area : 0;
-  record->what = p;
-  record->where = where;
 }

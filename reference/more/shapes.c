@@ -1,0 +1,27 @@
+/* more/shapes.c: the shapes of more/, by kind. */
+#include "more.h"
+#include "patch.h"
+#include "refuse.h"
+
+bool check_more_shape(const vlShapeDef *def, vlError *error) {
+  if (def->kind == VL_SHAPE_BILINEAR) return true;
+  return refuse_kind(error, def->source, "shapes", (uint32_t)def->kind);
+}
+
+uint32_t more_corners(const vlShapeDef *def) {
+  return def->kind == VL_SHAPE_BILINEAR ? 4 : 0;
+}
+
+bool meet_more(const world *w, const primitive *p, ray r, meeting *m) {
+  (void)w;
+  return meet_patch(p, r, m);
+}
+
+void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record) {
+  patch_surface(w, p, a, b, record);
+}
+
+void bound_more(const world *w, primitive *p) {
+  (void)w;
+  for (int k = 0; k < 4; k++) include_point(p, p->corner[k]);
+}

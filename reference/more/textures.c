@@ -1,0 +1,68 @@
+/* more/textures.c: constant, mix and bilinear textures, and texture coordinates from points (pbrt book 10.2). */
+#include "more.h"
+#include "refuse.h"
+#include "texture.h"
+
+bool check_more_texture(const vlTextureDef *def, vlError *error) {
+  switch (def->kind) {
+    case VL_TEXTURE_CONSTANT:
+    case VL_TEXTURE_MIX:
+    case VL_TEXTURE_BILERP: return true;
+    default: return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
+  }
+}
+
+/* ---- texture coordinates ----------------------------------------------------------------------------------------- */
+
+square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
+  if (def->st_from_uv_given) {
+    const float *m = def->st_from_uv;
+    return (square_point){(double)m[0] * at->u + (double)m[1] * at->v + (double)m[2],
+                          (double)m[3] * at->u + (double)m[4] * at->v + (double)m[5]};
+  }
+  matrix texture_from_world = load_matrix(def->texture_from_world);
+  vector p = transform_point(&texture_from_world, at->point);
+  double phi = atan2(p.y, p.x);
+  switch (def->mapping) {
+    case VL_MAPPING_SPHERICAL: {
+      vector d = normalize(p);
+      return (square_point){acos(clamp(d.z, -1, 1)) / PI, (phi < 0 ? phi + 2 * PI : phi) / (2 * PI)};
+    }
+    case VL_MAPPING_CYLINDRICAL: return (square_point){(PI + phi) / (2 * PI), p.z};
+    case VL_MAPPING_PLANAR:
+      return (square_point){(double)def->du + dot(p, from_floats(def->planar_v1)),
+                            (double)def->dv + dot(p, from_floats(def->planar_v2))};
+    default: return (square_point){0, 0};
+  }
+}
+
+/* ---- values ------------------------------------------------------------------------------------------------------ */
+
+double more_number(const world *w, const vlTextureDef *def, const shade_record *at) {
+  if (def->kind == VL_TEXTURE_CONSTANT) return number_at(w, def->float_a, at);
+  if (def->kind == VL_TEXTURE_MIX) {
+    double share = number_at(w, def->amount, at);
+    return (1 - share) * number_at(w, def->float_a, at) + share * number_at(w, def->float_b, at);
+  }
+  square_point st = texture_coordinates(def, at);
+  double low = (1 - st.y) * number_at(w, def->float_a, at) + st.y * number_at(w, def->float_b, at);
+  double high = (1 - st.y) * number_at(w, def->float_c, at) + st.y * number_at(w, def->float_d, at);
+  return (1 - st.x) * low + st.x * high;
+}
+
+spectrum more_spectrum(const world *w, const vlTextureDef *def, const color *colors, vlParameterRole role,
+                       const shade_record *at, const wavelengths *lambda) {
+  spectrum a = spectrum_at(w, def->spectrum_a, &colors[0], role, at, lambda);
+  if (def->kind == VL_TEXTURE_CONSTANT) return a;
+  spectrum b = spectrum_at(w, def->spectrum_b, &colors[1], role, at, lambda);
+  if (def->kind == VL_TEXTURE_MIX) {
+    double share = number_at(w, def->amount, at);
+    return plus(scaled(1 - share, a), scaled(share, b));
+  }
+  square_point st = texture_coordinates(def, at);
+  spectrum c = spectrum_at(w, def->spectrum_c, &colors[2], role, at, lambda);
+  spectrum d = spectrum_at(w, def->spectrum_d, &colors[3], role, at, lambda);
+  spectrum low = plus(scaled(1 - st.y, a), scaled(st.y, b));
+  spectrum high = plus(scaled(1 - st.y, c), scaled(st.y, d));
+  return plus(scaled(1 - st.x, low), scaled(st.x, high));
+}

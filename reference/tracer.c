@@ -139,9 +139,9 @@ spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_dep
     shade_record at;
     bool found = find_hit(w, p.r, s, &at);
     double distance = found ? at.t : (double)INFINITY;
-    spectrum glow = gray(0);
-    bool in_medium = p.inside && scatters_before(p.inside, p.r, &distance, s, lambda, &p.throughput, &glow);
-    if (p.depth < max_depth) p.radiance = plus(p.radiance, glow);
+    spectrum emission = gray(0);
+    bool in_medium = p.inside && scatters_before(p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
+    if (p.depth < max_depth) p.radiance = plus(p.radiance, emission);
     if (in_medium) {
       if (p.depth++ >= max_depth) break;
       scatter_in_medium(w, &p, distance, s, lambda);

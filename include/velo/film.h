@@ -30,9 +30,9 @@ VL_API void vl_film_unlock(vlFilmLock *lock);
 /** How to write a film. */
 typedef struct vlFilmWriteDef {
   uint32_t cookie;
-  /** The receipt of the whole render, read during the call only. It is stored in the header; vl_film_merge compares it.
-   * Null (default): none. */
-  const vlReceipt *receipt;
+  /** The text of the receipt of the whole render (vl_receipt_text), read during the call only. It is stored in the
+   * header, which is JSON; vl_film_merge compares it. Null (default): none. */
+  const char *receipt;
   /** The pixels of the whole render: x0, y0, x1, y1; x1, y1 exclusive. It must contain the film's crop, whose sides
    * are sides of the window or at multiples of 32 pixels. The other pixels have no samples in this file. All 0
    * (default): the film's crop. */

@@ -3,7 +3,7 @@
 
 #include "math/transform.h"
 #include "scene/extent.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/group.h"
 
 /* Numbers of a scene's things before a file was loaded. */

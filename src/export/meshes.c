@@ -5,7 +5,7 @@
 #include "export/export.h"
 
 #include "math/elementary.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 enum { ALONG = 64, ACROSS = 32 };
 

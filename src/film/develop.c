@@ -4,10 +4,6 @@
 #include "film/sums.h"
 #include "velo/image.h"
 
-vlDevelopDef vl_default_develop_def(void) {
-  return (vlDevelopDef){.cookie = VL_COOKIE_DEVELOP, .exposure = 1.0f};
-}
-
 static vlResult set_numbers(vlImage *image, const char *name, vlAttributeType type, const double *numbers, int count) {
   vlAttribute a = {.name = name, .type = type};
   for (int i = 0; i < count; i++) a.numbers[i] = numbers[i];

@@ -7,6 +7,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/json.h"
 #include "film/file.h"
 #include "velo/film.h"
 
@@ -140,10 +141,21 @@ static vlResult check(const vlFilm *film, const vlFilmWriteDef *def, const char 
   return VL_OK;
 }
 
+/* The header holds the receipt as a part of its JSON. */
+static vlResult check_receipt(const char *receipt, const char *path, vlError *error) {
+  if (!receipt) return VL_OK;
+  json_error_t wrong;
+  json_t *tree = vl_json_parse(receipt, strlen(receipt), JSON_REJECT_DUPLICATES, &wrong);
+  if (!tree && vl_json_lacks_memory(&wrong)) return vl_fail_memory(error);
+  if (!tree) return vl_fail(error, VL_ERROR_ARGUMENT, "%s: receipt: line %d: %s", path, wrong.line, wrong.text);
+  json_decref(tree);
+  return VL_OK;
+}
+
 static char *make_header(vlContext *context, const vlFilmShape *shape, const vlFilmWriteDef *def) {
   vlFilmTexts texts = {.attributes = def->attributes ? vl_film_attributes_make(context, def->attributes) : NULL};
   char *header = NULL;
-  if (def->receipt) texts.receipt = (char *)(uintptr_t)vl_receipt_text(def->receipt); /* is not changed */
+  texts.receipt = (char *)(uintptr_t)def->receipt; /* is not changed */
   if (!def->attributes || texts.attributes) header = vl_film_header_make(context, shape, &texts);
   vl_free(context, texts.attributes);
   return header;
@@ -159,6 +171,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   bool whole = !def->window[2] && !def->window[3];
   const uint32_t *window = whole ? film->def.crop : def->window;
   vlResult result = check(film, def, path, window, error);
+  if (result == VL_OK) result = check_receipt(def->receipt, path, error);
   if (result != VL_OK) return result;
   vlFilmShape shape = {film->def, film->sequence.length};
   memcpy(shape.def.crop, window, sizeof shape.def.crop);

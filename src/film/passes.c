@@ -9,18 +9,6 @@
 
 enum { SIZE_MAX_PIXELS = 65536, MOST_BUCKETS = 1000 };
 
-vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
-  return (vlFilmDef){.cookie = VL_COOKIE_FILM,
-                     .width = width,
-                     .height = height,
-                     .crop = {0, 0, width, height},
-                     .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
-                     .space = (vlColorSpace)0,
-                     .max_component = INFINITY,
-                     .lambda_min = VL_LAMBDA_MIN,
-                     .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
-}
-
 vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor) {
   vlFilmDef coarse = *def;
   if (factor == 0) factor = 1;

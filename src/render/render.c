@@ -215,20 +215,6 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
   stats->not_finite += more.not_finite;
 }
 
-vlRenderDef vl_default_render_def(void) {
-  return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
-                       .tracer = VL_TRACER_PATH,
-                       .sampler = VL_SAMPLER_ZSOBOL,
-                       .spp = 16,
-                       .max_depth = 5,
-                       .ao_distance = INFINITY,
-                       .merge_radius = VL_UNSET,
-                       .light_paths = VL_AS_MANY_AS_PIXELS,
-                       .noise_scale = 1.0f,
-                       .share_samples = true,
-                       .ao_cosine = true};
-}
-
 /* Chooses the blocks and the samples of the next pass. False: there is none. */
 static bool choose_pass(vlRenderRun *r, double seconds_per_work, double left) {
   uint32_t total = r->def->spp > r->sequence.first ? r->def->spp - r->sequence.first : 0, first, most;

@@ -7,7 +7,7 @@
 #include "base/cookie.h"
 #include "color/color.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 enum { MAX_OBJECTS = 0x7fffffff };
 

@@ -11,7 +11,7 @@
 #include "color/color.h"
 #include "image/image.h"
 #include "scene/check.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 

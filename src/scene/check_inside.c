@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "scene/check.h"
-#include "scene/schema/schema.h"
 #include "scene/solid.h"
+#include "schema/schema.h"
 
 typedef struct Box {
   double low[3], high[3];

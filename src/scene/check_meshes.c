@@ -7,7 +7,7 @@
 #include "math/transform.h"
 #include "scene/check.h"
 #include "scene/mesh_solid.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 /* ---- degenerate -------------------------------------------------------------------------------------------------- */
 

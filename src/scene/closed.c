@@ -6,7 +6,7 @@
 
 #include "math/elementary.h"
 #include "math/transform.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 enum {
   OUTSIDE = 160, /* rays from the eye */

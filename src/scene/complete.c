@@ -8,7 +8,7 @@
 #include "scene/closed.h"
 #include "scene/environment.h"
 #include "scene/lamps.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 vlCompleteDef vl_default_complete_def(void) {
   return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};

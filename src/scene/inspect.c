@@ -6,8 +6,8 @@
 #include "color/color.h"
 #include "math/elementary.h"
 #include "scene/lamps.h"
-#include "scene/schema/schema.h"
 #include "scene/solid.h"
+#include "schema/schema.h"
 #include "velo/check.h"
 
 static const double pi = 3.14159265358979323846;

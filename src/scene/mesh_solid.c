@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "math/transform.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
   vl_free(scene->context, b->points);

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance) {
   return !instance->hidden && scene->groups.items[instance->group.index - 1].shape_count > 0;

@@ -12,6 +12,7 @@
 #include "velo/check.h"
 #include "velo/render.h"
 #include "velo/scene.h"
+#include "velo/schema.h"
 
 typedef struct vlSceneGroup {
   const char *name;     /* never null, may be empty */
@@ -126,6 +127,12 @@ void vl_scene_drop_meshes(vlScene *scene);
 
 /* Like vl_scene_add_texture, but the scene already owns the image (def->image, def->data), so it is not copied. */
 vlTextureId vl_scene_adopt_texture(vlScene *scene, const vlTextureDef *def);
+
+/* Checks the members that the row describes: ranges, finite numbers, choices, existence and type of textures. Then
+ * replaces what they point at with copies owned by the scene, except for parameters of type BLOCK, which the caller
+ * copies. spectrum: whether a parameter of type EITHER_INPUT is read as a spectrum or as a number. On an error it calls
+ * vl_scene_fail with a message that names `what`, the parameter, its value and range, and returns false. */
+bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source, const char *what);
 
 /* Deep copies (scene/copy.c). If memory is exhausted, they report VL_ERROR_MEMORY by vl_scene_fail and return false. */
 bool vl_scene_own(vlScene *scene, void *block);

@@ -6,7 +6,7 @@
 #include "base/cookie.h"
 #include "math/motion.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "math/elementary.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 static void grow(double low[3], double high[3], const double p[3]) {
   for (int k = 0; k < 3; k++) {

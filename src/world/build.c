@@ -8,10 +8,6 @@
 #include "scene/scene.h"
 #include "world/world.h"
 
-vlBuildDef vl_default_build_def(void) {
-  return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
-}
-
 /* ---- parts (part.h) ---------------------------------------------------------------------------------------------- */
 
 vlPart *vl_part_add(vlWorld *world) {

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/channels.h"
 #include "world/world.h"
 

@@ -475,6 +475,19 @@ static void json_release(void *block) {
   free(block);
 }
 
+static void a_receipt_that_is_not_json_is_refused(void **state) {
+  (void)state;
+  vlFilm *film = make_film(context, PLAIN, NULL, 0, 1);
+  vlFilmWriteDef def = vl_default_film_write_def();
+  vlError error;
+  def.receipt = "{\"velo_receipt\": 1,\n \"samples\": }";
+  assert_int_equal(vl_film_write(film, &def, path_of("receipt.film"), &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "receipt: line 2"));
+  def.receipt = "{\"velo_receipt\": 1}";
+  assert_int_equal(vl_film_write(film, &def, path_of("receipt.film"), &error), VL_OK);
+  vl_film_destroy(film);
+}
+
 static vlResult life_with_receipt(void) {
   static const char text[] = "{\"velo_receipt\": 1, \"command\": [\"velo\", \"render\", \"a.pbrt\"], \"samples\": 1}";
   const char *paths[2] = {path_of("json.film"), path_of("json.film")};
@@ -484,7 +497,7 @@ static vlResult life_with_receipt(void) {
   vlReceipt *receipt = NULL;
   vlError error;
   vlResult result = vl_receipt_parse(context, text, strlen(text), &receipt, &error);
-  def.receipt = receipt;
+  def.receipt = result == VL_OK ? vl_receipt_text(receipt) : NULL;
   if (result == VL_OK) result = vl_film_write(film, &def, paths[0], &error);
   if (result == VL_OK) result = vl_film_merge(context, paths, 2, NULL, path_of("json2.film"), &error);
   if (result == VL_OK) result = vl_film_read(context, path_of("json2.film"), false, &read, &error);
@@ -660,6 +673,7 @@ int main(void) {
                                      cmocka_unit_test(old_formats_are_read),
                                      cmocka_unit_test(parts_become_the_whole),
                                      cmocka_unit_test(what_does_not_belong_together_is_refused),
+                                     cmocka_unit_test(a_receipt_that_is_not_json_is_refused),
                                      cmocka_unit_test(a_film_with_gaps_is_only_developed),
                                      cmocka_unit_test(no_damage_goes_unseen),
                                      cmocka_unit_test(impossible_sums_are_refused),

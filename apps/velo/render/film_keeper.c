@@ -63,7 +63,7 @@ static vlResult join(FilmKeeper *k) {
 
 static vlResult begin_write(FilmKeeper *k, const vlFilm *film) {
   vlFilmWriteDef def = vl_default_film_write_def();
-  def.receipt = k->receipt;
+  def.receipt = k->receipt ? vl_receipt_text(k->receipt) : NULL;
   def.lock = k->lock;
   def.attributes = k->attributes;
   memcpy(def.window, k->window, sizeof def.window);

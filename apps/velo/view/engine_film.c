@@ -99,7 +99,7 @@ int engine_write_film(Engine *e) {
     return report_failure(STATUS_OTHER, "%s is not written: the last image has no samples yet", path);
   int status = make_receipt(e, &command, &receipt, &attributes);
   vlFilmWriteDef def = vl_default_film_write_def();
-  def.receipt = receipt;
+  def.receipt = receipt ? vl_receipt_text(receipt) : NULL;
   def.lock = e->def.film_lock;
   def.attributes = attributes;
   vlResult result = status < 0 ? vl_film_write(e->film, &def, path, &error) : VL_OK;

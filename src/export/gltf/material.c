@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "export/export.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 #include "math/elementary.h"
 

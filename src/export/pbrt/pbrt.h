@@ -3,7 +3,7 @@
 #define EXPORT_PBRT_PBRT_H
 
 #include "export/export.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 #define PUT(...) vl_bytes_print(x->context, &x->text, __VA_ARGS__)
 

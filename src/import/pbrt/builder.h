@@ -10,7 +10,7 @@
 #include "import/repair.h"
 #include "math/transform.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 typedef enum vlAttributeTarget {
   VL_ATTR_SHAPE,

@@ -1,5 +1,5 @@
 /* import/pbrt/material.c: converts Material and MakeNamedMaterial to materials of the scene. The parts of a mix are
- * converted first. The rows describe the parameters (scene/schema/materials.c). */
+ * converted first. The rows describe the parameters (schema/materials.c). */
 #include <assert.h>
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
  * because Embree's data per geometry take more memory than such a shape. */
 #include "world/accel/bundle.h"
 
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 bool vl_accel_bundled(const vlWorldShape *s) {
   return !s->centers && (vl_kind_row(&vl_shape_family, (int)s->kind)->traits & VL_SHAPE_TRAIT_QUADRIC) != 0;

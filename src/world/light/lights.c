@@ -10,7 +10,7 @@
 #include "math/octahedral.h"
 #include "math/transform.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "math/ggx.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "world/material/compile.h"
 
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
 #include "world/shape/share.h"

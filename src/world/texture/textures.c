@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "image/image.h"
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "world/texture/texture_node.h"
 #include "world/world.h"
 

@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/velo.h"
 
 static vlContext *context;

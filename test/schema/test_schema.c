@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "scene/scene.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/render.h"
 
 static void well_formed(void **state) {

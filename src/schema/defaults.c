@@ -1,10 +1,13 @@
-/* scene/defaults.c: the vl_default_*_def functions of the scene. Defaults are pbrt-v4's, since pbrt files leave most
- * parameters out. */
+/* schema/defaults.c: the vl_default_*_def functions of scenes and of an image's settings. Defaults of scenes are
+ * pbrt-v4's, since pbrt files leave most parameters out. */
+#include <math.h>
 #include <string.h>
 
 #include "base/cookie.h"
+#include "color/color.h"
 #include "color/named.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
+#include "velo/render.h"
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
@@ -53,4 +56,40 @@ vlMaterialDef vl_default_material_def(vlMaterialKind kind) {
 
 vlLoadDef vl_default_load_def(void) {
   return (vlLoadDef){.cookie = VL_COOKIE_LOAD, .time = VL_UNSET, .time_close = VL_UNSET};
+}
+
+/* ---- the settings of an image ------------------------------------------------------------------------------------ */
+
+vlBuildDef vl_default_build_def(void) {
+  return (vlBuildDef){.cookie = VL_COOKIE_BUILD, .color = VL_COLOR_SPECTRAL, .light_sampler = VL_LIGHT_SAMPLER_BVH};
+}
+
+vlFilmDef vl_default_film_def(uint32_t width, uint32_t height) {
+  return (vlFilmDef){.cookie = VL_COOKIE_FILM,
+                     .width = width,
+                     .height = height,
+                     .crop = {0, 0, width, height},
+                     .filter = vl_default_pixel_filter(VL_PIXEL_FILTER_GAUSSIAN),
+                     .space = (vlColorSpace)0,
+                     .max_component = INFINITY,
+                     .lambda_min = VL_LAMBDA_MIN,
+                     .lambda_max = VL_LAMBDA_MIN + VL_LAMBDA_COUNT - 1};
+}
+
+vlDevelopDef vl_default_develop_def(void) {
+  return (vlDevelopDef){.cookie = VL_COOKIE_DEVELOP, .exposure = 1.0f};
+}
+
+vlRenderDef vl_default_render_def(void) {
+  return (vlRenderDef){.cookie = VL_COOKIE_RENDER,
+                       .tracer = VL_TRACER_PATH,
+                       .sampler = VL_SAMPLER_ZSOBOL,
+                       .spp = 16,
+                       .max_depth = 5,
+                       .ao_distance = INFINITY,
+                       .merge_radius = VL_UNSET,
+                       .light_paths = VL_AS_MANY_AS_PIXELS,
+                       .noise_scale = 1.0f,
+                       .share_samples = true,
+                       .ao_cosine = true};
 }

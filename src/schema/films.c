@@ -1,7 +1,7 @@
-/* scene/schema/films.c: rows of the films, which are those of pbrt. A row describes members of vlSceneDefs. */
+/* schema/films.c: rows of the films, which are those of pbrt. A row describes members of vlSceneDefs. */
 #include <math.h>
 
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/render.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)

@@ -1,9 +1,9 @@
-/* scene/schema/lights.c: rows of the lights, and of the emission of shapes. Names and defaults are pbrt-v4's. */
+/* schema/lights.c: rows of the lights, and of the emission of shapes. Names and defaults are pbrt-v4's. */
 #include <math.h>
 
 #include "base/cookie.h"
 #include "math/elementary.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 #define PI 3.14159265358979323846
 #define DEGREES (PI / 180)

@@ -1,9 +1,9 @@
-/* scene/schema/shapes.c: rows of the shapes. Names and defaults are those of pbrt-v4. Its shapes "plymesh" and
+/* schema/shapes.c: rows of the shapes. Names and defaults are those of pbrt-v4. Its shapes "plymesh" and
  * "loopsubdiv" become triangles. */
 #include <math.h>
 
 #include "base/cookie.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 #define DEGREES (3.14159265358979323846 / 180)
 

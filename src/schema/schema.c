@@ -1,5 +1,5 @@
-/* scene/schema/schema.c: the families of kinds; finds rows by name and applies their defaults. */
-#include "scene/schema/schema.h"
+/* schema/schema.c: the families of kinds; finds rows by name and applies their defaults. */
+#include "schema/schema.h"
 
 #include <string.h>
 
@@ -43,6 +43,10 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name) {
   for (uint32_t i = 0; i < row->parameter_count; i++)
     if (is_named(row->parameters[i].name, row->parameters[i].alias, name)) return &row->parameters[i];
   return NULL;
+}
+
+const char *vl_parameter_label(const vlParameter *p) {
+  return p->name ? p->name : p->member;
 }
 
 /* ---- defaults ---------------------------------------------------------------------------------------------------- */

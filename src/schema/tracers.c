@@ -1,7 +1,7 @@
-/* scene/schema/tracers.c: rows of the tracers, which pbrt calls integrators. A row describes members of vlSceneDefs. */
+/* schema/tracers.c: rows of the tracers, which pbrt calls integrators. A row describes members of vlSceneDefs. */
 #include <math.h>
 
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 #include "velo/render.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)

@@ -1,6 +1,6 @@
-/* scene/schema/media.c: rows of the participating media. Names and defaults are pbrt-v4's. */
+/* schema/media.c: rows of the participating media. Names and defaults are pbrt-v4's. */
 #include "base/cookie.h"
-#include "scene/schema/schema.h"
+#include "schema/schema.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlMediumDef, __VA_ARGS__)
 #define FACTOR(name, member, text, ...) PARAMETER(FLOAT, name, member, text, VL_DEFAULT(__VA_ARGS__), VL_FROM(0))

@@ -1,5 +1,5 @@
-/* scene/schema/cameras.c: rows of the cameras in files: those of pbrt, calibrated lenses, and one per projection. */
-#include "scene/schema/schema.h"
+/* schema/cameras.c: rows of the cameras in files: those of pbrt, calibrated lenses, and one per projection. */
+#include "schema/schema.h"
 #include "velo/camera.h"
 
 #define DEGREES 0.017453292519943295

@@ -1,5 +1,5 @@
-/* scene/schema/textures.c: rows of the textures. Names in files and defaults are pbrt-v4's. */
-#include "scene/schema/schema.h"
+/* schema/textures.c: rows of the textures. Names in files and defaults are pbrt-v4's. */
+#include "schema/schema.h"
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlTextureDef, __VA_ARGS__)
 #define COUNT(...) VL_PARAMETER(COUNT, vlTextureDef, __VA_ARGS__)

@@ -1,8 +1,8 @@
-/* scene/schema/schema.h: the rows of all families of kinds, and functions that access a def through its row. A row
+/* schema/schema.h: the rows of all families of kinds, and functions that access a def through its row. A row
  * describes one kind and its parameters. The rows of each family are in a file of this folder with the family's
  * name. */
-#ifndef SCENE_SCHEMA_SCHEMA_H
-#define SCENE_SCHEMA_SCHEMA_H
+#ifndef SCHEMA_SCHEMA_H
+#define SCHEMA_SCHEMA_H
 
 #include "velo/scene.h"
 #include "velo/schema.h"
@@ -127,12 +127,8 @@ void vl_row_set_defaults(const vlKindRow *row, void *def);
 void vl_family_set_defaults(const vlKindFamily *family, int kind, void *def);
 /* Copies the members that the row describes. Pointers are copied, not what they point at. */
 void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
-/* Checks the members that the row describes: ranges, finite numbers, choices, existence and type of textures. Then
- * replaces what they point at with copies owned by the scene, except for parameters of type BLOCK, which the caller
- * copies. spectrum: whether a parameter of type EITHER_INPUT is read as a spectrum or as a number. On an error it calls
- * vl_scene_fail with a message that names `what`, the parameter, its value and range, and returns false. */
-bool vl_row_take(struct vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source,
-                 const char *what);
+/* The name of a parameter in messages: its name in files, else its member's. */
+const char *vl_parameter_label(const vlParameter *parameter);
 /* Checks the value of a parameter: it must be finite, in range and a known choice, and must not be missing if it is
  * required. If the result is false, message holds the reason. */
 bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *what, char message[200]);

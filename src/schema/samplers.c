@@ -1,5 +1,5 @@
-/* scene/schema/samplers.c: rows of the samplers. A row describes members of vlSceneDefs. */
-#include "scene/schema/schema.h"
+/* schema/samplers.c: rows of the samplers. A row describes members of vlSceneDefs. */
+#include "schema/schema.h"
 #include "velo/render.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlSceneDefs, __VA_ARGS__)

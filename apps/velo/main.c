@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/completion.h"
+#include "cli/context.h"
 #include "cli/manual.h"
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -202,8 +203,6 @@ static int help(int argc, char **argv) {
 
 /* Prints one line with the version, then one line for each property of the build. */
 static int print_version(void) {
-  static const char *const sets[] = {
-      [VL_ISA_BASE] = "base", [VL_ISA_V2] = "x86-64-v2", [VL_ISA_V3] = "x86-64-v3", [VL_ISA_V4] = "x86-64-v4"};
   const vlVersion *version = vl_version();
   printf("velo %s\n", version->text);
   if (velo_commit[0]) printf("commit            %s\n", velo_commit);
@@ -213,7 +212,7 @@ static int print_version(void) {
   def.threads = 1;
   vlContext *context;
   if (vl_context_create(&def, &context) == VL_OK) {
-    printf("; here %s", sets[vl_context_isa(context)]);
+    printf("; here %s", context_isa_name(context));
     vl_context_destroy(context);
   }
   printf("\nlibraries         ");

@@ -35,3 +35,14 @@ int context_open(const vlContextDef *def, vlContext **context) {
   return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
                         ours.threads);
 }
+
+const char *context_isa_name(const vlContext *context) {
+  switch (vl_context_isa(context)) {
+    case VL_ISA_V2: return "x86-64-v2";
+    case VL_ISA_V3: return "x86-64-v3";
+    case VL_ISA_V4: return "x86-64-v4";
+    case VL_ISA_BASE:
+    case VL_ISA_AUTO: break;
+  }
+  return "base";
+}

@@ -1,4 +1,4 @@
-/* cli/context.h: creates the context of a command. */
+/* cli/context.h: creates the context of a command, and names its instruction set. */
 #ifndef APP_CLI_CONTEXT_H
 #define APP_CLI_CONTEXT_H
 
@@ -7,5 +7,7 @@
 /* Creates a context whose messages are reported by `def->log`. Returns -1 on success. Otherwise it reports the
  * reason (a folder of --sandbox, the environment variable VELO_ISA, memory or threads) and returns the exit code. */
 int context_open(const vlContextDef *def, vlContext **context);
+/* The instruction set that the context's kernels use: "x86-64-v3", or "base" on other processors. */
+const char *context_isa_name(const vlContext *context);
 
 #endif

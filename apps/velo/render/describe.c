@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/context.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "render/job.h"
@@ -109,7 +110,7 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   if (c->projection == VL_PROJECTION_PERSPECTIVE) printf(", field of view %.4g x %.4g degrees", f.fov_x, f.fov_y);
   printf(", eye (%g, %g, %g), looking along (%.4g, %.4g, %.4g)\n", f.eye[0], f.eye[1], f.eye[2], f.forward[0],
          f.forward[1], f.forward[2]);
-  printf("image   %u x %u pixels", c->width, c->height);
+  printf("image     %u x %u pixels", c->width, c->height);
   if (crop[0] || crop[1] || crop[2] != c->width || crop[3] != c->height)
     printf(", of these x %u to %u, y %u to %u", crop[0], crop[2], crop[1], crop[3]);
   printf(", filter %s%s, colour %s\n", f.filter, render->share_samples ? "" : " of own samples", f.color);
@@ -117,6 +118,6 @@ void job_describe(const Job *job, vlContext *context, const vlScene *scene, cons
   if (render->time_limit > 0) printf(", at most %g s", render->time_limit);
   printf("\ntracer    %s, max depth %u, lights by %s%s\n", f.tracer, render->max_depth, f.light_sampler,
          job->defs->build.regularize ? ", regularised" : "");
-  printf("machine   %u threads, x86-64-v%d\n", vl_context_threads(context), (int)vl_context_isa(context));
+  printf("machine   %u threads, %s\n", vl_context_threads(context), context_isa_name(context));
   for (int i = 0; i < output_count; i++) printf("%s %s\n", i ? "         " : "output   ", outputs[i]);
 }

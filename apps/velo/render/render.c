@@ -392,9 +392,9 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   if (arguments->values[RENDER_VERBOSE].given && !kept) {
     char bytes[32];
     format_count(bytes, sizeof bytes, (double)vl_context_memory(render->context, NULL));
-    report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, x86-64-v%d", loaded - start,
+    report_note("loaded in %.3f s, built in %.3f s, %sB held; %u threads, %s", loaded - start,
                 monotonic_seconds() - loaded, bytes, vl_context_threads(render->context),
-                (int)vl_context_isa(render->context));
+                context_isa_name(render->context));
   }
   return -1;
 }

@@ -79,7 +79,19 @@ same "file of crop" a.exr b.exr
 developed lens "$VELO_SOURCE_DIR/scenes/features/lens.pbrt" $small --spp 2
 developed motion "$VELO_SOURCE_DIR/scenes/features/motion.pbrt" $small --spp 2 --channels-time close --focus-pixel 20,20 --lens-radius 0.1
 developed "noise" scene.pbrt $small --noise 10%
-$render scene.pbrt $small --stereo parallel --spp 3 --film side_%v.film -o side_%v.exr
+developed errors scene.pbrt $small --spp 3 --channels error
+same "file of errors" a.exr b.exr
+developed "errors and spectrum" scene.pbrt $small --spp 3 --channels error --spectrum 4
+same "file of errors and spectrum" a.exr b.exr
+developed channels scene.pbrt $small --spp 3 --channels Z,N --channels-mode nearest
+# ground truth of the image alone is not the film's
+$render scene.pbrt $small --spp 2 --film later.film -o a.exr
+$render --continue later.film --spp 3 --channels Z -o a.exr
+"$VELO" film develop later.film -o b.exr
+"$VELO" image info a.exr >a.txt
+"$VELO" image info b.exr >b.txt
+if grep -q velo.channels a.txt && ! grep -q velo.channels b.txt; then pass "channels of the image alone"; else fail "channels of the image alone"; fi
+$render scene.pbrt $small --stereo parallel --spp 3 --film side_%v.film -o side_%v.exr --channels error
 "$VELO" film develop side_right.film -o b.exr
 same "file of an eye" side_right.exr b.exr
 "$VELO" film develop t1.film -o b.exr

@@ -36,6 +36,8 @@ static vlResult set_header(Develop *d, const vlReceipt *receipt, vlError *error)
   const vlAttribute samples = {.name = "samplesPerPixel", .type = VL_ATTRIBUTE_INT, .numbers = {spp}};
   vlResult result = take_attributes(d, error);
   if (result == VL_OK) result = vl_image_set_attribute(d->image, &samples);
+  if (result == VL_OK) result = attributes_add_layer(d->image, d->errors);
+  if (result == VL_OK) result = attributes_add_layer(d->image, d->spectrum);
   if (!receipt || !spp || result != VL_OK) return result;
   if (d->uneven && !(vl_receipt_noise(receipt) > 0)) return result; /* no command makes this image */
   vlReceipt *own = NULL;
@@ -72,12 +74,10 @@ static int develop(Develop *d, const char *path) {
   const vlFilmDef *film = vl_film_file_def(d->file);
   if (receipt) def.exposure = vl_receipt_exposure(receipt);
   result = vl_film_develop(d->film, &def, &d->image);
-  if (result == VL_OK) result = set_header(d, receipt, &error);
-  if (result != VL_OK && error.message[0]) return report_error(&error, result, path);
   if (result == VL_OK && film->errors) result = vl_film_errors(d->film, &def, &d->errors);
   if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
-  if (result == VL_OK) result = attributes_add_layer(d->image, d->errors);
-  if (result == VL_OK) result = attributes_add_layer(d->image, d->spectrum);
+  if (result == VL_OK) result = set_header(d, receipt, &error);
+  if (result != VL_OK && error.message[0]) return report_error(&error, result, path);
   d->outputs.layers[0] = d->errors, d->outputs.layers[1] = d->spectrum;
   return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
 }

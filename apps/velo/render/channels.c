@@ -200,9 +200,13 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
 }
 
 vlResult channels_describe(const Channels *c, vlImage *image) {
-  vlResult result = VL_OK;
+  vlResult result = channels_describe_mode(c, image);
   for (int k = 0; k < CHANNEL_LAYERS && result == VL_OK; k++) result = attributes_add_layer(image, c->layers[k]);
-  if (!c->bits || result != VL_OK) return result;
+  return result;
+}
+
+vlResult channels_describe_mode(const Channels *c, vlImage *image) {
+  if (!c->bits) return VL_OK;
   const vlAttribute mode = {
       .name = "velo.channels", .type = VL_ATTRIBUTE_STRING, .string = choice_name(channel_mode_choices, (int)c->mode)};
   return vl_image_set_attribute(image, &mode);

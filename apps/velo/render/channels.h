@@ -42,8 +42,11 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
 /* Converts names and types of the ids (vl_render_channels' second image) to their form in files. VL_ERROR_MEMORY or
  * VL_OK. */
 vlResult channels_make_visible(vlContext *context, vlImage **ids);
-/* Copies the header attributes of the layers to the image. */
+/* Sets the header attributes of the mode and of the layers. They are the last but for the receipt, so that `velo film
+ * develop` writes the same file. */
 vlResult channels_describe(const Channels *c, vlImage *image);
+/* Sets the header attribute of the mode, if there are channels. */
+vlResult channels_describe_mode(const Channels *c, vlImage *image);
 /* Writes PATH.ids.json: type, name, material, place in its file and, if wanted, the box of each id in the image.
  * `right` (may be null): the other view of the same file, whose ids are included. Nothing for the standard output.
  * Returns STATUS_OK or the exit code. */

@@ -27,6 +27,8 @@ int film_keeper_describe(FilmKeeper *k, const FilmPlan *plan, vlContext *context
   k->attributes = NULL;
   vlResult result = receipt_make(plan->receipt, context, &whole, &which, &k->receipt);
   if (result == VL_OK) result = attributes_make(context, &whole, eye, &k->attributes);
+  if (result == VL_OK && !plan->receipt->arguments->channels_later)
+    result = channels_describe_mode(plan->channels, k->attributes);
   return result == VL_OK ? -1 : report_reason(result, k->path, "the film's receipt cannot be made");
 }
 

@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 
+#include "render/channels.h"
 #include "render/film_claim.h"
 #include "render/outputs.h"
 #include "render/receipt.h"
@@ -18,6 +19,7 @@ typedef struct FilmPlan {
   vlSceneDefs whole;   /* defs of the whole render, if the command renders a part of it */
   const ReceiptPlan *receipt;
   const Outputs *outputs;
+  const Channels *channels;
 } FilmPlan;
 
 typedef struct FilmKeeper {

@@ -174,12 +174,12 @@ static int write_image(FrameWriter *w, FrameImage *p) {
   int status = STATUS_OK;
   for (int v = 0; v < w->frames->views && status == STATUS_OK; v++) {
     vlResult result = attributes_set(p->images[v], &p->jobs[v], p->spp);
-    if (result == VL_OK) result = channels_describe(&p->channels[v], p->images[v]);
     const vlTrajectoryFrame *pose = &p->frame.pose;
     if (result == VL_OK && w->frames->trajectory)
       result = attributes_set_frame(p->images[v], p->frame.number, pose->name, pose->time);
     if (result == VL_OK && *w->frames->view_names[v])
       result = attributes_set_eye(p->images[v], w->frames->view_names[v]);
+    if (result == VL_OK) result = channels_describe(&p->channels[v], p->images[v]);
     const ReceiptImage which = receipt_image(w, p, *w->frames->view_names[v] ? w->frames->view_names[v] : NULL);
     if (result == VL_OK) result = receipt_set(w->context, &p->jobs[v], &which, p->images[v]);
     if (result != VL_OK) status = report_reason(result, w->outputs->paths[0], "the image's header cannot be made");

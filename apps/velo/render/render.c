@@ -149,7 +149,8 @@ static int prepare(Render *render, const Arguments *arguments) {
                                  .from = render->resumed.path,
                                  .overwrite = v[RENDER_OVERWRITE].given,
                                  .receipt = &render->receipt,
-                                 .outputs = &render->outputs};
+                                 .outputs = &render->outputs,
+                                 .channels = &render->channels};
   if (render->film_plan.path) render->film_plan.path = output_opened(render->film_plan.path);
   outputs->to_stdout = true;
   outputs->half = v[RENDER_HALF].given;

@@ -22,9 +22,9 @@ static int write_image(Render *render, OutputStage stage) {
   uint32_t spp = vl_film_spp(render->film);
   vlResult result = vl_film_develop(render->film, &develop, &image);
   if (result == VL_OK) result = attributes_set(image, &render->job, spp);
+  if (result == VL_OK) result = channels_describe(&render->channels, image);
   const ReceiptImage which = {.samples = spp};
   if (result == VL_OK) result = receipt_set(render->context, &render->job, &which, image);
-  if (result == VL_OK) result = channels_describe(&render->channels, image);
   int status = STATUS_OK;
   if (result == VL_OK)
     status = outputs_write(render->context, &render->outputs, image, spp, stage);

@@ -6,6 +6,7 @@
 
 #include "cli/report.h"
 #include "render/attributes.h"
+#include "render/channels.h"
 #include "render/lens_options.h"
 #include "render/receipt.h"
 #include "view/engine_parts.h"
@@ -86,6 +87,8 @@ static int make_receipt(const Engine *e, FilmCommand *c, vlReceipt **receipt, vl
   const ReceiptImage which = {.samples = defs.render.spp};
   vlResult result = receipt_make(&plan, e->def.context, &job, &which, receipt);
   if (result == VL_OK) result = attributes_make(e->def.context, &job, NULL, attributes);
+  const Channels channels = {.bits = VL_CHANNEL_ERROR};
+  if (result == VL_OK) result = channels_describe_mode(&channels, *attributes);
   return result == VL_OK ? -1 : report_reason(result, e->def.film_path, "the film's receipt cannot be made");
 }
 

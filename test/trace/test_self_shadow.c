@@ -28,7 +28,8 @@ typedef struct Kind {
   float radius, inner, z_min, z_max, height, phi_max;
   const float *positions;
   uint32_t vertices, faces;
-  bool flat, light; /* flat: both sides are checked; light: can emit */
+  bool flat, light; /* flat: rays leave on both sides; light: can emit */
+  vlCurveKind curve;
 } Kind;
 
 #define TURN 6.2831853f
@@ -51,19 +52,21 @@ static const Kind kinds[] = {
     {"blunt triangle", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, blunt, 3, 1, true, true},
     {"square", VL_SHAPE_TRIANGLES, 0, 0, 0, 0, 0, 0, square, 4, 2, true, true},
     {"bilinear patch", VL_SHAPE_BILINEAR, 0, 0, 0, 0, 0, 0, patch, 4, 1, true, true},
-    {"curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false},
+    {"flat curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_FLAT},
+    {"cylindrical curve", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_CYLINDER},
+    {"ribbon", VL_SHAPE_CURVES, 0, 0, 0, 0, 0, 0, straight, 4, 1, true, false, VL_CURVE_RIBBON},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 static vlShapeDef shape_of(const Kind *k) {
   static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3}, patch_corners[4] = {0, 1, 2, 3};
-  static const float widths[2] = {0.02f, 0.02f};
+  static const float widths[2] = {0.02f, 0.02f}, normals[6] = {0, 0, 1, 0, 0, 1};
   vlShapeDef def = vl_default_shape_def(k->kind);
   def.radius = k->radius, def.inner_radius = k->inner, def.z_min = k->z_min, def.z_max = k->z_max;
   def.height = k->height, def.phi_max = k->phi_max;
   def.positions = k->positions, def.vertices = k->vertices, def.faces = k->faces;
   def.indices = k->kind == VL_SHAPE_BILINEAR ? patch_corners : corners;
-  if (k->kind == VL_SHAPE_CURVES) def.widths = widths, def.curve = VL_CURVE_FLAT;
+  if (k->kind == VL_SHAPE_CURVES) def.widths = widths, def.curve = k->curve, def.normals = normals;
   return def;
 }
 
@@ -177,6 +180,11 @@ static void point_of_shape(const vlWorld *world, statRng *rng, double p[3]) {
       p[i] = (double)((1 - u - v) * s->positions[i] + u * s->positions[3 + i] + v * s->positions[6 + i]);
     if (stat_float(rng) < 0.3f)
       for (int i = 0; i < 3; i++) p[i] = (double)s->positions[i];
+    return;
+  }
+  if (s->kind == VL_SHAPE_CURVES) { /* in the box around the curve, so that rays meet its edges, too */
+    double q[3] = {2 * stat_double(rng) - 1, 0.02 * (stat_double(rng) - 0.5), 0.02 * (stat_double(rng) - 0.5)};
+    vl_map_point(s->from_shape, q, p);
     return;
   }
   vlSurfacePoint point;
@@ -293,11 +301,10 @@ static uint32_t leaving(const Scene *s, statRng *rng, uint32_t *tried) {
     vlPoint at = vl_point_at_time(s->world, time, o, d, h.shape, h.prim, h.instance, h.t);
     double w[3];
     stat_direction(rng, w);
-    vlVec3 out = to_float(w), g = at.g;
-    if (s->kind->flat && vl_dot(d, g) > 0) g = vl_neg(g);
-    float cosine = vl_dot(out, g);
-    if (cosine < 0) out = vl_neg(out), cosine = -cosine;
-    if (cosine < 1e-4f) continue;
+    vlVec3 out = to_float(w);
+    float cosine = vl_dot(out, at.g);
+    if (cosine < 0 && !s->kind->flat) out = vl_neg(out);
+    if (vl_abs(cosine) < 1e-4f) continue;
     ++*tried;
     caught += trace(s->world, vl_offset_origin(at.p, at.g, at.offset, out), out, time).shape != VL_NONE;
   }

@@ -48,7 +48,7 @@ static inline float vl_point_offset(const vlSurfacePoint *q) {
     rounded += __builtin_fabs(q->n[i] * q->p[i]);
     error += __builtin_fabs(q->n[i]) * q->error[i];
   }
-  return 2.0f * VL_GAMMA(7) * (float)rounded + (float)error;
+  return 2.0f * VL_GAMMA(7) * (float)rounded + (float)(error + q->off);
 }
 
 /* ---- starts and ends --------------------------------------------------------------------------------------------- */

@@ -266,6 +266,7 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   }
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
   double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
+  r.off /= ln > 0 ? ln : 1; /* planes perpendicular to n that are off apart are off / ln apart when transformed */
   for (int i = 0; i < 3; i++) r.n[i] /= ln > 0 ? ln : 1, r.ns[i] /= ls > 0 ? ls : 1;
   vl_normal_derivative(r.ns, ls, r.dndu);
   vl_normal_derivative(r.ns, ls, r.dndv);

@@ -3,8 +3,17 @@
  *
  * Conventions are pbrt-v4's (book 6.7): a flat curve faces every ray; a cylinder differs from a flat curve by its
  * normal only; the visible width of a ribbon is multiplied by the cosine between its normal and the ray. The hit point
- * lies on the ray, where the ray comes nearest to the axis. Its error is up to the width of the curve, so a ray that
- * leaves the curve starts at that distance. Everything is in shape space unless stated otherwise. */
+ * lies on the ray, where the ray comes nearest to the axis. Everything is in shape space unless stated otherwise.
+ *
+ * A ray that leaves a curve starts its width off the hit point, along the normal: the least distance at which no ray
+ * meets the curve that it leaves. For a cylinder of radius r, let the hit point lie x r beside the axis; the normal n,
+ * turned by the angle a = x pi / 2, is perpendicular to the axis. A point at the distance k along n (or -n) is
+ * k + x r sin a (k - x r sin a) from the plane through the axis that is perpendicular to n. A ray that starts there and
+ * goes away from that plane, or along it, passes the axis at that distance at least, or has passed it. So it does not
+ * meet the curve if k >= r (1 + |x sin a|), which is 2 r at the edges. For flat curves and ribbons r is enough.
+ *
+ * (pbrt takes an error of one width along each axis of the world, so its rays start 1 to 1.73 widths off, depending on
+ * how the scene is turned.) */
 #include <math.h>
 #include <string.h>
 
@@ -282,12 +291,10 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   }
   if (s->curve == VL_CURVE_CYLINDER) { /* the normal is rotated about the curve by up to 90 degrees to each side */
     double axis[3] = {along[0], along[1], along[2]}, up[3];
-    double dot = vl_dot3(along, hit->d), l2 = vl_dot3(along, along);
-    for (int i = 0; i < 3; i++) axis[i] = along[i] - dot * hit->d[i]; /* component perpendicular to the ray */
     scale_to(axis, 1);
     vl_cross3(axis, across, up);
     vlSinCos turn = vl_sincos((float)((0.5 - v) * 3.14159265358979323846));
-    for (int i = 0; i < 3; i++) across[i] = l2 > 0 ? across[i] * turn.cos + up[i] * turn.sin : across[i];
+    for (int i = 0; i < 3; i++) across[i] = across[i] * turn.cos + up[i] * turn.sin;
   }
   vl_cross3(along, across, n);
   if (!(vl_normalize3(n) > 0))
@@ -297,13 +304,13 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   vl_map_vector(s->from_shape, across, point->dpdv);
   for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
-  vl_normalize3(point->n);
+  double stretch = vl_normalize3(point->n); /* the inverse of the factor for distances along n */
+  point->off = stretch > 0 ? width / stretch : 0;
   double side = s->flip ? -1 : 1;
   for (int i = 0; i < 3; i++) {
-    const double *m = s->from_shape + 4 * i;
     point->n[i] *= side;
     point->ns[i] = point->n[i];
-    point->error[i] = width * (fabs(m[0]) + fabs(m[1]) + fabs(m[2]));
+    point->error[i] = 0;
   }
   point->uv[0] = (float)u, point->uv[1] = (float)v;
 }

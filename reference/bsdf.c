@@ -16,6 +16,7 @@ static spectrum local_value(const bsdf *b, vector wo, vector wi, sampler *s, dou
     case BSDF_DIFFUSE: return diffuse_value(b, wo, wi, density);
     case BSDF_CONDUCTOR: return conductor_value(b, wo, wi, density);
     case BSDF_DIELECTRIC: return dielectric_value(b, wo, wi, density);
+    case BSDF_PHASE: return gray(*density = phase(b->g, wo, wi));
     default: return more_bsdf_value(b, wo, wi, s, density);
   }
 }
@@ -25,6 +26,7 @@ static bool sample_direction(const bsdf *b, vector wo, sampler *s, bsdf_sample *
     case BSDF_DIFFUSE: result->wi = face_forward(sample_cosine_hemisphere(s), make_vector(0, 0, wo.z)); return true;
     case BSDF_CONDUCTOR: sample_conductor(b, wo, s, result); return true;
     case BSDF_DIELECTRIC: return sample_dielectric(b, wo, s, result);
+    case BSDF_PHASE: result->wi = sample_phase(b->g, s); return true;
     default: return sample_more_bsdf(b, wo, s, result);
   }
 }

@@ -1,13 +1,11 @@
-/* bsdf.h: how a surface scatters light at one point (pbrt book 9). Directions point away from the surface; wo is where
- * the path comes from, wi where it goes on. A value includes the cosine |wi . n|. */
-#ifndef REFERENCE_BSDF_H
-#define REFERENCE_BSDF_H
-
+/* bsdf.h: how a surface, or a medium, scatters light at one point (pbrt book 9). Directions point away from the point;
+ * wo is where the path comes from, wi where it goes on. A value includes the cosine |wi . n|. */
+#pragma once
 #include "color.h"
 #include "more/kinds.h"
 #include "vector.h"
 
-typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_MORE } bsdf_kind;
+typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_PHASE, BSDF_MORE } bsdf_kind;
 
 typedef struct bsdf {
   bsdf_kind kind;
@@ -16,6 +14,7 @@ typedef struct bsdf {
   spectrum eta, k;         /* conductor: complex index of refraction */
   double ior;              /* dielectric: index inside over index outside */
   double alpha_x, alpha_y; /* roughness along the tangent and across it */
+  double g;                /* phase function of a medium: mean cosine */
   more_bsdf more;          /* of kinds of more/ */
 } bsdf;
 
@@ -35,9 +34,10 @@ spectrum conductor_value(const bsdf *b, vector wo, vector wi, double *density);
 void sample_conductor(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+/* medium.c: the phase function of Henyey and Greenstein; in sampling, wo is the z axis. */
+double phase(double g, vector wo, vector wi);
+vector sample_phase(double g, sampler *s);
 
 /* dielectric.c: Fresnel's and Snell's laws. */
 double reflected_by_glass(double cosine, double eta);
 bool refract(vector wo, vector m, double ior, double *eta, vector *wi);
-
-#endif

@@ -5,21 +5,6 @@
 
 #include "more/more.h"
 
-/* Whether the core has the camera. */
-static bool is_simple(const vlCamera *c) {
-  const vlLens *l = &c->lens;
-  bool known = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC ||
-               c->projection == VL_PROJECTION_EQUIDISTANT || c->projection == VL_PROJECTION_EQUISOLID;
-  bool moves = c->moves || c->readout != 0;
-  bool round = !l->blades && !l->aperture && l->ratio == 1 && !l->vignetting;
-  bool straight = l->tilt[0] == 0 && l->tilt[1] == 0 && l->hinge[0] == 0 && l->hinge[1] == 0;
-  return known && !moves && round && straight && c->distortion.steps == 0 && c->eye_circle == 0;
-}
-
-bool check_camera(const vlCamera *c, vlSource source, vlError *error) {
-  return is_simple(c) || check_more_camera(c, source, error);
-}
-
 /* The lecture's pinhole: direction = x_v u + y_v v - d w, divided by d. Here the axes are x right, y down, z forward,
  * so that the view plane at distance 1 has the point (x, y, 1). */
 static vector pinhole_direction(double x, double y) {
@@ -46,7 +31,7 @@ static void through_lens(const vlCamera *c, double focus, sampler *s, vector *or
 }
 
 bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r) {
-  if (!is_simple(c)) return more_camera_ray(c, x, y, s, r);
+  if (is_more_camera(c)) return more_camera_ray(c, x, y, s, r);
   double y_plane = (y - c->cy) / c->fy;
   double x_plane = (x - c->cx - c->skew * y_plane) / c->fx;
   vector origin = make_vector(0, 0, 0), direction = make_vector(0, 0, 1);

@@ -1,11 +1,11 @@
 /* color.c: from spectra to numbers at four wavelengths, and from these to red, green and blue. */
 #include "color.h"
 
-/* ---- the wavelengths of a path (pbrt book 4.5.4) ----------------------------------------------------------------- */
+#include "refuse.h"
 
-/* One random number serves all four: they lie a quarter of the distribution apart. Wavelengths that the eye sees well
- * are dense: p(l) = .0039398042 / cosh^2(.0072 (l - 538)) from 360 to 830 nm, the derivative of a tanh, so that it can
- * be inverted. */
+/* One random number serves all four: they lie a quarter of the distribution apart (pbrt book 4.5.4). Wavelengths that
+ * the eye sees well are dense: p(l) = .0039398042 / cosh^2(.0072 (l - 538)) from 360 to 830 nm, the derivative of a
+ * tanh, so that it can be inverted. */
 wavelengths sample_wavelengths(bool rgb, sampler *s) {
   wavelengths w = {.rgb = rgb};
   double u = next_number(s);
@@ -21,7 +21,7 @@ wavelengths sample_wavelengths(bool rgb, sampler *s) {
 /* The three others get density 0, which removes them from the mean in radiance_to_rgb. The first one must then count
  * four times: its density as one of four becomes a quarter. */
 void keep_first_wavelength(wavelengths *w) {
-  if (w->rgb || w->density[1] == 0) return;
+  if (channels_of(w) < CHANNELS) return;
   for (int i = 1; i < CHANNELS; i++) w->density[i] = 0;
   w->density[0] /= CHANNELS;
 }
@@ -31,7 +31,25 @@ uint32_t channels_of(const wavelengths *w) {
   return w->density[1] == 0 ? 1 : CHANNELS;
 }
 
-/* ---- spectra of the scene ---------------------------------------------------------------------------------------- */
+static color *make_color(const vlSpectrum *s, vlParameterRole role) {
+  color *c = resize(NULL, 1, sizeof *c);
+  *c = (color){.of = s, .role = role};
+  vl_spectrum_tabulate(s, role, c->nm, NULL);
+  vl_spectrum_linear_rgb(s, role, c->rgb, NULL);
+  double luminance = role == VL_PARAMETER_ILLUMINANT ? vl_spectrum_luminance(s, NULL) : 1;
+  for (int i = 0; i < VL_SPECTRUM_VALUES; i++) {
+    c->nm[i] = luminance > 0 ? (float)((double)c->nm[i] / luminance) : 0;
+    c->varies = c->varies || c->nm[i] != c->nm[0];
+  }
+  return c;
+}
+
+const color *find_color(color_table *table, const vlSpectrum *s, vlParameterRole role) {
+  color **c = &table->first[(uintptr_t)s / 16 % 1024];
+  while (*c && ((*c)->of != s || (*c)->role != role)) c = &(*c)->next;
+  if (!*c) *c = make_color(s, role);
+  return *c;
+}
 
 /* The value of a table with one number per nm, linear between them. */
 static double table_at(const float *table, int stride, double nm) {
@@ -40,16 +58,6 @@ static double table_at(const float *table, int stride, double nm) {
   double a = (double)table[stride * i];
   double b = (double)table[stride * (i + 1)];
   return a + (x - i) * (b - a);
-}
-
-bool read_color(const vlSpectrum *s, vlParameterRole role, color *result, vlError *error) {
-  if (vl_spectrum_tabulate(s, role, result->nm, error) != VL_OK) return false;
-  if (vl_spectrum_linear_rgb(s, role, result->rgb, error) != VL_OK) return false;
-  if (role != VL_PARAMETER_ILLUMINANT) return true;
-  double luminance = vl_spectrum_luminance(s, error);
-  for (int i = 0; i < VL_SPECTRUM_VALUES; i++)
-    result->nm[i] = luminance > 0 ? (float)((double)result->nm[i] / luminance) : 0;
-  return true;
 }
 
 spectrum color_at(const color *c, const wavelengths *w) {

@@ -1,9 +1,7 @@
 /* color.h: radiance at four wavelengths, or as red, green and blue. A path carries four numbers. In a spectral render
  * they belong to four wavelengths that the path draws at its start (pbrt book 4.5); in an RGB render to R, G, B, and
  * the fourth repeats B and is not looked at. The rest of the renderer does not know which. */
-#ifndef REFERENCE_COLOR_H
-#define REFERENCE_COLOR_H
-
+#pragma once
 #include <stdbool.h>
 #include <velo/color.h>
 
@@ -22,12 +20,6 @@ typedef struct wavelengths {
   double density[CHANNELS]; /* of each wavelength, 1 / nm; 0: the wavelength no longer counts */
 } wavelengths;
 
-/* A spectrum of the scene, with all its values. */
-typedef struct color {
-  float nm[VL_SPECTRUM_VALUES];
-  float rgb[3];
-} color;
-
 static inline spectrum gray(double value) {
   return (spectrum){{value, value, value, value}};
 }
@@ -45,9 +37,6 @@ static inline spectrum scaled(double s, spectrum a) {
 static inline double largest(spectrum a) {
   return fmax(fmax(a.c[0], a.c[1]), fmax(a.c[2], a.c[3]));
 }
-static inline bool is_finite(spectrum a) {
-  return isfinite(a.c[0] + a.c[1] + a.c[2] + a.c[3]);
-}
 
 /* The wavelengths of a new path. */
 wavelengths sample_wavelengths(bool rgb, sampler *s);
@@ -56,9 +45,23 @@ void keep_first_wavelength(wavelengths *w);
 /* The numbers of a path that count: three in RGB, one where only the first wavelength is left. */
 uint32_t channels_of(const wavelengths *w);
 
-/* Reads a spectrum of the scene. A light's is divided by its luminance, so that its scale alone sets its brightness.
- * The result is false, with an error, for a spectrum that is none. */
-bool read_color(const vlSpectrum *s, vlParameterRole role, color *result, vlError *error);
+/* All values of a spectrum of the scene. */
+typedef struct color {
+  const vlSpectrum *of;
+  vlParameterRole role;
+  float nm[VL_SPECTRUM_VALUES], rgb[3];
+  bool varies; /* between wavelengths */
+  struct color *next;
+} color;
+
+/* The table of all colours, each made when it is first asked for. */
+typedef struct color_table {
+  color *first[1024];
+} color_table;
+
+/* A light's spectrum (VL_PARAMETER_ILLUMINANT) is divided by its luminance, so that its scale alone sets its
+ * brightness. */
+const color *find_color(color_table *table, const vlSpectrum *s, vlParameterRole role);
 spectrum color_at(const color *c, const wavelengths *w);
 /* The spectrum of a texel, linear RGB: a reflectance (VL_PARAMETER_ALBEDO), or any value from 0. */
 spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w);
@@ -71,5 +74,3 @@ typedef struct observer {
 
 /* What a path adds to its pixel: its radiance as linear RGB of the film's colour space. */
 void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]);
-
-#endif

@@ -1,7 +1,5 @@
 /* film.h: the lecture's view plane: pixels that add up what their samples bring, and the image in the end. */
-#ifndef REFERENCE_FILM_H
-#define REFERENCE_FILM_H
-
+#pragma once
 #include "world.h"
 
 typedef struct pixel {
@@ -18,7 +16,7 @@ typedef struct view_plane {
   pixel *pixels;
 } view_plane;
 
-bool make_view_plane(const vlSceneDefs *defs, uint32_t samples, view_plane *v, vlError *error);
+view_plane make_view_plane(const vlSceneDefs *defs, uint32_t samples);
 /* A point around the middle of a pixel, in pixels. */
 square_point sample_filter(const view_plane *v, sampler *s);
 /* The lecture's display_pixel, for one sample of the pixel. */
@@ -26,5 +24,3 @@ void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance,
                 bool covered);
 /* The image: R G B A, and error.R error.G error.B, the standard errors of the means. */
 bool make_image(const view_plane *v, vlContext *context, vlImage **image);
-
-#endif

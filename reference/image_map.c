@@ -2,50 +2,23 @@
 #include "image_map.h"
 
 #include <math.h>
-#include <string.h>
 
-#include "refuse.h"
+#include "more/more.h"
 
-image_map make_image_map(const vlImage *image, vlImage *owned) {
-  image_map map = {.image = image, .owned = owned, .width = vl_image_width(image), .height = vl_image_height(image)};
+image_map make_image_map(const vlImage *image) {
+  image_map map = {.image = image, .width = vl_image_width(image), .height = vl_image_height(image)};
   map.channels = vl_image_shown(image, map.channel);
   return map;
 }
 
-/* A copy of the image, with integers that mean something else than the file says. */
-static bool copy_image(vlContext *context, const vlImage *image, const vlTextureDef *texture, vlImage **copy) {
-  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), vl_image_channels(image));
-  const char *names[1024];
-  for (uint32_t i = 0; i < def.channels; i++) names[i] = vl_image_channel_name(image, i);
-  def.names = names;
-  def.type = vl_image_type(image);
-  def.encoding = texture->encoding_given ? texture->encoding : vl_image_encoding(image);
-  def.gamma = texture->gamma;
-  if (vl_image_create(context, &def, copy) != VL_OK) return false;
-  size_t size[] = {[VL_PIXEL_U8] = 1, [VL_PIXEL_U16] = 2, [VL_PIXEL_F16] = 2, [VL_PIXEL_F32] = 4, [VL_PIXEL_U32] = 4};
-  memcpy(vl_image_pixels(*copy), vl_image_const_pixels(image),
-         (size_t)def.width * def.height * def.channels * size[def.type]);
-  return true;
-}
-
 bool read_image_map(vlContext *context, const vlTextureDef *def, image_map *map, vlError *error) {
-  vlImage *file = NULL, *copy = NULL;
-  if (def->path && vl_image_read(context, def->path, &file, error) != VL_OK) return false;
-  if (def->data && vl_image_read_memory(context, "image", def->data, def->data_size, &file, error) != VL_OK)
+  vlImage *image = NULL;
+  if (def->path && vl_image_read(context, def->path, &image, error) != VL_OK) return false;
+  if (def->data && vl_image_read_memory(context, "image", def->data, def->data_size, &image, error) != VL_OK)
     return false;
-  bool ok = copy_image(context, file ? file : def->image, def, &copy);
-  vl_image_destroy(file);
-  if (!ok) return refuse(error, def->source, "an image of this size");
-  *map = make_image_map(copy, copy);
+  *map = make_image_map(image ? image : def->image);
+  if (def->encoding_given) *map = decode_otherwise(context, map->image, def);
   return true;
-}
-
-void free_image_map(image_map *map) {
-  vl_image_destroy(map->owned);
-}
-
-bool has_coverage(const image_map *map) {
-  return map->channels == 2 || map->channels == 4;
 }
 
 /* The column or row inside the image that stands for one outside; -1: black. */
@@ -61,14 +34,13 @@ static long wrapped(long i, long size, vlWrap wrap) {
 void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t, double value[4]) {
   x = wrapped(x, (long)map->width, wrap_s);
   y = wrapped(y, (long)map->height, wrap_t);
+  for (uint32_t c = 0; c < 4; c++) value[c] = 0;
+  if (x < 0 || y < 0) return;
   uint32_t colors = map->channels < 3 ? 1 : 3;
+  value[3] = 1;
   for (uint32_t c = 0; c < 4; c++) {
     uint32_t own = c == 3 ? colors : c % colors;
-    value[c] = c == 3 ? 1 : 0;
-    if (x < 0 || y < 0)
-      value[c] = 0;
-    else if (own < map->channels)
-      value[c] = (double)vl_image_get(map->image, (uint32_t)x, (uint32_t)y, map->channel[own]);
+    if (own < map->channels) value[c] = (double)vl_image_get(map->image, (uint32_t)x, (uint32_t)y, map->channel[own]);
   }
 }
 

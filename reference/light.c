@@ -2,87 +2,63 @@
  * luminance, `scale` multiplies it; `power` and `illuminance` set the brightness instead. */
 #include "light.h"
 
-#include <stdlib.h>
-
 #include "more/more.h"
 #include "refuse.h"
 #include "texture.h"
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
-static bool read_light(const world *w, const vlLightDef *def, light *l, vlError *error) {
-  matrix m = load_matrix(def->world_from_light);
-  vector to = transform_point(&m, from_floats(def->to));
-  *l = (light){.factor = (double)def->scale, .space = def->space};
-  l->position = transform_point(&m, from_floats(def->from));
-  l->direction = normalize(subtract(to, l->position));
-  l->cos_outer = cos((double)def->cone_angle);
-  l->cos_inner = cos((double)def->cone_angle - (double)def->cone_delta);
-  l->cone_squared = def->cone_squared;
-  double solid_angle = 4 * PI; /* that an even light of the same power fills */
-  if (!read_color(&def->color, VL_PARAMETER_ILLUMINANT, &l->emitted, error)) return false;
-  switch (def->kind) {
-    case VL_LIGHT_POINT: l->kind = LIGHT_POINT; break;
-    case VL_LIGHT_SPOT:
-      l->kind = LIGHT_SPOT;
-      solid_angle = 2 * PI * ((1 - l->cos_inner) + (l->cos_inner - l->cos_outer) / 2);
-      break;
-    case VL_LIGHT_DISTANT:
-      l->kind = LIGHT_DISTANT;
-      l->direction = negate(l->direction);
-      if (!isnan(def->illuminance)) l->factor *= def->illuminance;
-      return true;
-    case VL_LIGHT_INFINITE: l->kind = LIGHT_SKY; return read_sky(w, def, l, error);
-    default: l->kind = LIGHT_MORE; return read_more_light(w, def, l, error);
-  }
-  if (!isnan(def->power)) l->factor *= def->power / solid_angle;
-  return true;
+static light *add_light(world *w, double factor) {
+  w->lights = resize(w->lights, w->light_count + 1, sizeof *w->lights);
+  light *l = &w->lights[w->light_count++];
+  *l = (light){.factor = factor, .white = vl_spectrum_rgb(1, 1, 1)};
+  return l;
+}
+
+/* The power of a point light is spread over the sphere, that of a spot over its cone, the soft edge counted half. */
+static bool read_light(world *w, const vlLightDef *def, vlError *error) {
+  light *l = add_light(w, (double)def->scale);
+  double inner = cos((double)def->cone_angle - (double)def->cone_delta), outer = cos((double)def->cone_angle);
+  l->def = def;
+  l->white.space = def->space;
+  if (def->kind == VL_LIGHT_INFINITE) return read_sky(w, l, error);
+  if (def->kind == VL_LIGHT_DISTANT && !isnan(def->illuminance)) l->factor *= def->illuminance;
+  if (def->kind == VL_LIGHT_POINT && !isnan(def->power)) l->factor *= def->power / (4 * PI);
+  if (def->kind == VL_LIGHT_SPOT && !isnan(def->power)) l->factor *= def->power / (2 * PI * (1 - (inner + outer) / 2));
+  return read_more_light(w, l, error);
 }
 
 /* A primitive of an emissive shape. `power` is that of each primitive: radiance times area times pi, on each side. */
-static bool read_surface_light(const world *w, const primitive *p, light *l, vlError *error) {
-  const vlShapeDef *shape = w->placements[p->placement].def;
-  const vlEmissionDef *def = vl_scene_emission(w->scene, shape->emission);
-  *l = (light){.kind = LIGHT_SURFACE, .what = p, .emission = def, .factor = (double)def->scale};
-  l->invisible = !shape->alpha.texture.index && shape->alpha.value == 0;
-  if (def->image) return refuse(error, def->source, "an emission image");
-  vlSpectrum radiance = def->radiance;
-  if (def->texture.index) {
-    l->space = vl_scene_texture(w->scene, def->texture)->space;
-    radiance = vl_spectrum_rgb(1, 1, 1);
-    radiance.space = l->space;
-  }
-  if (!(def->power > 0)) return read_color(&radiance, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
-  if (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index)
-    return refuse(error, def->source, "this emission by power");
+static void read_surface_light(world *w, primitive *p, const vlEmissionDef *def) {
+  p->light = (int32_t)w->light_count;
+  light *l = add_light(w, (double)def->scale);
+  l->what = p;
+  l->emission = def;
+  if (def->texture.index) l->white.space = vl_scene_texture(w->scene, def->texture)->space;
+  if (!(def->power > 0)) return;
   shade_record corner = {0};
   shape_surface(w, p, 0, 0, &corner);
   l->factor *= def->power * corner.area_density / (PI * (def->two_sided ? 2 : 1));
-  return read_color(&radiance, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
 }
 
 bool read_lights(world *w, vlError *error) {
   const vlLightDef *def;
-  for (; (def = vl_scene_light(w->scene, (vlLightId){w->light_count + 1})); w->light_count++) {
-    w->lights = resize(w->lights, w->light_count + 1, sizeof *w->lights);
-    if (!read_light(w, def, &w->lights[w->light_count], error)) return false;
+  for (uint32_t i = 1; (def = vl_scene_light(w->scene, (vlLightId){i})); i++) {
+    if (!read_light(w, def, error)) return false;
   }
   for (uint32_t i = 0; i < w->primitive_count; i++) {
     const vlShapeDef *shape = w->placements[w->primitives[i].placement].def;
-    if (!shape->emission.index || shape->group.index || shape->positions_close) continue;
-    w->lights = resize(w->lights, w->light_count + 1, sizeof *w->lights);
-    w->primitives[i].light = (int32_t)w->light_count;
-    if (!read_surface_light(w, &w->primitives[i], &w->lights[w->light_count++], error)) return false;
+    const vlEmissionDef *emission = vl_scene_emission(w->scene, shape->emission);
+    bool emits = emission && !shape->group.index && !shape->positions_close;
+    if (emits) read_surface_light(w, &w->primitives[i], emission);
   }
   return true;
 }
 
-void free_lights(world *w) {
-  for (uint32_t i = 0; i < w->light_count; i++) {
-    free_image_map(&w->lights[i].sky.map);
-    free(w->lights[i].sky.sums);
-  }
-  free(w->lights);
+spectrum light_color(const world *w, const light *l, const wavelengths *lambda) {
+  const vlSpectrum *own = l->def ? &l->def->color : &l->emission->radiance;
+  bool image = l->sky.sums || (l->emission && l->emission->texture.index);
+  return scaled(l->factor, color_at(find_color(w->colors, image ? &l->white : own, VL_PARAMETER_ILLUMINANT), lambda));
 }
 
 /* ---- surfaces ---------------------------------------------------------------------------------------------------- */
@@ -91,10 +67,10 @@ spectrum emitted_by_surface(const world *w, const shade_record *at, vector towar
   if (at->what->light < 0) return gray(0);
   const light *l = &w->lights[at->what->light];
   if (!l->emission->two_sided && dot(towards, at->normal) <= 0) return gray(0);
-  spectrum radiance = scaled(l->factor, color_at(&l->emitted, lambda));
+  spectrum radiance = light_color(w, l, lambda);
   if (!l->emission->texture.index) return radiance;
   vlSpectrumInput texture = {.texture = l->emission->texture};
-  return times(radiance, spectrum_at(w, texture, NULL, VL_PARAMETER_UNBOUNDED, at, lambda));
+  return times(radiance, spectrum_at(w, &texture, VL_PARAMETER_UNBOUNDED, at, lambda));
 }
 
 /* An area looks smaller by its cosine and by the square of the distance: density per solid angle = density per area
@@ -106,17 +82,18 @@ double density_of_surface(const world *w, const shade_record *at, vector point) 
   return cosine > 0 ? at->area_density * distance2 / cosine / w->light_count : 0;
 }
 
+/* A surface with alpha 0 everywhere is invisible: rays pass, light samples do not notice. */
 static bool sample_surface(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                            light_sample *result) {
   shade_record at = {0};
   sample_shape(w, l->what, s, &at);
   if (!aim_at(at.point, point, result)) return false;
-  double alpha = l->invisible ? 1 : number_at(w, at.where->def->alpha, &at);
-  spectrum radiance = emitted_by_surface(w, &at, negate(result->direction), lambda);
-  result->radiance = scaled(fmin(alpha, 1), radiance);
+  vlFloatInput alpha = at.where->def->alpha;
+  result->single = !alpha.texture.index && alpha.value == 0;
+  result->radiance = emitted_by_surface(w, &at, negate(result->direction), lambda);
+  if (!result->single) result->radiance = scaled(fmin(number_at(w, alpha, &at), 1), result->radiance);
   result->density = density_of_surface(w, &at, point);
-  result->single = l->invisible;
-  return true;
+  return result->density > 0;
 }
 
 /* ---- one light for a point --------------------------------------------------------------------------------------- */
@@ -129,10 +106,11 @@ bool aim_at(vector place, vector point, light_sample *result) {
 }
 
 /* pbrt's smooth step between the cone's two cosines; glTF's is a square. */
-static double spot_share(const light *l, double cosine) {
-  if (l->cos_inner == l->cos_outer) return cosine >= l->cos_outer ? 1 : 0;
-  double t = clamp((cosine - l->cos_outer) / (l->cos_inner - l->cos_outer), 0, 1);
-  return l->cone_squared ? t * t : t * t * (3 - 2 * t);
+static double spot_share(const vlLightDef *def, double cosine) {
+  double outer = cos((double)def->cone_angle), inner = cos((double)def->cone_angle - (double)def->cone_delta);
+  if (inner == outer) return cosine >= outer ? 1 : 0;
+  double t = clamp((cosine - outer) / (inner - outer), 0, 1);
+  return def->cone_squared ? t * t : t * t * (3 - 2 * t);
 }
 
 /* All lights are drawn with the same probability: simple, and wasteful where some are far. The intensity of a point
@@ -140,28 +118,26 @@ static double spot_share(const light *l, double cosine) {
 bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result) {
   if (w->light_count == 0) return false;
   const light *l = &w->lights[choose(s, w->light_count)];
-  *result = (light_sample){.distance = INFINITY, .single = true, .density = 1.0 / w->light_count};
-  result->radiance = scaled(l->factor, color_at(&l->emitted, lambda));
-  switch (l->kind) {
-    case LIGHT_DISTANT: result->direction = l->direction; return true;
-    case LIGHT_SKY:
+  *result = (light_sample){.distance = (double)INFINITY, .single = true, .density = 1.0 / w->light_count};
+  if (!l->def) return sample_surface(w, l, point, s, lambda, result);
+  matrix m = load_matrix(l->def->world_from_light);
+  vector from = transform_point(&m, from_floats(l->def->from)), to = transform_point(&m, from_floats(l->def->to));
+  vector axis = normalize(subtract(to, from));
+  result->radiance = light_color(w, l, lambda);
+  switch (l->def->kind) {
+    case VL_LIGHT_DISTANT: result->direction = negate(axis); return true;
+    case VL_LIGHT_INFINITE:
       result->direction = sample_sky(l, s);
       result->single = false;
-      return emitted_by_sky(w, l, result->direction, lambda, &result->radiance, &result->density);
-    case LIGHT_SURFACE: return sample_surface(w, l, point, s, lambda, result) && result->density > 0;
-    case LIGHT_MORE: return sample_more_light(w, l, point, s, lambda, result);
-    default: break;
+      result->radiance = sky_radiance(w, l, result->direction, lambda);
+      result->density = sky_density(l, result->direction) / w->light_count;
+      return true;
+    case VL_LIGHT_POINT:
+    case VL_LIGHT_SPOT: break;
+    default: return sample_more_light(w, l, point, s, lambda, result);
   }
-  if (!aim_at(l->position, point, result)) return false;
-  double share = l->kind == LIGHT_SPOT ? spot_share(l, -dot(result->direction, l->direction)) : 1;
+  if (!aim_at(from, point, result)) return false;
+  double share = l->def->kind == VL_LIGHT_SPOT ? spot_share(l->def, -dot(result->direction, axis)) : 1;
   result->radiance = scaled(share / square(result->distance), result->radiance);
-  return true;
-}
-
-bool emitted_by_sky(const world *w, const light *l, vector direction, const wavelengths *lambda, spectrum *radiance,
-                    double *density) {
-  if (l->kind != LIGHT_SKY) return false;
-  *radiance = sky_radiance(l, direction, lambda);
-  *density = sky_density(l, direction) / w->light_count;
   return true;
 }

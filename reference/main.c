@@ -11,6 +11,7 @@
 
 #include "camera.h"
 #include "film.h"
+#include "more/check.h"
 #include "tracer.h"
 
 typedef struct options {
@@ -23,7 +24,7 @@ typedef struct options {
 
 /* The lecture's render_scene: for each pixel and each of its samples a primary ray, and what the ray brings back. Rows
  * go down; the lecture's go up. Returns the number of samples that were lost because they were not finite. */
-static unsigned long render_scene(const world *w, const vlCamera *camera, const medium *around_camera,
+static unsigned long render_scene(const world *w, const vlCamera *camera, const vlMediumDef *around_camera,
                                   view_plane *plane, const options *o) {
   unsigned long lost = 0;
   for (uint32_t row = 0; row < plane->height; row++) {
@@ -37,7 +38,7 @@ static unsigned long render_scene(const world *w, const vlCamera *camera, const 
         ray r;
         if (camera_ray(camera, column + 0.5 + sp.x, row + 0.5 + sp.y, &s, &r))
           radiance = trace_ray(w, r, around_camera, (uint32_t)o->max_depth, &s, &lambda, &met);
-        if (is_finite(radiance))
+        if (isfinite(radiance.c[0] + radiance.c[1] + radiance.c[2] + radiance.c[3]))
           add_sample(plane, column, row, scaled(camera->exposure_time, radiance), &lambda, met);
         else
           lost++;
@@ -107,20 +108,14 @@ static bool render_file(vlContext *context, options *o, vlScene *scene, vlError 
     defs->film.height = (uint32_t)o->height;
     memset(defs->film.crop, 0, sizeof defs->film.crop);
   }
-  world w = {0};
-  view_plane plane = {0};
+  if (!check_scene(scene, &camera, error)) return false;
+  static world w; /* memory is not given back: the program ends */
+  if (!make_world(context, scene, &w, error)) return false;
+  view_plane plane = make_view_plane(defs, (uint32_t)o->samples);
+  unsigned long lost = render_scene(&w, &camera, medium_of(&w, defs->camera_medium), &plane, o);
+  if (lost > 0) fprintf(stderr, "velo-reference: %lu samples were not finite\n", lost);
   vlImage *image = NULL;
-  bool ok = check_camera(&camera, defs->camera_source, error) && make_world(context, scene, &w, error) &&
-            make_view_plane(defs, (uint32_t)o->samples, &plane, error);
-  if (ok) {
-    unsigned long lost = render_scene(&w, &camera, medium_of(&w, defs->camera_medium), &plane, o);
-    if (lost > 0) fprintf(stderr, "velo-reference: %lu samples were not finite\n", lost);
-    ok = make_image(&plane, context, &image) && vl_image_write(image, o->output, NULL, error) == VL_OK;
-  }
-  vl_image_destroy(image);
-  free(plane.pixels);
-  free_world(&w);
-  return ok;
+  return make_image(&plane, context, &image) && vl_image_write(image, o->output, NULL, error) == VL_OK;
 }
 
 int main(int count, char **arguments) {
@@ -131,16 +126,14 @@ int main(int count, char **arguments) {
             "[--tracer path|volpath] [--color rgb]\n");
     return 2;
   }
-  vlContext *context = NULL;
-  vlScene *scene = NULL;
+  static vlContext *context;
+  static vlScene *scene;
   vlContextDef def = vl_default_context_def();
   vlError error = {.code = VL_ERROR_MEMORY, .message = "not rendered"};
   bool ok = vl_context_create(&def, &context) == VL_OK && vl_scene_create(context, &scene) == VL_OK &&
             render_file(context, &o, scene, &error);
   if (!ok && error.file[0]) fprintf(stderr, "%s:%u:%u: ", error.file, error.line, error.column);
   if (!ok) fprintf(stderr, "%s\n", error.message);
-  vl_scene_destroy(scene);
-  vl_context_destroy(context);
   if (ok) return 0;
   return error.code == VL_ERROR_MISSING ? 4 : error.code == VL_ERROR_IO ? 5 : 3;
 }

@@ -1,8 +1,6 @@
 /* microfacet.h: rough surfaces as many small mirrors: the distribution of Trowbridge and Reitz, called GGX (pbrt book
  * 9.6). All directions are local; m is the normal of a small mirror, on the side of +z. */
-#ifndef REFERENCE_MICROFACET_H
-#define REFERENCE_MICROFACET_H
-
+#pragma once
 #include "bsdf.h"
 
 /* So smooth that it is computed as a mirror (pbrt's EffectivelySmooth). */
@@ -56,5 +54,3 @@ static inline vector sample_visible_normal(const bsdf *b, vector w, sampler *s) 
 static inline vector reflect(vector w, vector m) {
   return subtract(scale(2 * dot(w, m), m), w);
 }
-
-#endif

@@ -1,7 +1,5 @@
 /* refuse.h: errors that name what this renderer cannot do, and where the file asks for it; and memory. */
-#ifndef REFERENCE_REFUSE_H
-#define REFERENCE_REFUSE_H
-
+#pragma once
 #include <stdbool.h>
 #include <stddef.h>
 #include <velo/velo.h>
@@ -14,5 +12,3 @@ bool refuse_kind(vlError *error, vlSource source, const char *family, uint32_t k
 /* An array of `count` elements whose first ones are those of `array`, which may be null. Ends the program without
  * memory. */
 void *resize(void *array, size_t count, size_t size);
-
-#endif

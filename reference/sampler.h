@@ -1,9 +1,7 @@
 /* sampler.h: the lecture's sampler. It gives numbers in [0, 1) and, from them, points of the unit square, disk, sphere
  * and hemisphere. The numbers are independent: this renderer shows how an image comes about, not how to need few
  * samples. */
-#ifndef REFERENCE_SAMPLER_H
-#define REFERENCE_SAMPLER_H
-
+#pragma once
 #include <stdint.h>
 
 #include "vector.h"
@@ -49,8 +47,7 @@ static inline square_point sample_unit_disk(sampler *s) {
 /* A direction around z with density cos(theta) / pi: a point of the disk, projected up (Malley). */
 static inline vector sample_cosine_hemisphere(sampler *s) {
   square_point d = sample_unit_disk(s);
-  double rest = 1 - d.x * d.x - d.y * d.y;
-  return make_vector(d.x, d.y, sqrt(rest > 0 ? rest : 0));
+  return make_vector(d.x, d.y, sqrt(fmax(0, 1 - d.x * d.x - d.y * d.y)));
 }
 
 /* A direction with density 1 / 4 pi: z is uniform (Archimedes). */
@@ -67,5 +64,3 @@ static inline uint32_t choose(sampler *s, uint32_t count) {
   uint32_t i = (uint32_t)(next_number(s) * count);
   return i < count ? i : count - 1;
 }
-
-#endif

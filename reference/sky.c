@@ -2,19 +2,13 @@
 #include "light.h"
 #include "refuse.h"
 
-/* ---- the equal-area octahedral map (Clarberg 2008) --------------------------------------------------------------- */
-
-/* The upper hemisphere fills the diamond |u| + |v| <= 1 in the middle of the square -1 to 1, the lower one the four
- * corners; equal solid angles fill equal areas. */
+/* The equal-area octahedral map (Clarberg 2008): the upper hemisphere fills the diamond |u| + |v| <= 1 in the middle of
+ * the square -1 to 1, the lower one the four corners; equal solid angles fill equal areas. */
 square_point square_of(vector d) {
   double r = sqrt(fmax(0, 1 - fabs(d.z)));
   double v = r * atan2(fabs(d.y), fabs(d.x)) * 2 / PI;
   double u = r - v;
-  if (d.z < 0) {
-    double swap = u;
-    u = 1 - v;
-    v = 1 - swap;
-  }
+  if (d.z < 0) return (square_point){(copysign(1 - v, d.x) + 1) / 2, (copysign(1 - u, d.y) + 1) / 2};
   return (square_point){(copysign(u, d.x) + 1) / 2, (copysign(v, d.y) + 1) / 2};
 }
 
@@ -28,8 +22,6 @@ vector direction_of(square_point p) {
   return make_vector(copysign(cos(phi), u) * around, copysign(sin(phi), v) * around, z);
 }
 
-/* ---- reading ----------------------------------------------------------------------------------------------------- */
-
 static void sky_pixel(const sky *k, uint32_t index, double rgb[4]) {
   pixel_of(&k->map, index % k->map.width, index / k->map.width, VL_WRAP_CLAMP, VL_WRAP_CLAMP, rgb);
   for (int c = 0; c < 3; c++) rgb[c] = fmax(0, rgb[c]);
@@ -42,52 +34,40 @@ static double pixel_luminance(const sky *k, uint32_t index) {
 }
 
 /* The table of sums: a number drawn from 0 to 1 lies between two of them, which is the pixel. A tenth of the samples is
- * spread evenly, so that no direction that shines is left out. */
-static void make_table(sky *k) {
-  uint32_t count = k->map.width * k->map.width;
-  double total = 0;
-  for (uint32_t i = 0; i < count; i++) total += pixel_luminance(k, i);
+ * spread evenly, so that no direction that shines is left out. Returns the illuminance of a surface that faces up,
+ * light space +z. */
+static double make_table(sky *k) {
+  uint32_t n = k->map.width, count = n * n;
+  double total = 0, upwards = 0;
+  for (uint32_t i = 0; i < count; i++) {
+    vector d = direction_of((square_point){(i % n + 0.5) / n, (i / n + 0.5) / n});
+    total += pixel_luminance(k, i);
+    upwards += pixel_luminance(k, i) * fmax(0, d.z);
+  }
   double even = total > 0 ? 0.1 * total / count : 1;
   k->sums = resize(NULL, (size_t)count + 1, sizeof *k->sums);
   k->sums[0] = 0;
   for (uint32_t i = 0; i < count; i++) k->sums[i + 1] = k->sums[i] + pixel_luminance(k, i) + even;
   for (uint32_t i = 0; i < count; i++) k->sums[i] /= k->sums[count];
   k->sums[count] = 1;
+  return upwards * 4 * PI / count;
 }
 
-/* The illuminance of a surface that faces up, light space +z, by the image with factor 1. */
-static double illuminance_of(const sky *k) {
-  uint32_t n = k->map.width;
-  double sum = 0;
-  for (uint32_t i = 0; i < n * n; i++) {
-    vector d = direction_of((square_point){(i % n + 0.5) / n, (i / n + 0.5) / n});
-    sum += pixel_luminance(k, i) * fmax(0, d.z);
-  }
-  return sum * 4 * PI / ((double)n * n);
-}
-
-bool read_sky(const world *w, const vlLightDef *def, light *l, vlError *error) {
-  sky *k = &l->sky;
-  bool lux = !isnan(def->illuminance);
-  if (def->has_portal) return refuse(error, def->source, "a portal");
-  if (!def->path && !def->image) {
-    if (lux) l->factor *= def->illuminance / PI;
-    return true;
-  }
+bool read_sky(const world *w, light *l, vlError *error) {
+  const vlLightDef *def = l->def;
+  double illuminance = PI;
   vlImage *image = NULL;
   if (def->path && vl_image_read(w->context, def->path, &image, error) != VL_OK) return false;
-  k->map = make_image_map(image ? image : def->image, image);
-  if (k->map.width != k->map.height || k->map.width > 8192) return refuse(error, def->source, "a sky of this size");
-  k->world_from_light = load_matrix(def->world_from_light);
-  k->light_from_world = invert(&k->world_from_light);
-  make_table(k);
-  if (lux) l->factor *= def->illuminance / illuminance_of(k);
-  vlSpectrum white = vl_spectrum_rgb(1, 1, 1);
-  white.space = l->space;
-  return read_color(&white, VL_PARAMETER_ILLUMINANT, &l->emitted, error);
+  if (image || def->image) {
+    l->sky.map = make_image_map(image ? image : def->image);
+    if (l->sky.map.width != l->sky.map.height) return refuse(error, def->source, "a sky that is not square");
+    l->sky.world_from_light = load_matrix(def->world_from_light);
+    l->sky.light_from_world = invert(&l->sky.world_from_light);
+    illuminance = make_table(&l->sky);
+  }
+  if (!isnan(def->illuminance)) l->factor *= def->illuminance / illuminance;
+  return true;
 }
-
-/* ---- radiance, samples, density ---------------------------------------------------------------------------------- */
 
 /* The pixel of a direction. */
 static uint32_t pixel_at(const sky *k, vector direction) {
@@ -96,12 +76,12 @@ static uint32_t pixel_at(const sky *k, vector direction) {
   return (uint32_t)clamp(floor(p.y * n), 0, n - 1) * n + (uint32_t)clamp(floor(p.x * n), 0, n - 1);
 }
 
-spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda) {
-  spectrum radiance = scaled(l->factor, color_at(&l->emitted, lambda));
+spectrum sky_radiance(const world *w, const light *l, vector direction, const wavelengths *lambda) {
+  spectrum radiance = light_color(w, l, lambda);
   if (!l->sky.sums) return radiance;
   double rgb[4];
   sky_pixel(&l->sky, pixel_at(&l->sky, direction), rgb);
-  return times(radiance, texel_spectrum(l->space, rgb, VL_PARAMETER_UNBOUNDED, lambda));
+  return times(radiance, texel_spectrum(l->def->space, rgb, VL_PARAMETER_UNBOUNDED, lambda));
 }
 
 /* The pixel's share of all samples over its solid angle, 4 pi / n^2. */

@@ -9,9 +9,9 @@
 /* What a path is and has gathered so far. */
 typedef struct path {
   ray r;
-  spectrum radiance;   /* found so far */
-  spectrum throughput; /* the share of light that reaches the eye from the path's end */
-  const medium *inside;
+  spectrum radiance;         /* found so far */
+  spectrum throughput;       /* the share of light that reaches the eye from the path's end */
+  const vlMediumDef *inside; /* the medium around the ray; null: vacuum */
   uint32_t depth;
   /* how the last direction was chosen: needed where the ray meets a light that could also have been asked */
   vector chosen_at;
@@ -19,15 +19,12 @@ typedef struct path {
   bool chosen_alone; /* no light could have been asked for this direction */
 } path;
 
-static ray ray_from(const world *w, vector origin, vector direction, double time) {
-  return (ray){origin, direction, surface_distance(w, origin), INFINITY, time};
-}
-
-/* Where a ray leaves a surface. A curve turns to face each ray: so that the new one does not meet it, it starts as far
- * off as the curve is thick. */
-static vector start_from(const shade_record *at, vector direction) {
+/* A ray that leaves a point. A curve turns to face each ray: so that the new one does not meet it, it starts as far off
+ * as the curve is thick. */
+static ray ray_from(const world *w, const shade_record *at, vector direction, double time) {
   double side = dot(direction, at->normal) < 0 ? -1 : 1;
-  return add(at->point, scale(side * 5 * at->thickness, at->normal));
+  vector origin = add(at->point, scale(side * 5 * at->thickness, at->normal));
+  return (ray){origin, direction, surface_distance(w, origin), (double)INFINITY, time};
 }
 
 /* Both ways of finding a light, asking it and meeting it, have a density. Each result is multiplied by its share of the
@@ -36,44 +33,45 @@ static double share_of(double own, double other) {
   return isfinite(own) ? square(own) / (square(own) + square(other)) : 1;
 }
 
-/* ---- the lecture's direct light ---------------------------------------------------------------------------------- */
+static bool is_interface(const world *w, const shade_record *at, sampler *s) {
+  return material_at(w, at, s)->kind == VL_MATERIAL_INTERFACE;
+}
 
-/* The shadow ray: the share of light that gets from a light to a point, 0 behind a surface, less than 1 through media.
- */
-static spectrum visibility(const world *w, ray r, double distance, const medium *inside, sampler *s,
+/* The lecture's shadow ray: the share of light that gets from a light to a point, 0 behind a surface, less than 1
+ * through media. */
+static spectrum visibility(const world *w, ray r, double distance, const vlMediumDef *inside, sampler *s,
                            const wavelengths *lambda) {
   spectrum share = gray(1);
   for (;;) {
     shade_record at;
     r.t_max = distance * (1 - 1e-10) - surface_distance(w, r.origin);
     bool found = find_hit(w, r, s, &at);
-    if (found && !is_interface(material_at(w, &at, s))) return gray(0);
+    if (found && !is_interface(w, &at, s)) return gray(0);
     double step = found ? at.t : distance;
-    if (inside) share = times(share, transmittance(inside, r, step, s, lambda));
+    if (inside) share = times(share, transmittance(w, inside, r, step, s, lambda));
     if (!found || largest(share) == 0) return share;
     inside = medium_beyond(w, &at, r.direction, inside);
     distance -= step;
-    r = ray_from(w, at.point, r.direction, r.time);
+    r = ray_from(w, &at, r.direction, r.time);
   }
 }
 
-/* Asks one light. The surface's BSDF at `at`, or else (null) the medium's phase function, scatters its light. */
-static void add_direct_light(const world *w, path *p, vector point, vector wo, const bsdf *b, const shade_record *at,
-                             sampler *s, const wavelengths *lambda) {
+/* The lecture's direct light: asks one light, whose light is scattered towards wo. */
+static void add_direct_light(const world *w, path *p, const bsdf *b, const shade_record *at, sampler *s,
+                             const wavelengths *lambda) {
   light_sample asked;
-  if (!sample_light(w, point, s, lambda, &asked)) return;
-  double density = b ? 0 : phase(p->inside, wo, asked.direction);
-  spectrum value = b ? bsdf_value(b, wo, asked.direction, s, &density) : gray(density);
-  value = times(value, asked.radiance);
+  double density;
+  if (!sample_light(w, at->point, s, lambda, &asked)) return;
+  spectrum value = times(asked.radiance, bsdf_value(b, negate(p->r.direction), asked.direction, s, &density));
   if (largest(value) == 0) return;
-  const medium *inside = b ? medium_beyond(w, at, asked.direction, p->inside) : p->inside;
-  ray shadow = ray_from(w, b ? start_from(at, asked.direction) : point, asked.direction, p->r.time);
-  spectrum arriving = times(value, visibility(w, shadow, asked.distance, inside, s, lambda));
+  ray shadow = ray_from(w, at, asked.direction, p->r.time);
+  const vlMediumDef *inside = medium_beyond(w, at, asked.direction, p->inside);
+  value = times(value, visibility(w, shadow, asked.distance, inside, s, lambda));
   double share = asked.single ? 1 : share_of(asked.density, density);
-  p->radiance = plus(p->radiance, scaled(share / asked.density, times(p->throughput, arriving)));
+  p->radiance = plus(p->radiance, scaled(share / asked.density, times(p->throughput, value)));
 }
 
-/* Light that the path meets by itself. */
+/* Light that the path meets by itself: on a surface, or in the sky. */
 static void add_met_light(path *p, spectrum emitted, double light_density) {
   if (largest(emitted) == 0) return;
   double share = p->chosen_alone ? 1 : share_of(p->chosen_density, light_density);
@@ -82,42 +80,23 @@ static void add_met_light(path *p, spectrum emitted, double light_density) {
 
 static void add_skies(const world *w, path *p, const wavelengths *lambda) {
   for (uint32_t i = 0; i < w->light_count; i++) {
-    double density;
-    spectrum emitted;
-    if (emitted_by_sky(w, &w->lights[i], p->r.direction, lambda, &emitted, &density))
-      add_met_light(p, emitted, density);
+    const light *l = &w->lights[i];
+    if (!l->def || l->def->kind != VL_LIGHT_INFINITE) continue;
+    double density = sky_density(l, p->r.direction) / w->light_count;
+    add_met_light(p, sky_radiance(w, l, p->r.direction, lambda), density);
   }
 }
 
-/* ---- the next ray ------------------------------------------------------------------------------------------------ */
-
-static void go_on(const world *w, path *p, vector point, vector direction, double density, bool alone) {
-  p->r = ray_from(w, point, direction, p->r.time);
-  p->chosen_at = point;
-  p->chosen_density = density;
-  p->chosen_alone = alone;
-}
-
-/* The path scatters in the medium. */
-static void scatter_in_medium(const world *w, path *p, double distance, sampler *s, const wavelengths *lambda) {
-  vector point = add(p->r.origin, scale(distance, p->r.direction));
-  vector wo = negate(p->r.direction);
-  add_direct_light(w, p, point, wo, NULL, NULL, s, lambda);
-  vector wi = sample_phase(p->inside, wo, s);
-  go_on(w, p, point, wi, phase(p->inside, wo, wi), false);
-}
-
-/* The path is reflected or goes on through the surface. False: it ends. */
-static bool scatter_at_surface(const world *w, path *p, const material *m, const shade_record *at, sampler *s,
-                               wavelengths *lambda) {
-  vector wo = negate(p->r.direction);
-  bsdf b = make_bsdf(w, m, at, lambda);
-  add_direct_light(w, p, at->point, wo, &b, at, s, lambda);
+/* The path goes on in a direction that the BSDF chooses. False: it ends. */
+static bool scatter(const world *w, path *p, const bsdf *b, const shade_record *at, sampler *s) {
   bsdf_sample next;
-  if (!sample_bsdf(&b, wo, s, &next)) return false;
+  if (!sample_bsdf(b, negate(p->r.direction), s, &next)) return false;
   p->throughput = times(p->throughput, next.weight);
   p->inside = medium_beyond(w, at, next.wi, p->inside);
-  go_on(w, p, start_from(at, next.wi), next.wi, next.density, next.specular);
+  p->r = ray_from(w, at, next.wi, p->r.time);
+  p->chosen_at = p->r.origin;
+  p->chosen_density = next.density;
+  p->chosen_alone = next.specular;
   return true;
 }
 
@@ -131,36 +110,37 @@ static bool survives(path *p, sampler *s) {
   return most > 0 && next_number(s) < chance;
 }
 
-spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_depth, sampler *s, wavelengths *lambda,
-                   bool *met) {
+spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t max_depth, sampler *s,
+                   wavelengths *lambda, bool *met) {
   path p = {.r = r, .throughput = gray(1), .inside = inside, .chosen_at = r.origin, .chosen_alone = true};
-  *met = false;
   while (survives(&p, s)) {
     shade_record at;
     bool found = find_hit(w, p.r, s, &at);
     double distance = found ? at.t : (double)INFINITY;
     spectrum emission = gray(0);
-    bool in_medium = p.inside && scatters_before(p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
+    bsdf b;
+    bool in_medium = p.inside && scatters_before(w, p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
     if (p.depth < max_depth) p.radiance = plus(p.radiance, emission);
+    if (!in_medium && !found) add_skies(w, &p, lambda);
+    if (!in_medium && !found) break;
     if (in_medium) {
-      if (p.depth++ >= max_depth) break;
-      scatter_in_medium(w, &p, distance, s, lambda);
-      continue;
+      at = (shade_record){.point = add(p.r.origin, scale(distance, p.r.direction))};
+      b = phase_function(p.inside, negate(p.r.direction));
+    } else {
+      *met = true;
+      add_met_light(&p, emitted_by_surface(w, &at, negate(p.r.direction), lambda),
+                    density_of_surface(w, &at, p.chosen_at));
+      const vlMaterialDef *m = material_at(w, &at, s);
+      if (m->kind == VL_MATERIAL_INTERFACE) {
+        p.inside = medium_beyond(w, &at, p.r.direction, p.inside);
+        p.r = ray_from(w, &at, p.r.direction, p.r.time);
+        continue;
+      }
+      if (p.depth < max_depth) b = make_bsdf(w, m, &at, lambda);
     }
-    if (!found) {
-      add_skies(w, &p, lambda);
-      break;
-    }
-    *met = true;
-    add_met_light(&p, emitted_by_surface(w, &at, negate(p.r.direction), lambda),
-                  density_of_surface(w, &at, p.chosen_at));
-    const material *m = material_at(w, &at, s);
-    if (is_interface(m)) {
-      p.inside = medium_beyond(w, &at, p.r.direction, p.inside);
-      p.r = ray_from(w, at.point, p.r.direction, p.r.time);
-      continue;
-    }
-    if (p.depth++ >= max_depth || !scatter_at_surface(w, &p, m, &at, s, lambda)) break;
+    if (p.depth++ >= max_depth) break;
+    add_direct_light(w, &p, &b, &at, s, lambda);
+    if (!scatter(w, &p, &b, &at, s)) break;
   }
   return p.radiance;
 }

@@ -1,13 +1,8 @@
 /* tracer.h: the lecture's tracer: the radiance that comes back along a ray. */
-#ifndef REFERENCE_TRACER_H
-#define REFERENCE_TRACER_H
-
+#pragma once
 #include "medium.h"
-#include "world.h"
 
 /* The radiance along a ray that starts in a medium (null: vacuum). A path has at most max_depth bounces. *met: whether
  * the ray met a surface. */
-spectrum trace_ray(const world *w, ray r, const medium *inside, uint32_t max_depth, sampler *s, wavelengths *lambda,
-                   bool *met);
-
-#endif
+spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t max_depth, sampler *s,
+                   wavelengths *lambda, bool *met);

@@ -1,17 +1,10 @@
-/* vector.h: points, directions and transforms in double precision. A 4 x 4 matrix is row-major; `world_from_shape`
- * takes a point of the shape's space to the world. */
-#ifndef REFERENCE_VECTOR_H
-#define REFERENCE_VECTOR_H
-
+/* vector.h: points, directions and transforms in double precision. */
+#pragma once
 #include <math.h>
 
 typedef struct vector {
   double x, y, z;
 } vector;
-
-typedef struct matrix {
-  double m[16];
-} matrix;
 
 static const double PI = 3.14159265358979323846;
 
@@ -31,7 +24,7 @@ static inline vector scale(double s, vector a) {
   return (vector){s * a.x, s * a.y, s * a.z};
 }
 static inline vector negate(vector a) {
-  return (vector){-a.x, -a.y, -a.z};
+  return scale(-1, a);
 }
 static inline double dot(vector a, vector b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -56,6 +49,10 @@ static inline vector least(vector a, vector b) {
 static inline vector greatest(vector a, vector b) {
   return (vector){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
 }
+/* The weighted sum of three vectors. */
+static inline vector blend(vector a, vector b, vector c, double wa, double wb, double wc) {
+  return add(scale(wa, a), add(scale(wb, b), scale(wc, c)));
+}
 static inline double clamp(double x, double low, double high) {
   return x < low ? low : x > high ? high : x;
 }
@@ -63,93 +60,60 @@ static inline double square(double x) {
   return x * x;
 }
 
-/* The weighted sum of three corners. */
-static inline vector blend(vector a, vector b, vector c, double wa, double wb, double wc) {
-  return add(scale(wa, a), add(scale(wb, b), scale(wc, c)));
-}
-
-/* ---- transforms -------------------------------------------------------------------------------------------------- */
+/* A frame is three axes and an origin: the lecture's u, v, w and eye. As a matrix, whose columns they are, it takes
+ * local coordinates to the space in which the axes are given: `world_from_shape` takes a point of the shape to the
+ * world. */
+typedef struct frame {
+  vector x, y, z, origin;
+} frame;
+typedef frame matrix;
 
 static inline matrix load_matrix(const double m[16]) {
-  matrix result;
-  for (int i = 0; i < 16; i++) result.m[i] = m[i];
-  return result;
+  return (matrix){{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
 }
 static inline matrix identity_matrix(void) {
-  return (matrix){{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-}
-static inline matrix multiply(matrix a, matrix b) {
-  matrix c;
-  for (int row = 0; row < 4; row++) {
-    for (int column = 0; column < 4; column++) {
-      double sum = 0;
-      for (int k = 0; k < 4; k++) sum += a.m[4 * row + k] * b.m[4 * k + column];
-      c.m[4 * row + column] = sum;
-    }
-  }
-  return c;
-}
-static inline vector transform_point(const matrix *a, vector p) {
-  const double *m = a->m;
-  return (vector){m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-                  m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+  return (matrix){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
 }
 static inline vector transform_vector(const matrix *a, vector v) {
-  const double *m = a->m;
-  return (vector){m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
-                  m[8] * v.x + m[9] * v.y + m[10] * v.z};
+  return blend(a->x, a->y, a->z, v.x, v.y, v.z);
+}
+static inline vector transform_point(const matrix *a, vector p) {
+  return add(a->origin, transform_vector(a, p));
 }
 /* Normals are transformed by the inverse transposed; `inverse` is the inverse of the transform. */
 static inline vector transform_normal(const matrix *inverse, vector n) {
-  const double *m = inverse->m;
-  return (vector){m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z,
-                  m[2] * n.x + m[6] * n.y + m[10] * n.z};
+  return make_vector(dot(inverse->x, n), dot(inverse->y, n), dot(inverse->z, n));
 }
-/* The determinant of the linear part; negative where the transform mirrors. */
+static inline matrix multiply(matrix a, matrix b) {
+  return (matrix){transform_vector(&a, b.x), transform_vector(&a, b.y), transform_vector(&a, b.z),
+                  transform_point(&a, b.origin)};
+}
+/* Negative where the transform mirrors. */
 static inline double determinant(const matrix *a) {
-  const double *m = a->m;
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return dot(a->x, cross(a->y, a->z));
 }
-/* The inverse of an affine transform (last row 0 0 0 1), by Cramer's rule. */
+/* Cramer's rule: the rows of the inverse are cross products of the columns over the determinant. */
 static inline matrix invert(const matrix *a) {
-  const double *m = a->m;
   double d = 1 / determinant(a);
-  matrix r = identity_matrix();
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      int a1 = (j + 1) % 3, a2 = (j + 2) % 3, b1 = (i + 1) % 3, b2 = (i + 2) % 3;
-      r.m[4 * i + j] = d * (m[4 * a1 + b1] * m[4 * a2 + b2] - m[4 * a1 + b2] * m[4 * a2 + b1]);
-    }
-  }
-  vector back = transform_vector(&r, make_vector(m[3], m[7], m[11]));
-  r.m[3] = -back.x;
-  r.m[7] = -back.y;
-  r.m[11] = -back.z;
-  return r;
+  vector r0 = scale(d, cross(a->y, a->z)), r1 = scale(d, cross(a->z, a->x)), r2 = scale(d, cross(a->x, a->y));
+  matrix inverse = {{r0.x, r1.x, r2.x}, {r0.y, r1.y, r2.y}, {r0.z, r1.z, r2.z}, {0, 0, 0}};
+  inverse.origin = negate(transform_vector(&inverse, a->origin));
+  return inverse;
 }
 
-/* ---- frames ------------------------------------------------------------------------------------------------------ */
-
-/* An orthonormal frame around a normal n: the local z axis. Local directions of a BSDF are in it. */
-typedef struct frame {
-  vector s, t, n;
-} frame;
-
-/* s follows the tangent as far as it can (Gram-Schmidt); any s will do where the tangent is parallel to n. */
+/* An orthonormal frame whose z axis is the normal n. x follows the tangent as far as it can (Gram-Schmidt); any x will
+ * do where the tangent is parallel to n. */
 static inline frame make_frame(vector n, vector tangent) {
-  vector s = subtract(tangent, scale(dot(n, tangent), n));
-  if (!(length(s) > 1e-9 * length(tangent))) {
-    vector other = fabs(n.x) > 0.9 ? make_vector(0, 1, 0) : make_vector(1, 0, 0);
-    s = cross(n, other);
-  }
-  s = normalize(s);
-  return (frame){s, cross(n, s), n};
+  vector x = subtract(tangent, scale(dot(n, tangent), n));
+  if (!(length(x) > 1e-9 * length(tangent)))
+    x = cross(n, fabs(n.x) > 0.9 ? make_vector(0, 1, 0) : make_vector(1, 0, 0));
+  x = normalize(x);
+  return (frame){x, cross(n, x), n, {0, 0, 0}};
 }
+/* Directions in the axes of an orthonormal frame, and back. */
 static inline vector to_local(frame f, vector v) {
-  return (vector){dot(v, f.s), dot(v, f.t), dot(v, f.n)};
+  return make_vector(dot(v, f.x), dot(v, f.y), dot(v, f.z));
 }
 static inline vector from_local(frame f, vector v) {
-  return blend(f.s, f.t, f.n, v.x, v.y, v.z);
+  return transform_vector(&f, v);
 }
-
-#endif

@@ -1,29 +1,11 @@
-/* world.c: makes the world: every shape at each of its places, its primitives, and what they are made of. Instances are
- * not shared: a group that stands in ten places is stored ten times. */
+/* world.c: makes the world: every shape at each of its places, and its primitives. Instances are not shared: a group
+ * that stands in ten places is stored ten times. */
 #include "world.h"
 
-#include <stdlib.h>
-
 #include "light.h"
-#include "material.h"
-#include "medium.h"
 #include "more/more.h"
 #include "refuse.h"
 #include "texture.h"
-
-static bool check_shape(const vlShapeDef *def, vlError *error) {
-  if (def->centers) return refuse(error, def->source, "many spheres as one shape");
-  if (def->positions_close) return refuse(error, def->source, "a moving mesh");
-  if (def->displacement.texture.index) return refuse(error, def->source, "a displaced mesh");
-  if (def->one_sided) return refuse(error, def->source, "a mesh with one side");
-  switch (def->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER: return true;
-    default: return check_more_shape(def, error);
-  }
-}
 
 /* Sides follow pbrt-v4: a mirrored quadric turns its normals over, a mirrored mesh does not (its normal is defined in
  * its own space), and instances never turn normals. */
@@ -66,40 +48,24 @@ static void add_shape(world *w, const vlShapeDef *def, matrix world_from_group) 
 }
 
 /* A shape of the world itself stands in one place, that of a group in as many as the group has instances. */
-static bool place_shape(world *w, const vlShapeDef *def, vlError *error) {
-  if (!check_shape(def, error)) return false;
+static void place_shape(world *w, const vlShapeDef *def) {
   if (!def->group.index) add_shape(w, def, identity_matrix());
   vlInstanceInfo info;
   for (uint32_t i = 1; vl_scene_instance(w->scene, (vlInstanceId){i}, &info) == VL_OK; i++) {
-    if (!def->group.index || info.group.index != def->group.index || !info.shown) continue;
-    if (info.moves) return refuse(error, info.source, "a moving instance");
-    add_shape(w, def, load_matrix(info.world_from_group));
+    bool here = def->group.index && info.group.index == def->group.index && info.shown;
+    if (here) add_shape(w, def, load_matrix(info.world_from_group));
   }
-  return true;
 }
 
 bool make_world(vlContext *context, vlScene *scene, world *w, vlError *error) {
   const vlSceneDefs *defs = vl_scene_defs(scene);
-  vlTracer tracer = defs->render.tracer;
-  if (tracer == VL_TRACER_RAYCAST || tracer == VL_TRACER_AMBIENT_OCCLUSION || tracer == VL_TRACER_RANDOM_WALK)
-    return refuse_kind(error, (vlSource){0}, "tracers", (uint32_t)tracer);
-  if (defs->build.regularize) return refuse(error, (vlSource){0}, "regularize");
   *w = (world){.context = context, .scene = scene, .rgb = defs->build.color == VL_COLOR_RGB};
-  w->media_are_absent = tracer == VL_TRACER_PATH;
+  w->media_are_absent = defs->render.tracer == VL_TRACER_PATH;
+  w->standard_material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
+  w->colors = resize(NULL, 1, sizeof *w->colors);
+  *w->colors = (color_table){{NULL}};
   const vlShapeDef *def;
-  for (uint32_t i = 1; (def = vl_scene_shape(scene, (vlShapeId){i})); i++) {
-    if (!place_shape(w, def, error)) return false;
-  }
+  for (uint32_t i = 1; (def = vl_scene_shape(scene, (vlShapeId){i})); i++) place_shape(w, def);
   make_accelerator(w);
-  return read_textures(w, error) && read_materials(w, error) && read_media(w, error) && read_lights(w, error);
-}
-
-void free_world(world *w) {
-  free_lights(w);
-  free_textures(w);
-  free(w->placements);
-  free(w->primitives);
-  free(w->materials);
-  free(w->media);
-  free(w->nodes);
+  return read_images(w, error) && read_lights(w, error);
 }

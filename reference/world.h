@@ -1,8 +1,6 @@
 /* world.h: the lecture's world: surfaces, materials, lights and media, made from the scene of a file. It is constant
  * while the image is taken. */
-#ifndef REFERENCE_WORLD_H
-#define REFERENCE_WORLD_H
-
+#pragma once
 #include <velo/velo.h>
 
 #include "color.h"
@@ -45,13 +43,11 @@ typedef struct shade_record {
   vector arrival;      /* direction of the ray that met the point */
   double thickness;    /* of a curve, else 0: how far off the surface a new ray starts */
   const primitive *what;
-  const placement *where;
+  const placement *where; /* null: not on a surface, but inside a medium */
 } shade_record;
 
 typedef struct node node; /* of the accelerator */
-typedef struct material material;
 typedef struct light light;
-typedef struct medium medium;
 
 typedef struct world {
   vlContext *context;
@@ -61,19 +57,16 @@ typedef struct world {
   placement *placements;
   primitive *primitives;
   node *nodes;
-  material *materials;
-  medium *media;
-  color *texture_colors; /* per texture: its four spectrum inputs */
-  image_map *images;     /* per texture; empty for kinds without an image */
   light *lights;
-  uint32_t placement_count, primitive_count, material_count, medium_count, texture_count, light_count;
+  image_map *images; /* per texture; empty for kinds without an image */
+  color_table *colors;
+  vlMaterialDef standard_material; /* of shapes without one */
+  uint32_t placement_count, primitive_count, light_count;
   double radius; /* of a sphere around all surfaces */
 } world;
 
-/* Makes the world of a scene, which must outlive it. False, with an error that names what the reference renderer cannot
- * do. */
+/* Makes the world of a scene, which must outlive it. False, with an error, where an image cannot be read. */
 bool make_world(vlContext *context, vlScene *scene, world *w, vlError *error);
-void free_world(world *w);
 
 /* accelerator.c: a tree of boxes over the primitives. */
 void make_accelerator(world *w);
@@ -92,8 +85,8 @@ bool meet_shape(const world *w, const primitive *p, ray r, meeting *m);
 void shape_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
 /* A point of a primitive that emits light, drawn with the density record->area_density. */
 void sample_shape(const world *w, const primitive *p, sampler *s, shade_record *record);
+/* Makes the box of a primitive; makes it contain a point. */
 void bound_shape(const world *w, primitive *p);
-/* Makes the box of a primitive contain a point. */
 void include_point(primitive *p, vector point);
 
 /* triangle.c, quadric.c: the kinds. */
@@ -114,5 +107,3 @@ void mesh_normals(const placement *where, const mesh_corner *corners, int count,
 static inline double surface_distance(const world *w, vector p) {
   return 1e-11 * (w->radius + fabs(p.x) + fabs(p.y) + fabs(p.z));
 }
-
-#endif

@@ -1,15 +1,13 @@
 /* more/media.c: the media of more/, by kind. */
 #include "more.h"
-#include "refuse.h"
 
-bool read_more_medium(const world *w, const vlMediumDef *def, medium *m, vlError *error) {
-  (void)w;
-  (void)m;
-  if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
-  return refuse_kind(error, def->source, "media", (uint32_t)def->kind);
+bool is_homogeneous(const vlMediumDef *m) {
+  return m->kind == VL_MEDIUM_HOMOGENEOUS;
 }
 
-spectrum more_transmittance(const medium *m, ray r, double distance, sampler *s, const wavelengths *lambda) {
+spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
+                            const wavelengths *lambda) {
+  (void)w;
   (void)m;
   (void)r;
   (void)distance;
@@ -18,8 +16,9 @@ spectrum more_transmittance(const medium *m, ray r, double distance, sampler *s,
   return gray(0);
 }
 
-bool scatters_in_more(const medium *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
-                      spectrum *throughput, spectrum *emitted) {
+bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
+                      const wavelengths *lambda, spectrum *throughput, spectrum *emitted) {
+  (void)w;
   (void)m;
   (void)r;
   (void)distance;

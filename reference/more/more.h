@@ -1,51 +1,46 @@
 /* more/more.h: what the core asks more/ for. Where the core's own switch over kinds ends, it calls one of these
- * functions; `check_more_...` refuse by name what more/ does not have either. */
-#ifndef REFERENCE_MORE_H
-#define REFERENCE_MORE_H
-
+ * functions. more/check.c refuses by name what more/ does not have either. */
+#pragma once
 #include "light.h"
 #include "material.h"
 #include "medium.h"
 #include "world.h"
 
 /* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
-bool check_more_shape(const vlShapeDef *def, vlError *error);
 uint32_t more_corners(const vlShapeDef *def);
 bool meet_more(const world *w, const primitive *p, ray r, meeting *m);
 void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
 void bound_more(const world *w, primitive *p);
 
 /* more/materials.c: a material becomes a BSDF of kind BSDF_MORE; directions are local. Sampling chooses wi, and the
- * weight of a specular one; of others the core asks for value and density. Materials of the core are read here, too:
- * their bump maps. */
-bool read_more_material(const world *w, material *m, vlError *error);
-void more_bsdf_at(const world *w, const material *m, const shade_record *at, wavelengths *lambda, bsdf *b);
+ * weight of a specular one; of others the core asks for value and density. */
+void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b);
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* Changes the shading normal: bump and normal maps. Called before the BSDF is made. */
-void bend_normal(const world *w, const material *m, shade_record *at);
+/* Changes the shading normal: bump and normal maps. Called before any BSDF is made. */
+void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at);
 
-/* more/textures.c. `colors`: the spectra of the texture's inputs a, b, c, d. */
-bool check_more_texture(const vlTextureDef *def, vlError *error);
+/* more/textures.c */
 square_point more_coordinates(const vlTextureDef *def, const shade_record *at);
 double more_number(const world *w, const vlTextureDef *def, const shade_record *at);
-spectrum more_spectrum(const world *w, const vlTextureDef *def, const color *colors, vlParameterRole role,
-                       const shade_record *at, const wavelengths *lambda);
+spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
+                       const wavelengths *lambda);
+/* The same image, whose integers mean what the texture says instead of the file. */
+image_map decode_otherwise(vlContext *context, const vlImage *image, const vlTextureDef *texture);
 
-/* more/lights.c: lights of kind LIGHT_MORE. Of a sample the core has set `density` to that of the choice of this light,
- * `single`, an infinite distance, and the emitted spectrum. */
-bool read_more_light(const world *w, const vlLightDef *def, light *l, vlError *error);
+/* more/lights.c: called for each light that is neither the sky nor a surface. Of a sample the core has set `density` to
+ * that of the choice of this light, `single`, an infinite distance, and the light's colour. */
+bool read_more_light(const world *w, light *l, vlError *error);
 bool sample_more_light(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                        light_sample *result);
 
 /* more/media.c: media that are not the same everywhere, along a ray. As in medium.h. */
-bool read_more_medium(const world *w, const vlMediumDef *def, medium *m, vlError *error);
-spectrum more_transmittance(const medium *m, ray r, double distance, sampler *s, const wavelengths *lambda);
-bool scatters_in_more(const medium *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
-                      spectrum *throughput, spectrum *emitted);
+bool is_homogeneous(const vlMediumDef *m);
+spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
+                            const wavelengths *lambda);
+bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
+                      const wavelengths *lambda, spectrum *throughput, spectrum *emitted);
 
 /* more/cameras.c: whole rays, with their time, of cameras that the core does not have. */
-bool check_more_camera(const vlCamera *c, vlSource source, vlError *error);
+bool is_more_camera(const vlCamera *c);
 bool more_camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r);
-
-#endif

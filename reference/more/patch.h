@@ -1,10 +1,6 @@
 /* more/patch.h: bilinear patches. */
-#ifndef REFERENCE_PATCH_H
-#define REFERENCE_PATCH_H
-
+#pragma once
 #include "world.h"
 
 bool meet_patch(const primitive *p, ray r, meeting *m);
 void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
-
-#endif

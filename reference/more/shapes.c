@@ -1,12 +1,6 @@
 /* more/shapes.c: the shapes of more/, by kind. */
 #include "more.h"
 #include "patch.h"
-#include "refuse.h"
-
-bool check_more_shape(const vlShapeDef *def, vlError *error) {
-  if (def->kind == VL_SHAPE_BILINEAR) return true;
-  return refuse_kind(error, def->source, "shapes", (uint32_t)def->kind);
-}
 
 uint32_t more_corners(const vlShapeDef *def) {
   return def->kind == VL_SHAPE_BILINEAR ? 4 : 0;

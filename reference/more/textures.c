@@ -1,16 +1,10 @@
 /* more/textures.c: constant, mix and bilinear textures, and texture coordinates from points (pbrt book 10.2). */
 #include "more.h"
+
+#include <string.h>
+
 #include "refuse.h"
 #include "texture.h"
-
-bool check_more_texture(const vlTextureDef *def, vlError *error) {
-  switch (def->kind) {
-    case VL_TEXTURE_CONSTANT:
-    case VL_TEXTURE_MIX:
-    case VL_TEXTURE_BILERP: return true;
-    default: return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
-  }
-}
 
 /* ---- texture coordinates ----------------------------------------------------------------------------------------- */
 
@@ -50,19 +44,36 @@ double more_number(const world *w, const vlTextureDef *def, const shade_record *
   return (1 - st.x) * low + st.x * high;
 }
 
-spectrum more_spectrum(const world *w, const vlTextureDef *def, const color *colors, vlParameterRole role,
-                       const shade_record *at, const wavelengths *lambda) {
-  spectrum a = spectrum_at(w, def->spectrum_a, &colors[0], role, at, lambda);
+spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
+                       const wavelengths *lambda) {
+  spectrum a = spectrum_at(w, &def->spectrum_a, role, at, lambda);
   if (def->kind == VL_TEXTURE_CONSTANT) return a;
-  spectrum b = spectrum_at(w, def->spectrum_b, &colors[1], role, at, lambda);
+  spectrum b = spectrum_at(w, &def->spectrum_b, role, at, lambda);
   if (def->kind == VL_TEXTURE_MIX) {
     double share = number_at(w, def->amount, at);
     return plus(scaled(1 - share, a), scaled(share, b));
   }
   square_point st = texture_coordinates(def, at);
-  spectrum c = spectrum_at(w, def->spectrum_c, &colors[2], role, at, lambda);
-  spectrum d = spectrum_at(w, def->spectrum_d, &colors[3], role, at, lambda);
+  spectrum c = spectrum_at(w, &def->spectrum_c, role, at, lambda);
+  spectrum d = spectrum_at(w, &def->spectrum_d, role, at, lambda);
   spectrum low = plus(scaled(1 - st.y, a), scaled(st.y, b));
   spectrum high = plus(scaled(1 - st.y, c), scaled(st.y, d));
   return plus(scaled(1 - st.x, low), scaled(st.x, high));
+}
+
+image_map decode_otherwise(vlContext *context, const vlImage *image, const vlTextureDef *texture) {
+  static const size_t size[] = {
+      [VL_PIXEL_U8] = 1, [VL_PIXEL_U16] = 2, [VL_PIXEL_F16] = 2, [VL_PIXEL_F32] = 4, [VL_PIXEL_U32] = 4};
+  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), vl_image_channels(image));
+  const char **names = resize(NULL, def.channels, sizeof *names);
+  for (uint32_t i = 0; i < def.channels; i++) names[i] = vl_image_channel_name(image, i);
+  def.names = names;
+  def.type = vl_image_type(image);
+  def.encoding = texture->encoding;
+  def.gamma = texture->gamma;
+  vlImage *copy = NULL;
+  vl_image_create(context, &def, &copy);
+  memcpy(vl_image_pixels(copy), vl_image_const_pixels(image),
+         (size_t)def.width * def.height * def.channels * size[def.type]);
+  return make_image_map(copy);
 }

@@ -1,0 +1,141 @@
+/* more/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
+#include "check.h"
+
+#include "refuse.h"
+
+static bool check_shape(const vlShapeDef *def, vlError *error) {
+  if (def->centers) return refuse(error, def->source, "many spheres as one shape");
+  if (def->positions_close) return refuse(error, def->source, "a moving mesh");
+  if (def->displacement.texture.index) return refuse(error, def->source, "a displaced mesh");
+  if (def->one_sided) return refuse(error, def->source, "a mesh with one side");
+  switch (def->kind) {
+    case VL_SHAPE_TRIANGLES:
+    case VL_SHAPE_SPHERE:
+    case VL_SHAPE_DISK:
+    case VL_SHAPE_CYLINDER:
+    case VL_SHAPE_BILINEAR: return true;
+    default: return refuse_kind(error, def->source, "shapes", (uint32_t)def->kind);
+  }
+}
+
+static bool check_material(const vlMaterialDef *def, vlError *error) {
+  vlSpectrum albedo = def->albedo.value;
+  bool clear = !def->albedo.texture.index && albedo.value == 0 && albedo.kind == VL_SPECTRUM_CONSTANT;
+  bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
+  if (coated && !clear) return refuse(error, def->source, "a coat that scatters light");
+  if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
+  if (def->displacement.texture.index || def->displacement.value != 0) return refuse(error, def->source, "a bump map");
+  if (def->normal_map) return refuse(error, def->source, "a normal map");
+  switch (def->kind) {
+    case VL_MATERIAL_DIFFUSE:
+    case VL_MATERIAL_CONDUCTOR:
+    case VL_MATERIAL_DIELECTRIC:
+    case VL_MATERIAL_MIX:
+    case VL_MATERIAL_INTERFACE:
+    case VL_MATERIAL_COATED_DIFFUSE: return true;
+    default: return refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
+  }
+}
+
+static bool check_texture(const vlTextureDef *def, vlError *error) {
+  if (def->uv_set) return refuse(error, def->source, "a texture over a second uv set");
+  if (def->colors) return refuse(error, def->source, "a texture with vertex colours");
+  if (def->wrap == VL_WRAP_OCTAHEDRAL) return refuse(error, def->source, "a texture that wraps as an octahedron");
+  switch (def->kind) {
+    case VL_TEXTURE_CONSTANT:
+    case VL_TEXTURE_SCALE:
+    case VL_TEXTURE_MIX:
+    case VL_TEXTURE_CHECKERBOARD:
+    case VL_TEXTURE_IMAGE:
+    case VL_TEXTURE_BILERP: return true;
+    default: return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
+  }
+}
+
+static bool check_light(const vlLightDef *def, vlError *error) {
+  if (def->has_portal) return refuse(error, def->source, "a portal");
+  switch (def->kind) {
+    case VL_LIGHT_POINT:
+    case VL_LIGHT_SPOT:
+    case VL_LIGHT_DISTANT:
+    case VL_LIGHT_INFINITE: return true;
+    default: return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
+  }
+}
+
+static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
+  bool by_power = def->power > 0;
+  if (def->image) return refuse(error, def->source, "an emission image");
+  if (by_power && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index))
+    return refuse(error, def->source, "this emission by power");
+  return true;
+}
+
+static bool check_medium(const vlMediumDef *def, vlError *error) {
+  if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
+  if (def->kind == VL_MEDIUM_HOMOGENEOUS) return true;
+  return refuse_kind(error, def->source, "media", (uint32_t)def->kind);
+}
+
+static bool check_camera(const vlCamera *c, vlSource source, vlError *error) {
+  const vlLens *l = &c->lens;
+  switch (c->projection) {
+    case VL_PROJECTION_PERSPECTIVE:
+    case VL_PROJECTION_ORTHOGRAPHIC:
+    case VL_PROJECTION_EQUIDISTANT:
+    case VL_PROJECTION_EQUISOLID: break;
+    default: return refuse(error, source, "this projection");
+  }
+  if (c->distortion.steps > 0) return refuse(error, source, "lens distortion");
+  if (c->moves || c->readout != 0) return refuse(error, source, "a moving camera or a rolling shutter");
+  if (l->blades || l->aperture || l->ratio != 1 || l->tilt[0] != 0 || l->tilt[1] != 0 || l->vignetting ||
+      l->hinge[0] != 0 || l->hinge[1] != 0 || c->eye_circle != 0)
+    return refuse(error, source, "this lens");
+  return true;
+}
+
+static bool check_settings(const vlSceneDefs *defs, vlError *error) {
+  const vlFilmDef *film = &defs->film;
+  vlTracer tracer = defs->render.tracer;
+  bool crop = film->crop[2] > film->crop[0] &&
+              (film->crop[0] || film->crop[1] || film->crop[2] < film->width || film->crop[3] < film->height);
+  if (tracer == VL_TRACER_RAYCAST || tracer == VL_TRACER_AMBIENT_OCCLUSION || tracer == VL_TRACER_RANDOM_WALK)
+    return refuse_kind(error, (vlSource){0}, "tracers", (uint32_t)tracer);
+  if (defs->build.regularize) return refuse(error, (vlSource){0}, "regularize");
+  if (crop) return refuse(error, (vlSource){0}, "a crop window");
+  if (film->white_balance != 0 || film->sensor) return refuse(error, (vlSource){0}, "a film with a sensor");
+  if (film->filter.kind > VL_PIXEL_FILTER_GAUSSIAN)
+    return refuse_kind(error, (vlSource){0}, "filters", (uint32_t)film->filter.kind);
+  return true;
+}
+
+bool check_scene(vlScene *scene, const vlCamera *camera, vlError *error) {
+  const vlSceneDefs *defs = vl_scene_defs(scene);
+  if (!check_settings(defs, error) || !check_camera(camera, defs->camera_source, error)) return false;
+  const vlShapeDef *shape;
+  for (uint32_t i = 1; (shape = vl_scene_shape(scene, (vlShapeId){i})); i++) {
+    const vlEmissionDef *emission = vl_scene_emission(scene, shape->emission);
+    if (!check_shape(shape, error) || (emission && !check_emission(emission, shape, error))) return false;
+  }
+  vlInstanceInfo info;
+  for (uint32_t i = 1; vl_scene_instance(scene, (vlInstanceId){i}, &info) == VL_OK; i++) {
+    if (info.moves && info.shown) return refuse(error, info.source, "a moving instance");
+  }
+  const vlTextureDef *texture;
+  for (uint32_t i = 1; (texture = vl_scene_texture(scene, (vlTextureId){i})); i++) {
+    if (!check_texture(texture, error)) return false;
+  }
+  const vlMaterialDef *material;
+  for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++) {
+    if (!check_material(material, error)) return false;
+  }
+  const vlLightDef *light;
+  for (uint32_t i = 1; (light = vl_scene_light(scene, (vlLightId){i})); i++) {
+    if (!check_light(light, error)) return false;
+  }
+  const vlMediumDef *medium;
+  for (uint32_t i = 1; (medium = vl_scene_medium(scene, (vlMediumId){i})); i++) {
+    if (defs->render.tracer != VL_TRACER_PATH && !check_medium(medium, error)) return false;
+  }
+  return true;
+}

@@ -116,6 +116,20 @@ static float larger(float a, float b) {
   return a > b ? a : b;
 }
 
+/* The largest of the inputs that the kind has, for kinds that choose between or interpolate them; 0 for kinds without
+ * inputs: the colours of noise textures are fixed. */
+static float largest_input(const vlTextureDef *t, const float in[4]) {
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
+  const size_t offsets[4] = {offsetof(vlTextureDef, float_a), offsetof(vlTextureDef, float_b),
+                             offsetof(vlTextureDef, float_c), offsetof(vlTextureDef, float_d)};
+  float largest = 0;
+  for (uint32_t i = 0; i < row->parameter_count; i++)
+    for (int k = 0; k < 4; k++)
+      if (row->parameters[i].type == VL_PARAMETER_EITHER_INPUT && row->parameters[i].offset == offsets[k])
+        largest = larger(largest, in[k]);
+  return largest;
+}
+
 /* Upper bound of the values of a texture that a reflectance may read; 0 for other textures. known: bounds of the
  * textures added before. */
 static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) {
@@ -129,13 +143,8 @@ static float texture_max(vlCheck *c, const vlTextureDef *t, const float *known) 
   float amount = t->amount.texture.index ? known[t->amount.texture.index - 1] : t->amount.value;
   if (t->kind == VL_TEXTURE_IMAGE) return image_max(c, t);
   if (t->kind == VL_TEXTURE_SCALE) return in[0] * amount;
-  if (t->kind == VL_TEXTURE_CONSTANT) return in[0];
-  if (t->kind == VL_TEXTURE_BILERP) return larger(larger(in[0], in[1]), larger(in[2], in[3]));
   if (t->kind == VL_TEXTURE_MIX && !t->amount.texture.index) return in[0] * (1 - amount) + in[1] * amount;
-  if (t->kind == VL_TEXTURE_MIX || t->kind == VL_TEXTURE_CHECKERBOARD || t->kind == VL_TEXTURE_DIRECTION_MIX ||
-      t->kind == VL_TEXTURE_DOTS)
-    return larger(in[0], in[1]);
-  return 0; /* the colours of noise textures are fixed */
+  return largest_input(t, in);
 }
 
 /* Gives the inputs of a material that are reflectances or transmittances: the parameters of its row with the role of an

@@ -56,10 +56,11 @@ static void check_degenerate(vlCheck *c, const vlShapeDef *d) {
 /* Flags: what a texture and its inputs read from a mesh. */
 enum { NEEDS_UV = 1, NEEDS_COLORS = 16 }; /* the flag of uv set k is NEEDS_UV << k */
 
+/* Kinds with a mapping read the uvs, unless their cells are cubes in space. */
 static uint8_t own_needs(const vlTextureDef *t) {
-  bool over_uv = t->mapping == VL_MAPPING_UV &&
-                 (t->kind == VL_TEXTURE_IMAGE || t->kind == VL_TEXTURE_BILERP || t->kind == VL_TEXTURE_DOTS ||
-                  (t->kind == VL_TEXTURE_CHECKERBOARD && t->dimension == 2));
+  const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)t->kind);
+  bool solid = vl_row_find(row, "dimension") && t->dimension == 3;
+  bool over_uv = vl_row_find(row, "mapping") && t->mapping == VL_MAPPING_UV && !solid;
   uint8_t needs = over_uv ? (uint8_t)(NEEDS_UV << (t->uv_set & 3)) : 0;
   if (t->colors || t->kind == VL_TEXTURE_VERTEX_COLOR) needs |= NEEDS_COLORS;
   return needs;

@@ -5,66 +5,14 @@
 #include <string.h>
 
 #include "scene/check.h"
-
-static void push(vlTextureId inputs[VL_CHECK_INPUTS], uint32_t *n, vlTextureId id) {
-  if (id.index && *n < VL_CHECK_INPUTS) inputs[(*n)++] = id;
-}
+#include "schema/schema.h"
 
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  const vlPrincipledDef *p = &m->principled;
-  const vlTextureId all[] = {m->reflectance.texture,
-                             m->u_roughness.texture,
-                             m->v_roughness.texture,
-                             m->eta.texture,
-                             m->k.texture,
-                             m->thickness.texture,
-                             m->g.texture,
-                             m->albedo.texture,
-                             m->amount.texture,
-                             m->displacement.texture,
-                             m->transmittance.texture,
-                             m->coat_u_roughness.texture,
-                             m->coat_v_roughness.texture,
-                             m->coat_eta.texture,
-                             p->metallic.texture,
-                             p->roughness.texture,
-                             p->anisotropy.texture,
-                             p->anisotropy_rotation.texture,
-                             p->specular.texture,
-                             p->specular_color.texture,
-                             p->transmission.texture,
-                             p->diffuse_transmission.texture,
-                             p->diffuse_transmission_color.texture,
-                             p->clearcoat.texture,
-                             p->clearcoat_roughness.texture,
-                             p->sheen_color.texture,
-                             p->sheen_roughness.texture,
-                             p->iridescence.texture,
-                             p->iridescence_thickness.texture,
-                             p->normal,
-                             p->clearcoat_normal,
-                             m->hair.sigma_a.texture,
-                             m->hair.eumelanin.texture,
-                             m->hair.pheomelanin.texture,
-                             m->hair.eta.texture,
-                             m->hair.beta_m.texture,
-                             m->hair.beta_n.texture,
-                             m->hair.alpha.texture,
-                             m->subsurface.sigma_a.texture,
-                             m->subsurface.sigma_s.texture,
-                             m->subsurface.mfp.texture};
-  uint32_t n = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) push(inputs, &n, all[i]);
-  return n;
+  return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs, VL_CHECK_INPUTS);
 }
 
 uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CHECK_INPUTS]) {
-  const vlTextureId all[] = {t->float_a.texture,    t->float_b.texture,    t->float_c.texture,
-                             t->float_d.texture,    t->spectrum_a.texture, t->spectrum_b.texture,
-                             t->spectrum_c.texture, t->spectrum_d.texture, t->amount.texture};
-  uint32_t n = 0;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) push(inputs, &n, all[i]);
-  return n;
+  return vl_row_textures(vl_kind_row(&vl_texture_family, (int)t->kind), t, inputs, VL_CHECK_INPUTS);
 }
 
 vlCheckName vl_check_material_name(const vlMaterialDef *m) {

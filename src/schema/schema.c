@@ -186,3 +186,22 @@ bool vl_parameter_is_default(const vlParameter *p, const void *def, bool spectru
   if (p->flags & VL_PARAMETER_UNSET) return number != number;
   return (float)number == (float)p->value[0];
 }
+
+uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids, uint32_t most) {
+  uint32_t n = 0;
+  for (uint32_t i = 0; i < row->parameter_count; i++) {
+    const vlParameter *p = &row->parameters[i];
+    const char *at = (const char *)def + p->offset;
+    vlTextureId read[2] = {{0}, {0}};
+    if (p->flags & VL_PARAMETER_SHORTHAND) continue; /* other parameters have its members */
+    if (p->type == VL_PARAMETER_FLOAT_INPUT || p->type == VL_PARAMETER_EITHER_INPUT)
+      read[0] = ((const vlFloatInput *)(const void *)at)->texture;
+    if (p->type == VL_PARAMETER_SPECTRUM_INPUT) read[0] = ((const vlSpectrumInput *)(const void *)at)->texture;
+    if (p->type == VL_PARAMETER_TEXTURE) read[0] = *(const vlTextureId *)(const void *)at;
+    if (p->type == VL_PARAMETER_EITHER_INPUT)
+      read[1] = ((const vlSpectrumInput *)(const void *)((const char *)def + p->second))->texture;
+    for (int k = 0; k < 2; k++)
+      if (read[k].index && n < most) ids[n++] = read[k];
+  }
+  return n;
+}

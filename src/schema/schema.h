@@ -135,6 +135,8 @@ bool vl_parameter_check(const vlParameter *parameter, const void *def, const cha
 /* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices, bools, and inputs
  * without texture that hold one number. False: the parameter is of another type. */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);
+/* Gives the textures that the members of the row read, at most `most`. Returns their number. */
+uint32_t vl_row_textures(const vlKindRow *row, const void *def, vlTextureId *ids, uint32_t most);
 /* Whether the value of a parameter is its default. */
 bool vl_parameter_is_default(const vlParameter *parameter, const void *def, bool spectrum);
 

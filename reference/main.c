@@ -2,7 +2,7 @@
  * image files and colour tables from the library, and computes everything else itself, one ray at a time.
  *
  *   velo-reference SCENE -o IMAGE.exr [--spp N] [--seed N] [--resolution WxH] [--max-depth N] [--tracer NAME]
- *      [--color rgb]
+ *      [--color spectral|rgb] [--filter box]
  *
  * The image has the channels R G B A and error.R error.G error.B, the standard errors of the pixels' means. */
 #include <stdio.h>
@@ -19,7 +19,7 @@ typedef struct options {
   long samples, seed, width, height;
   long max_depth;     /* -1: the scene's */
   const char *tracer; /* null: the scene's */
-  bool rgb;
+  bool rgb, box;
 } options;
 
 /* The lecture's render_scene: for each pixel and each of its samples a primary ray, and what the ray brings back. Rows
@@ -70,7 +70,8 @@ static bool read_option(const char *name, const char *value, options *o) {
   if (strcmp(name, "--seed") == 0) return read_number(value, 0, UINT32_MAX, &o->seed);
   if (strcmp(name, "--resolution") == 0) return read_size(value, o);
   if (strcmp(name, "--max-depth") == 0) return read_number(value, 0, 1 << 20, &o->max_depth);
-  if (strcmp(name, "--color") == 0) return (o->rgb = strcmp(value, "rgb") == 0);
+  if (strcmp(name, "--color") == 0) return (o->rgb = strcmp(value, "rgb") == 0) || strcmp(value, "spectral") == 0;
+  if (strcmp(name, "--filter") == 0) return (o->box = strcmp(value, "box") == 0);
   if (strcmp(name, "--tracer") != 0) return false;
   o->tracer = value;
   return strcmp(value, "path") == 0 || strcmp(value, "volpath") == 0;
@@ -98,6 +99,7 @@ static bool render_file(vlContext *context, options *o, vlScene *scene, vlError 
   if (vl_scene_complete(scene, NULL, error) != VL_OK) return false;
   vlSceneDefs *defs = vl_scene_defs(scene);
   if (o->rgb) defs->build.color = VL_COLOR_RGB;
+  if (o->box) defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
   if (o->tracer) defs->render.tracer = strcmp(o->tracer, "path") == 0 ? VL_TRACER_PATH : VL_TRACER_VOLPATH;
   if (o->max_depth < 0) o->max_depth = defs->render.max_depth;
   vlCamera camera;
@@ -123,7 +125,7 @@ int main(int count, char **arguments) {
   if (!read_options(count, arguments, &o)) {
     fprintf(stderr,
             "usage: velo-reference SCENE -o IMAGE.exr [--spp N] [--seed N] [--resolution WxH] [--max-depth N] "
-            "[--tracer path|volpath] [--color rgb]\n");
+            "[--tracer path|volpath] [--color spectral|rgb] [--filter box]\n");
     return 2;
   }
   static vlContext *context;

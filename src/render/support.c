@@ -75,6 +75,13 @@ static bool has_other_camera(Scene *s) {
   return !view.sees;
 }
 
+/* Light paths start at lights. Other tracers find a medium's own light by paths from the camera. */
+static bool has_emissive_media(Scene *s) {
+  for (size_t i = 0; i < s->world->media.count; i++)
+    if (s->world->media.items[i].emits) return true;
+  return false;
+}
+
 static bool has_differing_media(Scene *s) {
   bool differ = false;
   s->result = vl_media_differ(s->world, s->camera, &differ);
@@ -91,6 +98,7 @@ static const Feature features[] = {
     {"material \"hair\"", has_hair, FROM_LIGHTS},
     {"regularization", has_regularisation, FROM_LIGHTS},
     {"cameras other than perspective ones with a round lens", has_other_camera, BIT(VL_TRACER_LIGHT_PATH)},
+    {"light from media", has_emissive_media, BIT(VL_TRACER_LIGHT_PATH)},
     {"media that do not fit together", has_differing_media, FROM_LIGHTS},
 };
 

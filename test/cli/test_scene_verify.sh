@@ -14,15 +14,18 @@ Translate 0 0 0.1'
 body='Shape "bilinearmesh" "point3 P" [-2 -2 0 2 -2 0 -2 2 0 2 2 0]
 AttributeBegin Material "diffuse" "rgb reflectance" [.7 .3 .2] Translate 0 0 .6
 Shape "sphere" "float radius" 0.5 AttributeEnd'
+unset VELO_REFERENCE
 verify() { "$VELO" scene verify "$@" --rays 0.4; }
+line() { if grep -q "$2" <<<"$out"; then pass "$1"; else fail "$1 (no '$2')"; fi; }
+reference=$VELO_BINARY_DIR/bin/velo-reference
 
 printf '%s\n' "$head" "$body" >plain.pbrt
 check agrees verify plain.pbrt --threads 2
-for run in bidirectional lightpath randomwalk 'merging .*not judged' 'volpath, shifted' 'volpath, turned' 'volpath, scaled' \
+for run in reference bidirectional lightpath randomwalk 'merging .*not judged' 'volpath, shifted' 'volpath, turned' 'volpath, scaled' \
   'bidirectional, moved'; do
   if grep -q "^$run" <<<"$out"; then pass "row_of_$run"; else fail "row_of_$run"; fi
 done
-expect_text says_so '0 of 7 comparisons differ beyond chance'
+expect_text says_so '0 of 8 comparisons differ beyond chance'
 cp .out two
 check one_thread verify plain.pbrt --threads 1
 if cmp -s .out two; then pass same_bytes; else fail same_bytes; fi
@@ -32,7 +35,7 @@ check json verify plain.pbrt --json
 if "$VELO" scene verify plain.pbrt --rays 0.4 --json | python3 -c '
 import json, sys
 d = json.load(sys.stdin)
-assert d["differ"] == 0 and len(d["runs"]) == 8 and d["replicates"] == 32
+assert d["differ"] == 0 and len(d["runs"]) == 9 and d["reference_not_compared"] == "" and d["replicates"] == 32
 assert {r["run"] for r in d["runs"] if not r["judged"]} == {"merging"}
 assert all(abs(c["mean"] / c["against"] - 1) < .1 for r in d["runs"] for c in r["image"])'; then
   pass json_content
@@ -48,7 +51,7 @@ fi
   printf '%s\n' "$body"
 } >fog.pbrt
 check fog verify fog.pbrt
-expect_text fog_says_so 'bidirectional is not compared: tracer "bidirectional" does not support media that do not fit together'
+expect_text fog_says_so 'bidirectional is not compared: it does not support media that do not fit together'
 
 # A triangle so far away that floats cannot hold its corners: moved copies of the scene differ.
 cat >far.pbrt <<'END'
@@ -79,6 +82,49 @@ printf '%s\n' "$head" 'Material "subsurface"' "$body" >solid.pbrt
 check subsurface verify solid.pbrt
 expect_text subsurface_says_so 'bidirectional is not compared'
 if grep -q '^bidirectional' <<<"$(grep -v 'not compared' <<<"$out")"; then fail subsurface_left_out; else pass subsurface_left_out; fi
+
+# Light of a medium: light paths start at lights only.
+{
+  printf '%s\n' "$head" 'MakeNamedMedium "fire" "string type" "homogeneous" "rgb sigma_s" [.2 .2 .2] "rgb sigma_a" [.2 .2 .2]'
+  printf '%s\n' '"rgb Le" [1 .5 .2]' "$body" 'AttributeBegin Material "interface" MediumInterface "fire" "" Translate 1 0 .6'
+  echo 'Shape "sphere" "float radius" 0.4 AttributeEnd'
+} >fire.pbrt
+check fire verify fire.pbrt
+expect_text fire_says_so 'lightpath is not compared: it does not support light from media'
+
+# A reference renderer that is wrong: it renders another reflectance.
+cat >wrong.sh <<END
+#!/bin/sh
+scene=\$1
+shift
+sed 's/\.7 \.3 \.2/.5 .3 .2/' "\$scene" >"\$PWD/wrong_\$\$.pbrt"
+"$reference" "\$PWD/wrong_\$\$.pbrt" "\$@"
+END
+chmod +x wrong.sh
+expect_code 1 wrong_reference verify plain.pbrt --reference ./wrong.sh
+line wrong_reference_row '^reference .*DIFFERS'
+line wrong_reference_only '^1 of 8 comparisons differ'
+line wrong_reference_cell 'reference, material [0-9]*, red: '
+VELO_REFERENCE=$PWD/wrong.sh expect_code 1 reference_of_the_environment verify plain.pbrt
+
+# One that refuses the scene, fails, is ended, writes no image, is not there; and --sandbox.
+printf '%s\n' "$head" 'Material "diffuse" "float displacement" 0.1' "$body" >refused.pbrt
+check refused verify refused.pbrt
+line refused_says_so '^reference  *not compared: .*refused.pbrt:[0-9:]* .* is not part of the reference renderer'
+program() {
+  printf '#!/bin/sh\n%s\n' "$1" >program.sh
+  chmod +x program.sh
+  verify plain.pbrt --reference ./program.sh
+}
+expect_code 5 failing_reference program 'echo "the disk is full" >&2; exit 5'
+expect_text failing_reference_says_why 'reference renderer ./program.sh: the disk is full'
+expect_code 5 killed_reference program 'kill -9 $$'
+expect_text killed_reference_says_why 'ended by signal 9'
+expect_code 5 no_image_of_the_reference program 'exit 0'
+expect_text no_image_says_so 'its image cannot be read'
+expect_code 4 no_reference verify plain.pbrt --reference ./none.sh
+check sandbox verify plain.pbrt --sandbox . --reference ./wrong.sh
+line sandbox_says_so '^reference  *not compared: --sandbox allows no other programs'
 
 expect_code 2 no_rays verify plain.pbrt --rays 0
 expect_code 4 no_file verify none.pbrt

@@ -109,6 +109,23 @@ def vertex_normals_are_blended_with_their_lengths():
 
 
 @case
+def alpha_textures_of_instances_are_placed_in_the_world():
+    """As other textures: where the instance is, not where its object was defined."""
+    texture = ('Texture "a" "float" "checkerboard" "float tex1" 1 "float tex2" 0 "string mapping" "planar" '
+               '"vector3 v1" [ 1.3 .4 .1 ] "vector3 v2" [ -.2 1.7 .4 ]\n')
+    light = 'WorldBegin\nLightSource "infinite" "rgb L" [ 1 .8 .6 ]\n' + texture
+    place = "Translate .3 .2 .1 Rotate 50 1 2 3 Scale -1 1.2 .9\n"
+    for name, shape in (("sphere", 'Shape "sphere" "float radius" .7 "texture alpha" "a"\n'),
+                        ("mesh", 'Shape "trianglemesh" "point3 P" [ -.9 -.7 0  .9 -.6 .1  0 .9 -.2 ] "texture alpha" "a"\n')):
+        text = 'ObjectBegin "m"\n' + shape + "ObjectEnd\n" + place + 'ObjectInstance "m"\n'
+        path, direct = scene("alpha_%s.pbrt" % name, light + text), scene("alpha_%s_direct.pbrt" % name, light + place + shape)
+        mine = render_velo(path, "velo_alpha.exr", 64)
+        for other in (render_velo(direct, "velo_direct.exr", 64, "--seed", "1"), render(path, "alpha.exr", 64)):
+            z = worst_z(mine, other)
+            assert z < 4.5, "%s: z = %.1f" % (name, z)
+
+
+@case
 def a_white_furnace_is_white():
     for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
                            ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):

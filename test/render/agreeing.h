@@ -86,6 +86,8 @@
 {.name = "light that names no fog", .lacking = "media that do not fit together", .head = IN_FOG,
    .world = WALLS "MediumInterface \"fog\" \"\" " PANEL},
 {.name = "ball of fog", .head = FOG CAMERA, .world = ROOM "Material \"interface\" MediumInterface \"fog\" \"\" " BALL},
+{.name = "light from media", .unseen = true, .head = "MakeNamedMedium \"fire\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.5 .4 .3] \"rgb sigma_s\" [.6 .4 .2] \"rgb Le\" [2 1 .5] " CAMERA,
+   .world = ROOM "Material \"interface\" MediumInterface \"fire\" \"\" " BALL},
 {.name = "glass with fog", .head = FOG CAMERA, .world = ROOM "Material \"dielectric\" \"float roughness\" .4 MediumInterface \"fog\" \"\" " BALL},
 {.name = "bubble in fog", .weak = true, .head = IN_FOG, .world = "MediumInterface \"fog\" \"fog\" " ROOM "Material \"interface\" MediumInterface \"\" \"fog\" " BALL},
 {.name = "grid", .head = "MakeNamedMedium \"grid\" \"string type\" \"uniformgrid\" \"rgb sigma_a\" [.5 1 2] \"rgb sigma_s\" [6 4 2] \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 "

@@ -27,7 +27,7 @@ typedef struct Row {
   const char *head;    /* statements before WorldBegin; null: CAMERA */
   const char *world;
   bool smooth; /* a smooth surface, which lightpath does not see */
-  bool unseen; /* a camera that light paths do not find: vl_tracer_lacks names it for lightpath */
+  bool unseen; /* a camera or light that light paths do not find: vl_tracer_lacks names it for lightpath */
   bool weak;   /* so much noise that POWER is not reached */
 } Row;
 

@@ -1,5 +1,5 @@
-/* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene, and with themselves when
- * the whole scene is shifted, turned and scaled. */
+/* scene/verify.c: `velo scene verify`: whether the tracers agree about the light of a scene, with themselves when the
+ * whole scene is shifted, turned and scaled, and with the reference renderer. */
 #include "scene/verify.h"
 
 #include <math.h>
@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/confine.h"
 #include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
@@ -17,7 +18,7 @@
 #include "velo/edit.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
-enum { VERIFY_RAYS = RENDER_OPTIONS, VERIFY_JSON, VERIFY_OPTIONS };
+enum { VERIFY_RAYS = RENDER_OPTIONS, VERIFY_JSON, VERIFY_REFERENCE, VERIFY_OPTIONS };
 _Static_assert((int)VERIFY_OPTIONS <= (int)MAX_OPTIONS, "Arguments.values has no room for an option");
 
 enum { LONGER_SIDE = 64 };
@@ -25,12 +26,8 @@ enum { LONGER_SIDE = 64 };
 
 /* Messages of the library during the many renders are the same each time. */
 static void logged(void *user, vlLogLevel level, const vlError *where, const char *message) {
-  Verify *v = user;
-  if (!v->drowned) {
-    report_log(NULL, level, where, message);
-  } else if (strstr(message, ": volpath is used")) {
-    snprintf(v->fell_back, sizeof v->fell_back, "%s", message);
-  }
+  const Verify *v = user;
+  if (!v->drowned) report_log(NULL, level, where, message);
 }
 
 static int open_scene(Verify *v, const Command *command, const Arguments *arguments) {
@@ -40,6 +37,11 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
   vlWorld *world = NULL;
   def.log = logged, def.log_user = v;
   if (o[RENDER_THREADS].given) def.threads = (uint32_t)o[RENDER_THREADS].integer;
+  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  Confine confine = {.read_count = 0};
+  confine_read(&confine, v->path);
+  if (o[RENDER_CAMERA].given) confine_read_folder(&confine, o[RENDER_CAMERA].text);
+  confine_apply(&confine, arguments);
   int status = context_open(&def, &v->context);
   if (status < 0) status = scene_open(v->context, v->path, arguments, &v->scene, &v->opening);
   if (status < 0) status = job_make(&v->job, v->context, v->scene, v->path, arguments);
@@ -112,7 +114,8 @@ static int run_verify(const Command *command, const Arguments *arguments) {
   v.path = arguments->operands[0];
   v.budget = 1e6 * (o[VERIFY_RAYS].given ? o[VERIFY_RAYS].number : DEFAULT_RAYS);
   v.seed = o[RENDER_SEED].given ? (uint32_t)o[RENDER_SEED].integer : 0;
-  int status = open_scene(&v, command, arguments);
+  int status = verify_reference_find(&v, arguments, &o[VERIFY_REFERENCE]);
+  if (status < 0) status = open_scene(&v, command, arguments);
   if (status < 0) status = verify(&v, arguments);
   if (status < 0) {
     if (o[VERIFY_JSON].given)
@@ -128,6 +131,9 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 static const Option options[] = {
     {VERIFY_RAYS, 0, "rays", OPTION_NUMBER, "M", "millions of rays of the first look; default 60", 0.001, 1e6, NULL},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; default 0", 0, 1048575, NULL},
+    {VERIFY_REFERENCE, 0, "reference", OPTION_TEXT, "PROGRAM",
+     "the reference renderer; default: the environment variable VELO_REFERENCE, else velo-reference beside velo", 0, 0,
+     NULL},
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "number of threads; default: one per processor core", 1, 1024,
      NULL},
@@ -141,6 +147,8 @@ static const Option options[] = {
      color_choices},
     {RENDER_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
      "parts of the scene that velo does not understand are warnings, not errors", 0, 0, NULL},
+    {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "DIR",
+     "a file that the scene names must be in DIR or below it; the reference renderer is not started", 0, 0, NULL},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
      "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
     STRICT_OPTIONS_OPTION,
@@ -154,12 +162,13 @@ const Command scene_verify_command = {
     .usage = "FILE [options]",
     .summary = "check that the tracers agree about the light of a scene",
     .text =
-        "Renders the scene at a small size with each unbiased tracer that claims its light, and with the\n"
-        "whole scene shifted, turned and scaled, 32 times each, and compares the means of the image, of\n"
-        "blocks of 8 x 8 pixels, of the pixels of each material, and of each kind of light. What differs is\n"
-        "rendered again with other seeds and four times the samples; it counts only if it differs again.\n"
-        "One run in a thousand or fewer reports a difference where there is none (docs/verify.md).\n\n"
-        "exit codes: 0 all agree; 1 a difference beyond chance",
+        "Renders the scene at a small size with each unbiased tracer that claims its light, with the whole\n"
+        "scene shifted, turned and scaled, and by the reference renderer, 32 times each, and compares the\n"
+        "means of the image, of blocks of 8 x 8 pixels, of the pixels of each material, and of each kind of\n"
+        "light. What differs is rendered again with other seeds and four times the samples; it counts only\n"
+        "if it differs again. One run in a thousand or fewer reports a difference where there is none\n"
+        "(docs/verify.md).\n\n"
+        "exit codes: 0 all agree; 1 a difference beyond chance; 5 the reference renderer failed",
     .examples =
         "velo scene verify room.pbrt\n"
         "velo scene verify room.pbrt --rays 5 --json",

@@ -9,6 +9,10 @@
 
 /* Replicates of each run: images with different seeds. Samples per pixel of the second look, relative to the first. */
 enum { VERIFY_REPLICATES = 32, VERIFY_SECOND = 4 };
+/* Of verify_seed and of the loop over the runs: counts rays. */
+enum { VERIFY_TRIAL = 3 };
+/* The reference renderer's share of the rays, relative to another run's. */
+enum { VERIFY_REFERENCE_SHARES = 3 };
 enum { VERIFY_MOST_RUNS = 24, VERIFY_MOST_MATERIALS = 32, VERIFY_MOST_NOTES = 16 };
 
 /* ---- verify_plan.c: what is rendered, and what is compared with what --------------------------------------------- */
@@ -31,11 +35,13 @@ typedef struct VerifyRun {
   vlTracer tracer;
   VerifyPlace place;
   VerifyLights lights;
-  bool evenly;   /* lights are chosen with equal probability; else as the scene asks */
-  int against;   /* the run with which it is compared, a lower index; -1: none */
-  bool apart;    /* a biased tracer: its means are reported, but not judged */
-  bool left_out; /* another tracer would replace this one */
-  double rays;   /* rays per sample per pixel, counted in a trial render */
+  bool sharp;     /* textures are not filtered */
+  bool reference; /* by the reference renderer, a program of its own */
+  bool evenly;    /* lights are chosen with equal probability; else as the scene asks */
+  int against;    /* the run with which it is compared, a lower index; -1: none */
+  bool apart;     /* a biased tracer: its means are reported, but not judged */
+  bool left_out;  /* another tracer would replace this one; the reference: it cannot render the scene */
+  double rays;    /* of one sample per pixel, counted in a trial render */
   uint32_t spp[2];
   double *values[2]; /* of both looks: VERIFY_REPLICATES rows of means, VERIFY_CHANNELS for each cell */
   uint64_t dropped;  /* samples that were not finite */
@@ -69,8 +75,9 @@ typedef struct Verify {
   uint32_t width, height, columns, rows;
   double budget; /* rays of the first look */
   uint32_t seed;
-  bool drowned;        /* messages of the library are not reported */
-  char fell_back[200]; /* message by which a tracer said that another one replaces it; empty: none */
+  bool drowned;           /* messages of the library are not reported */
+  char reference[4096];   /* path of the program; empty: the scene is not compared with it */
+  char unreferenced[400]; /* why it is not; empty: it is */
 
   double matrix[VERIFY_PLACES][16]; /* world of the copy from the world of the file */
   VerifyPlace place;                /* the scene's state */
@@ -107,6 +114,24 @@ vlResult verify_prepare(Verify *v, vlError *error);
 vlResult verify_measure(Verify *v, vlError *error);
 /* Renders a look: 0, of all runs; 1, of those with `again`. VL_CANCELLED after a signal. */
 vlResult verify_render(Verify *v, int look, vlError *error);
+
+/* Seeds are the same for all runs of a replicate: common random numbers make their differences smaller. */
+uint32_t verify_seed(const Verify *v, int look, uint32_t replicate);
+/* The means of an image's first three channels over the cells. row: VERIFY_CHANNELS for each cell. */
+void verify_take_means(const Verify *v, const vlImage *image, double *row);
+
+/* ---- verify_reference.c: renders by the reference renderer ------------------------------------------------------- */
+
+/* Finds the program: path (null: not given), the environment variable VELO_REFERENCE, velo-reference beside this
+ * program. Sets v->reference or v->unreferenced. -1, or the exit code after reporting that what was given is not
+ * there. */
+int verify_reference_find(Verify *v, const Arguments *arguments, const OptionValue *given);
+/* Renders one sample per pixel. Where the program refuses the scene, the run is left out, and v->unreferenced says why.
+ * IO: the program failed. */
+vlResult verify_reference_try(Verify *v, VerifyRun *run, vlError *error);
+/* Renders the replicates of a look, as many at once as the context has threads. As above; a run that takes too long is
+ * left out, too. VL_CANCELLED after a signal. */
+vlResult verify_reference(Verify *v, VerifyRun *run, int look, vlError *error);
 
 /* ---- verify_compare.c -------------------------------------------------------------------------------------------- */
 

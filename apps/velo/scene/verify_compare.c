@@ -87,12 +87,15 @@ vlResult verify_first(Verify *v) {
 }
 
 void verify_second(Verify *v) {
+  uint32_t judged = 0;
+  for (uint32_t k = 0; k < v->mark_count; k++) judged += !v->runs[v->marks[k].run].left_out;
   for (uint32_t k = 0; k < v->mark_count; k++) {
     VerifyMark *mark = &v->marks[k];
     VerifyRun *run = &v->runs[mark->run];
+    if (run->left_out) continue; /* its second look was not finished */
     mark->second = verify_difference(v, run, 1, mark->value);
     const bool same_side = (mark->second.z > 0) == (mark->first.z > 0);
-    mark->differs = same_side && mark->second.p < verify_second_p(v->mark_count);
+    mark->differs = same_side && mark->second.p < verify_second_p(judged);
     run->differs += mark->differs;
   }
 }

@@ -33,15 +33,14 @@ bool verify_has_surfaces(VerifyLights lights) {
 
 /* ---- what the scene has ------------------------------------------------------------------------------------------ */
 
-/* What decides which tracers claim the scene's light. */
+/* What decides which light of the scene the tracers find, besides what they do not support (vl_tracer_lacks). */
 typedef struct Features {
-  bool hair;           /* its lobes are so narrow that uniform directions hardly ever meet them */
-  bool smooth;         /* a material that may reflect or refract like a mirror */
-  bool media;          /* any medium */
-  bool emissive_media; /* a medium that emits light */
+  bool hair;   /* its lobes are so narrow that uniform directions hardly ever meet them */
+  bool smooth; /* a material that may reflect or refract like a mirror */
+  bool media;  /* any medium, or light that goes through a solid */
   bool small, sky, surfaces;
-  uint64_t lamps;   /* lights; each emissive face counts */
-  bool connectable; /* light paths can be connected to the camera */
+  uint64_t lamps; /* lights; each emissive face counts */
+  bool textures;
 } Features;
 
 /* Whether a roughness may be so small that the surface is a mirror. A texture may have any value. */
@@ -73,39 +72,17 @@ static bool may_be_smooth(const vlMaterialDef *m) {
   return false;
 }
 
-/* Light paths are connected to perspective cameras without distortion, with a pinhole or a round lens
- * (docs/tracers.md). */
-static bool is_connectable(const vlCamera *c) {
-  const double *m = c->world_from_camera;
-  const bool round = c->lens.blades == 0 && !c->lens.aperture && c->lens.ratio == 1 && !c->lens.vignetting;
-  const bool straight = c->lens.tilt[0] == 0 && c->lens.tilt[1] == 0 && c->lens.hinge[0] == 0 && c->lens.hinge[1] == 0;
-  double length[3];
-  for (int i = 0; i < 3; i++) length[i] = hypot(m[i], hypot(m[4 + i], m[8 + i]));
-  const bool even = fabs(length[1] / length[0] - 1) < 1e-5 && fabs(length[2] / length[0] - 1) < 1e-5;
-  return c->projection == VL_PROJECTION_PERSPECTIVE && c->distortion.steps == 0 && round && straight && even &&
-         c->skew == 0 && c->eye_circle == 0;
-}
-
-static bool emits(const vlMediumDef *medium) {
-  const vlSpectrum *e = &medium->emission;
-  const bool dark = e->scale == 0 || (e->kind == VL_SPECTRUM_CONSTANT && e->value == 0);
-  return medium->emission_scale != 0 &&
-         (!dark || medium->temperature || medium->rgb_emission || medium->kind == VL_MEDIUM_NANOVDB);
-}
-
 static Features find_features(const Verify *v) {
-  Features f = {.connectable = is_connectable(&v->camera)};
+  Features f = {.hair = false};
   const vlMaterialDef *material;
-  const vlMediumDef *medium;
   const vlLightDef *light;
   for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++) {
     f.smooth = f.smooth || may_be_smooth(material);
     f.hair = f.hair || material->kind == VL_MATERIAL_HAIR;
+    f.media = f.media || material->kind == VL_MATERIAL_SUBSURFACE;
   }
-  for (uint32_t i = 1; (medium = vl_scene_medium(v->scene, (vlMediumId){i})); i++) {
-    f.media = true;
-    f.emissive_media = f.emissive_media || emits(medium);
-  }
+  f.media = f.media || vl_scene_medium(v->scene, (vlMediumId){1});
+  f.textures = vl_scene_texture(v->scene, (vlTextureId){1});
   for (uint32_t i = 1; (light = vl_scene_light(v->scene, (vlLightId){i})); i++) {
     const bool sky = light->kind == VL_LIGHT_INFINITE;
     f.sky = f.sky || sky;
@@ -135,10 +112,6 @@ static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int a
   add(v, (VerifyRun){.name = "bidirectional", .tracer = VL_TRACER_BIDIRECTIONAL, .lights = lights, .against = against});
   if (f->smooth)
     verify_note(v, "lightpath and randomwalk are not compared: smooth surfaces are black with them");
-  else if (!f->connectable)
-    verify_note(v, "lightpath is not compared: light paths cannot be connected to this camera");
-  else if (f->emissive_media)
-    verify_note(v, "lightpath is not compared: it has no light from media");
   else
     add(v, (VerifyRun){.name = "lightpath", .tracer = VL_TRACER_LIGHT_PATH, .lights = lights, .against = against});
   if (!f->smooth && !f->media && !f->hair && !small)
@@ -154,11 +127,23 @@ static void add_lights(Verify *v, VerifyLights lights, const char *volpath, cons
   add(v, (VerifyRun){.name = bidirectional, .tracer = VL_TRACER_BIDIRECTIONAL, .lights = lights, .against = against});
 }
 
+/* The reference renderer does not filter textures by the pixel's footprint. */
+static void add_reference(Verify *v, const Features *f, int volpath) {
+  int against = volpath;
+  if (!v->reference[0]) return;
+  if (f->textures)
+    against = add(
+        v, (VerifyRun){.name = "volpath, sharp textures", .tracer = VL_TRACER_VOLPATH, .sharp = true, .against = -1});
+  add(v, (VerifyRun){.name = "reference", .tracer = VL_TRACER_VOLPATH, .reference = true, .against = against});
+}
+
 void verify_plan(Verify *v) {
   const Features f = find_features(v);
   const int volpath = add(v, (VerifyRun){.name = "volpath", .tracer = VL_TRACER_VOLPATH, .against = -1});
+  add_reference(v, &f, volpath);
   /* Behind a smooth surface only light paths find a small light. */
   const bool caustics = f.small && f.smooth;
+  const int first = v->run_count;
   if (!caustics) {
     add_tracers(v, &f, VERIFY_ALL, volpath);
   } else {
@@ -190,7 +175,7 @@ void verify_plan(Verify *v) {
   const int both =
       caustics
           ? add(v, (VerifyRun){.name = "bidirectional, all lights", .tracer = VL_TRACER_BIDIRECTIONAL, .against = -1})
-          : volpath + 1;
+          : first;
   add(v,
       (VerifyRun){
           .name = "bidirectional, moved", .tracer = VL_TRACER_BIDIRECTIONAL, .place = VERIFY_MOVED, .against = both});

@@ -86,6 +86,11 @@ void verify_print(const Verify *v) {
   printf("%-29s %6s  %-23s  %-27s\n", "", "", "ratio of the images", "farthest z");
   printf("%-29s %6s  %7s %7s %7s  %6s %6s %8s %6s\n", "run", "spp", "red", "green", "blue", "image", "block",
          "material", "lights");
+  if (v->unreferenced[0]) {
+    printf("%-29s %6s  not compared: ", "reference", "");
+    info_print_plain(v->unreferenced);
+    putchar('\n');
+  }
   for (int i = 0; i < v->run_count; i++) {
     const VerifyRun *run = &v->runs[i];
     double z[VERIFY_FAMILIES];
@@ -172,6 +177,7 @@ void verify_print_json(const Verify *v) {
   for (int i = 0; i < v->run_count; i++)
     if (is_shown(&v->runs[i])) put_run(&json, v, i);
   json_end(&json, ']');
+  json_text(&json, "reference_not_compared", v->unreferenced); /* empty: it is */
   json_begin(&json, "notes", '[');
   for (int i = 0; i < v->note_count; i++) json_text(&json, NULL, v->notes[i]);
   json_end(&json, ']');

@@ -236,12 +236,12 @@ static vlRenderDef render_of(const Verify *v, const VerifyRun *run, uint32_t spp
   def.seed = seed;
   def.max_depth = v->job.defs->render.max_depth;
   def.share_samples = false;
+  def.sharp_textures = run->sharp;
   def.progress = on_progress;
   return def;
 }
 
-/* Adds the pixels of an image to the cells, and divides by their number. */
-static void take_means(const Verify *v, const vlImage *image, double *row) {
+void verify_take_means(const Verify *v, const vlImage *image, double *row) {
   const size_t pixels = (size_t)v->width * v->height, step = vl_image_channels(image);
   const float *value = vl_image_const_pixels(image);
   memset(row, 0, v->cell_count * VERIFY_CHANNELS * sizeof *row);
@@ -264,95 +264,103 @@ static vlResult shoot(const Verify *v, const VerifyRun *run, const Set *set, vlF
   vl_film_clear(film);
   vlResult result = vl_render(set->world, &set->camera, film, &def, stats, error);
   if (result == VL_OK && row) result = vl_film_develop(film, NULL, &image);
-  if (result == VL_OK && row) take_means(v, image, row);
+  if (result == VL_OK && row) verify_take_means(v, image, row);
   vl_image_destroy(image);
   return result;
 }
 
-/* Seeds are the same for all runs of a replicate: common random numbers make their differences smaller. */
-static uint32_t seed_of(const Verify *v, int look, uint32_t replicate) {
+uint32_t verify_seed(const Verify *v, int look, uint32_t replicate) {
   return v->seed * 4096 + (uint32_t)look * 1024 + replicate;
 }
 
 static vlResult render_run(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, int look, vlError *error) {
   const size_t row = (size_t)v->cell_count * VERIFY_CHANNELS;
-  if (!run->values[look]) run->values[look] = malloc(VERIFY_REPLICATES * row * sizeof(double));
-  if (!run->values[look]) return VL_ERROR_MEMORY;
   vlResult result = VL_OK;
   for (uint32_t r = 0; r < VERIFY_REPLICATES && result == VL_OK; r++) {
     vlRenderStats stats;
-    result = shoot(v, run, set, film, run->spp[look], seed_of(v, look, r), run->values[look] + r * row, &stats, error);
+    result =
+        shoot(v, run, set, film, run->spp[look], verify_seed(v, look, r), run->values[look] + r * row, &stats, error);
     if (result == VL_OK) run->dropped += stats.not_finite;
   }
   return result;
 }
 
-vlResult verify_render(Verify *v, int look, vlError *error) {
+/* Counts the rays of one sample per pixel. */
+static vlResult count_rays(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, vlError *error) {
+  vlRenderStats stats;
+  const vlFilmDef def = film_of(v);
+  const char *lack = vl_tracer_lacks(set->world, &set->camera, &def, run->tracer);
+  if (lack) {
+    run->left_out = true;
+    verify_note(v, "%s is not compared: it does not support %s", run->name, lack);
+    return VL_OK;
+  }
+  vlResult result = shoot(v, run, set, film, 1, verify_seed(v, VERIFY_TRIAL, 0), NULL, &stats, error);
+  run->rays = (double)(stats.camera_rays + stats.bounce_rays + stats.shadow_rays);
+  return result;
+}
+
+/* ---- all runs ---------------------------------------------------------------------------------------------------- */
+
+/* Moved copies have as many rays as the scene at its own place. */
+static bool takes_part(const VerifyRun *run, int look) {
+  if (run->left_out) return false;
+  return look == VERIFY_TRIAL ? run->place == VERIFY_AS_IT_IS : look == 0 || run->again;
+}
+
+static vlResult go(Verify *v, VerifyRun *run, Set *set, vlFilm *film, int look, vlError *error) {
+  const size_t size = VERIFY_REPLICATES * (size_t)v->cell_count * VERIFY_CHANNELS * sizeof(double);
+  if (look != VERIFY_TRIAL && !run->values[look]) run->values[look] = malloc(size);
+  if (look != VERIFY_TRIAL && !run->values[look]) return VL_ERROR_MEMORY;
+  if (run->reference)
+    return look == VERIFY_TRIAL ? verify_reference_try(v, run, error) : verify_reference(v, run, look, error);
+  vlResult result = build_set(v, run, set, error);
+  if (result != VL_OK) return result;
+  return look == VERIFY_TRIAL ? count_rays(v, run, set, film, error) : render_run(v, run, set, film, look, error);
+}
+
+static vlResult each_run(Verify *v, int look, vlError *error) {
   Set set = {0};
   vlFilm *film = NULL;
   const vlFilmDef def = film_of(v);
   vlResult result = vl_film_create(v->context, &def, &film);
   v->drowned = true;
-  for (int i = 0; i < v->run_count && result == VL_OK; i++) {
-    VerifyRun *run = &v->runs[i];
-    if (run->left_out || (look && !run->again)) continue;
-    result = build_set(v, run, &set, error);
-    if (result == VL_OK) result = render_run(v, run, &set, film, look, error);
-  }
+  for (int i = 0; i < v->run_count && result == VL_OK; i++)
+    if (takes_part(&v->runs[i], look)) result = go(v, &v->runs[i], &set, film, look, error);
   v->drowned = false;
   vl_world_destroy(set.world);
   vl_film_destroy(film);
   return result;
-}
-
-/* ---- samples ----------------------------------------------------------------------------------------------------- */
-
-/* Counts the rays of one sample per pixel. */
-static vlResult count_rays(Verify *v, VerifyRun *run, const Set *set, vlFilm *film, vlError *error) {
-  vlRenderStats stats;
-  v->fell_back[0] = 0;
-  vlResult result = shoot(v, run, set, film, 1, seed_of(v, 3, 0), NULL, &stats, error);
-  if (result != VL_OK) return result;
-  run->rays = (double)(stats.camera_rays + stats.bounce_rays + stats.shadow_rays);
-  if (!v->fell_back[0]) return VL_OK;
-  run->left_out = true;
-  verify_note(v, "%s is not compared: %s", run->name, v->fell_back);
-  return VL_OK;
 }
 
 /* Each tracer gets the same share of the budget; its runs have the same samples, so that they can be compared by pairs.
  * Powers of two suit the sampler. */
 static void share_budget(Verify *v) {
-  int runs = 0;
-  for (int i = 0; i < v->run_count; i++) runs += !v->runs[i].left_out;
+  double shares = 0;
+  for (int i = 0; i < v->run_count; i++)
+    if (!v->runs[i].left_out) shares += v->runs[i].reference ? VERIFY_REFERENCE_SHARES : 1;
   for (int i = 0; i < v->run_count; i++) {
+    VerifyRun *run = &v->runs[i];
     double most = 1, spp = 1;
     for (int k = 0; k < v->run_count; k++)
-      if (v->runs[k].tracer == v->runs[i].tracer) most = fmax(most, v->runs[k].rays);
-    const double share = v->budget / (runs * VERIFY_REPLICATES * most);
+      if (v->runs[k].tracer == run->tracer && v->runs[k].reference == run->reference)
+        most = fmax(most, v->runs[k].rays);
+    const double own = run->reference ? VERIFY_REFERENCE_SHARES : 1;
+    const double share = own * v->budget / (shares * VERIFY_REPLICATES * most);
     while (2 * spp <= share && spp < MOST_SPP) spp *= 2;
-    v->runs[i].spp[0] = (uint32_t)spp;
-    v->runs[i].spp[1] = (uint32_t)spp * VERIFY_SECOND;
+    run->spp[0] = (uint32_t)spp;
+    run->spp[1] = (uint32_t)spp * VERIFY_SECOND;
   }
 }
 
 vlResult verify_measure(Verify *v, vlError *error) {
-  Set set = {0};
-  vlFilm *film = NULL;
-  const vlFilmDef def = film_of(v);
-  vlResult result = vl_film_create(v->context, &def, &film);
-  v->drowned = true;
-  for (int i = 0; i < v->run_count && result == VL_OK; i++) {
-    VerifyRun *run = &v->runs[i];
-    if (run->place != VERIFY_AS_IT_IS) continue; /* as many rays as at its own place */
-    result = build_set(v, run, &set, error);
-    if (result == VL_OK) result = count_rays(v, run, &set, film, error);
-  }
+  const vlResult result = each_run(v, VERIFY_TRIAL, error);
   for (int i = 0; i < v->run_count; i++)
     if (v->runs[i].against >= 0 && v->runs[v->runs[i].against].left_out) v->runs[i].left_out = true;
-  v->drowned = false;
-  vl_world_destroy(set.world);
-  vl_film_destroy(film);
   if (result == VL_OK) share_budget(v);
   return result;
+}
+
+vlResult verify_render(Verify *v, int look, vlError *error) {
+  return each_run(v, look, error);
 }

@@ -25,9 +25,28 @@ static float ray_hash(const vlLocalRay *r, uint32_t shape, uint32_t prim, float 
   return vl_unit_float(vl_hash2(h, vl_float_bits(t)));
 }
 
+/* Textures are placed in the world (vlTextureDef.texture_from_world). */
+static vlTextureQuery world_query(const vlWorld *world, const vlLocalRay *r, const vlTextureQuery *at) {
+  vlTextureQuery q = *at;
+  vlWorldInstance moved;
+  if (r->instance == VL_NONE) return q;
+  const vlWorldInstance *instance = vl_instance_at(&world->instances.items[r->instance], r->time, &moved);
+  const float *m = instance->from_group, *w = instance->to_group;
+  const float p[3] = {at->p.x, at->p.y, at->p.z}, n[3] = {at->n.x, at->n.y, at->n.z};
+  float placed[3], turned[3];
+  for (int i = 0; i < 3; i++) {
+    placed[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+    turned[i] = w[i] * n[0] + w[4 + i] * n[1] + w[8 + i] * n[2];
+  }
+  q.p = vl_vec3(placed[0], placed[1], placed[2]);
+  q.n = vl_vec3(turned[0], turned[1], turned[2]);
+  return q;
+}
+
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *r, uint32_t prim, float t,
                      const vlTextureQuery *at) {
-  float alpha = vl_texture_float_at(world, shape->alpha, at);
+  const vlTextureQuery q = world_query(world, r, at);
+  const float alpha = vl_texture_float_at(world, shape->alpha, &q);
   return ray_hash(r, (uint32_t)(shape - world->shapes.items), prim, t) >= alpha;
 }
 

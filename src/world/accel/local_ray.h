@@ -19,7 +19,8 @@ vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *rays, uint32_t i, ui
 
 /* Whether a ray passes through a shape because of the shape's alpha. A hash of ray and primitive decides, so that the
  * result does not depend on the order of traversal. t: distance of the hit; it enters the hash for shapes that a ray
- * can intersect twice, so that each hit is decided separately; 0 for triangles. at: the point of the hit. */
+ * can intersect twice, so that each hit is decided separately; 0 for triangles. at: the point of the hit, in the space
+ * of the ray's group. */
 bool vl_alpha_passes(const vlWorld *world, const vlWorldShape *shape, const vlLocalRay *ray, uint32_t prim, float t,
                      const vlTextureQuery *at);
 

@@ -81,7 +81,10 @@ static void check_coats(vlCheck *check) {
     double lost = check->material_used[i] ? loss_of(check, m, &coats) : 0;
     if (lost < least) continue;
     count++;
-    if (lost > most) worst = m, most = lost;
+    if (lost > most) {
+      worst = m;
+      most = lost;
+    }
     if (lost < fewest) fewest = lost;
   }
   VL_ARRAY_FREE(check->context, &coats);

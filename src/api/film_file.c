@@ -91,7 +91,8 @@ vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *block, vlE
   if (h->range_count > file->capacity) {
     vlSampleRange *more = vl_realloc_array(r->context, file->ranges, h->range_count, sizeof *more);
     if (!more) return vl_fail_memory(error);
-    file->ranges = more, file->capacity = h->range_count;
+    file->ranges = more;
+    file->capacity = h->range_count;
   }
   for (uint32_t i = 0; i < h->range_count; i++) file->ranges[i] = (vlSampleRange){r->ranges[i].first, r->ranges[i].end};
   *block = (vlFilmBlock){h->x0, h->y0, h->x1, h->y1, h->range_count, file->ranges};

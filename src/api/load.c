@@ -37,7 +37,8 @@ static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoad
   }
   vlFilmDef *film = &scene->defs.film;
   const uint32_t whole[4] = {0, 0, record.camera.width, record.camera.height};
-  film->width = whole[2], film->height = whole[3];
+  film->width = whole[2];
+  film->height = whole[3];
   memcpy(film->crop, whole, sizeof whole);
   scene->defs.camera = record.camera;
   return VL_OK;

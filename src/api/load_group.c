@@ -56,7 +56,10 @@ static bool dissolve(vlScene *scene, size_t first_shape, const Loaded *all, size
 static bool gather(vlScene *scene, const Before *before, vlGroupId group, vlLoadedGroup *loaded) {
   size_t count = scene->shapes.count - before->shapes;
   Loaded *all = vl_alloc_array(scene->context, count + 1, sizeof *all);
-  if (!all) return vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory"), false;
+  if (!all) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return false;
+  }
   for (size_t i = 0; i < count; i++) {
     vlShapeDef *d = &scene->shapes.items[before->shapes + i];
     all[i] = (Loaded){.group = d->group.index, .reversed = d->reverse_orientation};

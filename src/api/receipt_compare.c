@@ -111,7 +111,8 @@ static void compare_files(Comparison *c, const vlReceipt *then, const vlReceipt 
       differ(c, "the file %.400s changed", new.path);
     if (order < 0) differ(c, "the file %.400s is no longer read", old.path);
     if (order > 0) differ(c, "the file %.400s is read in addition", new.path);
-    i += order <= 0, j += order >= 0;
+    i += order <= 0;
+    j += order >= 0;
   }
 }
 

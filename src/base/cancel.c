@@ -43,7 +43,10 @@ bool vl_task_stopped(vlTask *task, const char *name, double fraction) {
     return true;
   }
   if (!task->progress || !pthread_equal(pthread_self(), task->caller)) return false;
-  if (name) task->name = name, task->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
+  if (name) {
+    task->name = name;
+    task->fraction = fraction < 0 ? 0 : fraction > 1 ? 1 : fraction;
+  }
   double now = vl_seconds();
   if (now - task->last < step_interval) return false;
   task->last = now;

@@ -216,7 +216,11 @@ vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *
 
 vlConfined vl_confine(const char *const *read, uint32_t read_count, const char *const *write, uint32_t write_count,
                       bool sockets) {
-  (void)read, (void)read_count, (void)write, (void)write_count, (void)sockets;
+  (void)read;
+  (void)read_count;
+  (void)write;
+  (void)write_count;
+  (void)sockets;
   return (vlConfined){0};
 }
 

@@ -37,15 +37,25 @@ void vl_digest(const void *data, size_t size, uint8_t digest[16]) {
   }
   if (rest > 8) h2 ^= scramble2(load(bytes + 8, rest - 8));
   if (rest > 0) h1 ^= scramble1(load(bytes, rest < 8 ? rest : 8));
-  h1 ^= size, h2 ^= size;
-  h1 += h2, h2 += h1;
-  h1 = mix(h1), h2 = mix(h2);
-  h1 += h2, h2 += h1;
-  for (int i = 0; i < 8; i++) digest[i] = (uint8_t)(h1 >> (56 - 8 * i)), digest[8 + i] = (uint8_t)(h2 >> (56 - 8 * i));
+  h1 ^= size;
+  h2 ^= size;
+  h1 += h2;
+  h2 += h1;
+  h1 = mix(h1);
+  h2 = mix(h2);
+  h1 += h2;
+  h2 += h1;
+  for (int i = 0; i < 8; i++) {
+    digest[i] = (uint8_t)(h1 >> (56 - 8 * i));
+    digest[8 + i] = (uint8_t)(h2 >> (56 - 8 * i));
+  }
 }
 
 void vl_digest_text(const uint8_t digest[16], char text[33]) {
   static const char digits[] = "0123456789abcdef";
-  for (int i = 0; i < 16; i++) text[2 * i] = digits[digest[i] >> 4], text[2 * i + 1] = digits[digest[i] & 15];
+  for (int i = 0; i < 16; i++) {
+    text[2 * i] = digits[digest[i] >> 4];
+    text[2 * i + 1] = digits[digest[i] & 15];
+  }
   text[32] = 0;
 }

@@ -129,17 +129,27 @@ static const char *not_a_file(const struct stat *info, bool pipes) {
 static int open_file(vlContext *context, const char *path, bool given, vlError *error) {
   struct stat info;
   if (!given && !vl_context_allows(context, path)) /* asked first: the answer is the same for a missing file */
-    return vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path), -1;
-  if (stat(path, &info) != 0) return fail_open(path, errno, error), -1;
+  {
+    vl_fail(error, VL_ERROR_IO, "cannot read %s: it lies outside of the sandbox", path);
+    return -1;
+  }
+  if (stat(path, &info) != 0) {
+    fail_open(path, errno, error);
+    return -1;
+  }
   if (given) vl_sandbox_pass(vl_context_sandbox(context), path);
   const char *what = not_a_file(&info, given);
   int fd = what ? -1 : open(path, O_RDONLY | O_CLOEXEC | (given ? 0 : O_NONBLOCK));
-  if (!what && fd < 0) return fail_open(path, errno, error), -1;
+  if (!what && fd < 0) {
+    fail_open(path, errno, error);
+    return -1;
+  }
   if (!what && fstat(fd, &info) != 0) what = strerror(errno);
   if (!what) what = not_a_file(&info, given);
   if (!what) return fd;
   if (fd >= 0) close(fd);
-  return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what), -1;
+  vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", path, what);
+  return -1;
 }
 
 /* The text that Git stores in place of a large file. */

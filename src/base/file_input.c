@@ -44,7 +44,10 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path, c
   }
   char *copy = vl_strdup(context, path);
   const vlFileInput *last = copy ? VL_PUSH(context, &inputs->list) : NULL;
-  if (!last) return vl_free(context, copy), false;
+  if (!last) {
+    vl_free(context, copy);
+    return false;
+  }
   vlFileInput *place = inputs->list.items + at;
   memmove(place + 1, place, (inputs->list.count - 1 - at) * sizeof *place);
   *place = (vlFileInput){copy, *stamp, other};

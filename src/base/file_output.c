@@ -19,17 +19,24 @@ size_t vl_folder_length(const char *path) {
 
 bool vl_follow_links(const char *path, char *target, size_t size) {
   char link[4096];
-  if (strlen(path) >= size) return errno = ENAMETOOLONG, false;
+  if (strlen(path) >= size) {
+    errno = ENAMETOOLONG;
+    return false;
+  }
   memcpy(target, path, strlen(path) + 1);
   for (int i = 0; i < MOST_LINKS; i++) {
     ssize_t n = readlink(target, link, sizeof link);
     if (n < 0) return true; /* not a link; other errors are reported when it is opened */
     size_t folder = n > 0 && link[0] == '/' ? 0 : vl_folder_length(target);
-    if (folder + (size_t)n >= size) return errno = ENAMETOOLONG, false;
+    if (folder + (size_t)n >= size) {
+      errno = ENAMETOOLONG;
+      return false;
+    }
     memcpy(target + folder, link, (size_t)n);
     target[folder + (size_t)n] = 0;
   }
-  return errno = ELOOP, false;
+  errno = ELOOP;
+  return false;
 }
 
 /* The folder of `path`, which is at most 4095 bytes long. */

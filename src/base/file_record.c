@@ -13,7 +13,10 @@ static size_t find(const vlFileRecords *records, const char *path, bool *found) 
   while (low < high && !*found) {
     size_t middle = low + (high - low) / 2;
     int order = strcmp(path, records->files.items[middle].path);
-    if (order == 0) low = middle, *found = true;
+    if (order == 0) {
+      low = middle;
+      *found = true;
+    }
     if (order < 0) high = middle;
     if (order > 0) low = middle + 1;
   }
@@ -30,7 +33,10 @@ static bool insert(vlContext *context, vlFileRecords *records, const vlFileRecor
   }
   char *path = vl_strdup(context, record->path);
   const vlFileRecord *last = path ? VL_PUSH(context, &records->files) : NULL;
-  if (!last) return vl_free(context, path), false;
+  if (!last) {
+    vl_free(context, path);
+    return false;
+  }
   vlFileRecord *place = records->files.items + at;
   memmove(place + 1, place, (records->files.count - 1 - at) * sizeof *place);
   *place = *record;

@@ -41,7 +41,10 @@ bool vl_path_is_stream(const char *path) {
 
 static int connect_socket(const char *path) {
   struct sockaddr_un address = {.sun_family = AF_UNIX};
-  if (strlen(path) >= sizeof address.sun_path) return errno = ENAMETOOLONG, -1;
+  if (strlen(path) >= sizeof address.sun_path) {
+    errno = ENAMETOOLONG;
+    return -1;
+  }
   memcpy(address.sun_path, path, strlen(path));
   int fd = socket(AF_UNIX, SOCK_STREAM, 0);
   if (fd < 0) return -1;
@@ -49,7 +52,8 @@ static int connect_socket(const char *path) {
       connect(fd, (struct sockaddr *)&address, sizeof address) != 0) {
     int code = errno;
     close(fd);
-    return errno = code, -1;
+    errno = code;
+    return -1;
   }
   return fd;
 }
@@ -67,7 +71,10 @@ static int open_stream(Wait *wait, const char *path) {
     int fd = open_once(path), code = errno;
     bool later = code == EINTR || code == ENXIO || code == EAGAIN;
     if (fd >= 0 || !later) return fd;
-    if (!wait_on(wait, false)) return errno = code == EINTR ? EAGAIN : code, -1;
+    if (!wait_on(wait, false)) {
+      errno = code == EINTR ? EAGAIN : code;
+      return -1;
+    }
     nanosleep(&(struct timespec){.tv_nsec = WAIT_MS * 1000000L / 5}, NULL);
   }
 }
@@ -87,7 +94,8 @@ int vl_stream_write(vlContext *context, const char *path, const char *data, size
     ssize_t n = write(fd, data, size < PIECE ? size : PIECE);
     if (n < 0 && errno != EINTR && errno != EAGAIN) code = errno;
     if (n <= 0) continue;
-    data += n, size -= (size_t)n;
+    data += n;
+    size -= (size_t)n;
     moved = true;
   }
   if (close(fd) != 0 && !code) code = errno;

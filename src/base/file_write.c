@@ -69,7 +69,8 @@ static bool open_temporary(vlFileWriter *writer) {
     close(writer->descriptor);
     writer->descriptor = -1;
   }
-  return errno = EEXIST, false;
+  errno = EEXIST;
+  return false;
 }
 
 static bool is_temporary(const char *name) {
@@ -109,7 +110,11 @@ vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char
   struct stat info;
   writer->in_memory = false;
   writer->replaces = stat(path, &info) == 0;
-  if (writer->replaces) writer->mode = info.st_mode & 0777, writer->owner = info.st_uid, writer->group = info.st_gid;
+  if (writer->replaces) {
+    writer->mode = info.st_mode & 0777;
+    writer->owner = info.st_uid;
+    writer->group = info.st_gid;
+  }
   if (vl_follow_links(path, writer->target, sizeof writer->target)) open_temporary(writer);
   if (writer->descriptor >= 0) return VL_OK;
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
@@ -130,7 +135,10 @@ void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *n
 bool vl_file_reserve(vlFileWriter *writer, size_t size) {
   if (size <= writer->memory_capacity) return true;
   char *grown = vl_realloc_array(writer->context, writer->memory, size, 1);
-  if (!grown) return writer->failed_errno = ENOMEM, false;
+  if (!grown) {
+    writer->failed_errno = ENOMEM;
+    return false;
+  }
   writer->memory = grown;
   writer->memory_capacity = size;
   return true;

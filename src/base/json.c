@@ -42,7 +42,10 @@ bool vl_json_lacks_memory(const json_error_t *error) {
 char *vl_json_text(vlContext *context, const json_t *tree, size_t flags, const char *end) {
   size_t size = json_dumpb(tree, NULL, 0, flags);
   char *text = size ? vl_alloc(context, size + strlen(end) + 1) : NULL;
-  if (!text || json_dumpb(tree, text, size, flags) != size) return vl_free(context, text), NULL;
+  if (!text || json_dumpb(tree, text, size, flags) != size) {
+    vl_free(context, text);
+    return NULL;
+  }
   memcpy(text + size, end, strlen(end) + 1);
   return text;
 }

@@ -64,7 +64,10 @@ static void give_way(vlPool *pool, const vlLoop *loop) {
     struct timespec until;
     clock_gettime(CLOCK_REALTIME, &until);
     until.tv_nsec += POLL;
-    if (until.tv_nsec >= 1000000000L) until.tv_nsec -= 1000000000L, until.tv_sec++;
+    if (until.tv_nsec >= 1000000000L) {
+      until.tv_nsec -= 1000000000L;
+      until.tv_sec++;
+    }
     pthread_cond_timedwait(&pool->done, &pool->mutex, &until);
   }
 }

@@ -121,7 +121,10 @@ static bool step(vlSandbox *sandbox, Walk *walk) {
   memmove(walk->rest, walk->rest + skip + length, strlen(walk->rest + skip + length) + 1);
   if (!length || strcmp(name, ".") == 0) return true;
   if (!is_passable(sandbox, walk->at) && !is_beneath(walk->start, walk->at)) return false;
-  if (strcmp(name, "..") == 0) return go_up(walk->at), true;
+  if (strcmp(name, "..") == 0) {
+    go_up(walk->at);
+    return true;
+  }
   if (!go_down(walk->at, name, length)) return false;
   ssize_t n = walk->missing ? -1 : readlink(walk->at, link, sizeof link - 1);
   if (n > 0) {

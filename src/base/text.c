@@ -17,7 +17,10 @@ uint32_t vl_edit_distance(const char *a, const char *b) {
   size_t n = strlen(a), m = strlen(b);
   if (n > MAX_NAME || m > MAX_NAME) return MAX_NAME;
   uint32_t before[MAX_NAME + 1], last[MAX_NAME + 1], row[MAX_NAME + 1];
-  for (size_t j = 0; j <= m; j++) last[j] = (uint32_t)j, before[j] = 0;
+  for (size_t j = 0; j <= m; j++) {
+    last[j] = (uint32_t)j;
+    before[j] = 0;
+  }
   for (size_t i = 1; i <= n; i++) {
     row[0] = (uint32_t)i;
     for (size_t j = 1; j <= m; j++) {
@@ -38,7 +41,10 @@ const char *vl_nearest_name(const char *name, const char *const *names, size_t c
   uint32_t best_distance = MAX_NAME;
   for (size_t i = 0; i < count; i++) {
     uint32_t d = vl_edit_distance(name, names[i]);
-    if (d < best_distance) best_distance = d, best = names[i];
+    if (d < best_distance) {
+      best_distance = d;
+      best = names[i];
+    }
   }
   size_t length = strlen(name);
   return best && best_distance * 3 <= (length > 3 ? length : 3) ? best : NULL;

@@ -21,9 +21,11 @@ void vl_blades_make(uint32_t count, double rotation, vlBlades *blades) {
   blades->count = count < VL_MOST_BLADES ? count : VL_MOST_BLADES;
   for (uint32_t i = 0; i < blades->count; i++) {
     double angle = rotation - 0.5 * pi + 2.0 * pi * i / blades->count;
-    blades->x[i] = (float)vl_precise_cos(angle), blades->y[i] = (float)vl_precise_sin(angle);
+    blades->x[i] = (float)vl_precise_cos(angle);
+    blades->y[i] = (float)vl_precise_sin(angle);
   }
-  blades->x[blades->count] = blades->x[0], blades->y[blades->count] = blades->y[0];
+  blades->x[blades->count] = blades->x[0];
+  blades->y[blades->count] = blades->y[0];
 }
 
 /* u chooses one of the equal triangles between the centre and a side; its remainder is the position along the side.
@@ -195,7 +197,8 @@ static double named_value(int name, double x, double y) {
   for (int i = 0; i < count; i++) {
     double angle = name == 2 ? 0.5 * pi + 0.4 * pi * i : 0.2 * pi * i;
     double radius = name == 2 ? 0.8 : i & 1 ? 1.0 : vl_precise_cos(0.4 * pi) / vl_precise_cos(0.2 * pi);
-    corners[i][0] = radius * vl_precise_cos(angle), corners[i][1] = radius * vl_precise_sin(angle);
+    corners[i][0] = radius * vl_precise_cos(angle);
+    corners[i][1] = radius * vl_precise_sin(angle);
   }
   return inside((const double(*)[2])corners, count, x, y) ? 1.0 : 0.0;
 }

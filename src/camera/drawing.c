@@ -40,7 +40,8 @@ static void line(Pen *p, vlDrawingPart part, const double a[3], const double b[3
     p->failed = true;
     return;
   }
-  l->part = part, l->camera = p->index;
+  l->part = part;
+  l->camera = p->index;
   memcpy(l->from, a, sizeof l->from);
   memcpy(l->to, b, sizeof l->to);
 }
@@ -53,7 +54,8 @@ static void face(Pen *p, vlDrawingPart part, const double a[3], const double b[3
     p->failed = true;
     return;
   }
-  f->part = part, f->camera = p->index;
+  f->part = part;
+  f->camera = p->index;
   const double *const corners[4] = {a, b, c, d};
   for (int i = 0; i < 4; i++) memcpy(f->corners[i], corners[i], sizeof f->corners[i]);
 }
@@ -65,7 +67,8 @@ static void label(Pen *p, vlDrawingPart part, const double at[3], const char *te
     p->failed = true;
     return;
   }
-  l->part = part, l->camera = p->index;
+  l->part = part;
+  l->camera = p->index;
   memcpy(l->at, at, sizeof l->at);
   snprintf(l->text, sizeof l->text, "%s", text);
 }
@@ -86,7 +89,10 @@ static void eye_of(const vlCamera *c, double eye[3]) {
 /* Unit camera axis i (0 right, 1 down, 2 forward) in the world. */
 static void axis_of(const vlCamera *c, int i, double axis[3]) {
   double length = 0;
-  for (int k = 0; k < 3; k++) axis[k] = c->world_from_camera[4 * k + i], length += axis[k] * axis[k];
+  for (int k = 0; k < 3; k++) {
+    axis[k] = c->world_from_camera[4 * k + i];
+    length += axis[k] * axis[k];
+  }
   for (int k = 0; k < 3; k++) axis[k] /= sqrt(length);
 }
 
@@ -153,11 +159,13 @@ static bool whole_circle(const vlCamera *c) {
 
 /* Film point (i, j) of a net of n x n over the image, or over the image circle: its rings and spokes. */
 static void net_point(const vlCamera *c, bool circle, int i, int j, int n, double xy[2]) {
-  xy[0] = c->width * (double)i / n, xy[1] = c->height * (double)j / n;
+  xy[0] = c->width * (double)i / n;
+  xy[1] = c->height * (double)j / n;
   if (!circle) return;
   double rim[2] = {c->cx, c->cy}, share = (double)j / n;
   on_circle(c, (double)i / n, rim);
-  xy[0] = c->cx + share * (rim[0] - c->cx), xy[1] = c->cy + share * (rim[1] - c->cy);
+  xy[0] = c->cx + share * (rim[0] - c->cx);
+  xy[1] = c->cy + share * (rim[1] - c->cy);
 }
 
 /* Faces of the surface at `depth`. */
@@ -202,8 +210,10 @@ static void edges(Pen *p, vlDrawingPart part, double from, double to) {
   for (int i = 0; i < EDGES; i++) {
     static const double square[EDGES][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5, 0}, {1, 0.5}, {0.5, 1}, {0, 0.5}};
     if (p->flat && i >= 4) break;
-    if (!circle || !on_circle(c, (double)i / EDGES, xy))
-      xy[0] = square[i][0] * c->width, xy[1] = square[i][1] * c->height;
+    if (!circle || !on_circle(c, (double)i / EDGES, xy)) {
+      xy[0] = square[i][0] * c->width;
+      xy[1] = square[i][1] * c->height;
+    }
     if (at_depth(p, xy[0], xy[1], from, a) && at_depth(p, xy[0], xy[1], to, b)) line(p, part, a, b);
   }
 }
@@ -214,7 +224,8 @@ static void draw_eye(Pen *p) {
   const vlCamera *c = p->camera;
   double eye[3], right[3], down[3], last[3], next[3];
   eye_of(c, eye);
-  axis_of(c, 0, right), axis_of(c, 1, down);
+  axis_of(c, 0, right);
+  axis_of(c, 1, down);
   line(p, VL_DRAWING_EYE, eye, eye);
   label(p, VL_DRAWING_EYE, eye, "e");
   for (int i = 0; c->lens_radius > 0 && i <= STEPS; i++) {
@@ -385,9 +396,11 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
     return vl_fail(error, VL_ERROR_ARGUMENT, "outline: no camera, or a number of the def that is not possible");
   Pen p;
   memset(&p, 0, sizeof p);
-  p.context = context, p.def = def;
+  p.context = context;
+  p.def = def;
   for (uint32_t i = 0; i < count; i++) {
-    p.camera = &cameras[i], p.index = i;
+    p.camera = &cameras[i];
+    p.index = i;
     p.flat = cameras[i].projection == VL_PROJECTION_PERSPECTIVE || cameras[i].projection == VL_PROJECTION_ORTHOGRAPHIC;
     axis_of(p.camera, 2, p.forward);
     if (count == 1) {
@@ -397,7 +410,10 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
     draw_small(&p);
     double eye[3], before[3];
     eye_of(p.camera, eye);
-    if (i) eye_of(&cameras[i - 1], before), line(&p, VL_DRAWING_PATH, before, eye);
+    if (i) {
+      eye_of(&cameras[i - 1], before);
+      line(&p, VL_DRAWING_PATH, before, eye);
+    }
   }
   Block *block = vl_alloc_zero(context, 1, sizeof *block);
   if (!block || p.failed) {
@@ -409,11 +425,20 @@ vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t
   }
   block->context = context;
   vlDrawing *d = &block->head;
-  d->lines = p.lines.items, d->faces = p.faces.items, d->labels = p.labels.items;
-  d->line_count = (uint32_t)p.lines.count, d->face_count = (uint32_t)p.faces.count;
+  d->lines = p.lines.items;
+  d->faces = p.faces.items;
+  d->labels = p.labels.items;
+  d->line_count = (uint32_t)p.lines.count;
+  d->face_count = (uint32_t)p.faces.count;
   d->label_count = (uint32_t)p.labels.count;
-  for (int i = 0; i < 3; i++) d->low[i] = INFINITY, d->high[i] = -INFINITY;
-  for (uint32_t i = 0; i < d->line_count; i++) extend(d, d->lines[i].from), extend(d, d->lines[i].to);
+  for (int i = 0; i < 3; i++) {
+    d->low[i] = INFINITY;
+    d->high[i] = -INFINITY;
+  }
+  for (uint32_t i = 0; i < d->line_count; i++) {
+    extend(d, d->lines[i].from);
+    extend(d, d->lines[i].to);
+  }
   *drawing = d;
   return VL_OK;
 }

@@ -10,7 +10,8 @@ void vl_lens_points(const vlCameraCompiled *c, uint32_t n, const float *u, const
   else
     for (uint32_t i = 0; i < n; i++) {
       vlLensPoint p = vl_lens_disk(u[i], v[i]);
-      x[i] = p.x, y[i] = p.y;
+      x[i] = p.x;
+      y[i] = p.y;
     }
   double cosine = c->aperture ? c->lens_turn[0] : 1.0, sine = c->aperture ? c->lens_turn[1] : 0.0;
   for (uint32_t i = 0; i < n; i++) {

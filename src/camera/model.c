@@ -77,9 +77,12 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
                        "camera: %u OpenCV distortion coefficients; there are 4, 5, 8, 12 or 14", n);
       double c[14] = {0};
       memcpy(c, k, n * sizeof *c);
-      m->numerator[0] = c[0], m->numerator[1] = c[1], m->numerator[2] = c[4];
+      m->numerator[0] = c[0];
+      m->numerator[1] = c[1];
+      m->numerator[2] = c[4];
       for (int i = 0; i < 3; i++) m->denominator[i] = c[5 + i];
-      m->tangential[0] = c[2], m->tangential[1] = c[3];
+      m->tangential[0] = c[2];
+      m->tangential[1] = c[3];
       for (int i = 0; i < 4; i++) m->prism[i] = c[8 + i];
       if (!(fabs(c[12]) < 1.5 && fabs(c[13]) < 1.5))
         return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the sensor's tilt %g, %g radians must be below 1.5", c[12],
@@ -95,9 +98,14 @@ static vlResult distortion(const vlCameraDef *def, vlDistortionMap *m, vlError *
     case VL_DISTORTION_THIN_PRISM:
       if (n != 8)
         return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u thin-prism distortion coefficients; there are 8", n);
-      m->numerator[0] = k[0], m->numerator[1] = k[1], m->numerator[2] = k[4], m->numerator[3] = k[5];
-      m->tangential[0] = k[2], m->tangential[1] = k[3];
-      m->prism[0] = k[6], m->prism[2] = k[7];
+      m->numerator[0] = k[0];
+      m->numerator[1] = k[1];
+      m->numerator[2] = k[4];
+      m->numerator[3] = k[5];
+      m->tangential[0] = k[2];
+      m->tangential[1] = k[3];
+      m->prism[0] = k[6];
+      m->prism[2] = k[7];
       break;
   }
   for (uint32_t i = 0; i < n; i++)
@@ -115,7 +123,8 @@ vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *erro
 bool vl_camera_plane_radius(const vlCamera *camera, double angle, bool vertical, double *radius) {
   vlCameraCompiled c;
   memset(&c, 0, sizeof c);
-  c.shape[0] = camera->shape[0], c.shape[1] = camera->shape[1];
+  c.shape[0] = camera->shape[0];
+  c.shape[1] = camera->shape[1];
   if (camera->projection == VL_PROJECTION_FOV) c.shape[1] = 2.0 * vl_precise_tan(0.5 * camera->shape[0]);
   c.limit2 = INFINITY;
   double s = vl_precise_sin(angle), z = vl_precise_cos(angle);

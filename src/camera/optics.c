@@ -60,7 +60,8 @@ static double index_behind(const vlOptics *o, int i) {
 /* Orders the surfaces from the film's side. Vertices are relative to the rear surface, which is at z = 0. */
 static void arrange(vlOptics *o) {
   double unit = o->def.unit_mm, z = 0.0;
-  o->stop = 0, o->has_stop = false;
+  o->stop = 0;
+  o->has_stop = false;
   for (uint32_t k = 0; k < o->count; k++) {
     int i = (int)(o->count - 1 - k);
     const vlLensSurface *g = &o->given[i];
@@ -68,7 +69,8 @@ static void arrange(vlOptics *o) {
     double opening = g->aperture;
     if (g->radius == 0.0) {
       if (o->def.aperture_diameter < opening) opening = o->def.aperture_diameter;
-      o->stop = k, o->has_stop = true;
+      o->stop = k;
+      o->has_stop = true;
     }
     o->surfaces[k] = (vlOpticsSurface){.z = z,
                                        .radius = g->radius / unit,
@@ -125,7 +127,8 @@ static vlResult focus(vlOptics *o, vlError *error) {
     return vl_fail(error, VL_ERROR_ARGUMENT, "lens: focused at %g its last surface would lie %g behind the film",
                    o->def.focus_distance, -z);
   for (uint32_t k = 0; k < o->count; k++) o->surfaces[k].z += z;
-  o->rear = z, o->front = z + length;
+  o->rear = z;
+  o->front = z + length;
   o->half = 0.5 * o->def.film_diagonal / o->def.unit_mm;
   o->info = (vlOpticsInfo){.focal_length = f,
                            .film_distance = o->rear,

@@ -14,8 +14,12 @@ static inline vlOpticsRay load(const Bundle *b, uint32_t i) {
   return (vlOpticsRay){b->x[i], b->y[i], b->z[i], b->dx[i], b->dy[i], b->dz[i], b->alive[i]};
 }
 static inline void store(Bundle *b, uint32_t i, vlOpticsRay r) {
-  b->x[i] = r.x, b->y[i] = r.y, b->z[i] = r.z;
-  b->dx[i] = r.dx, b->dy[i] = r.dy, b->dz[i] = r.dz;
+  b->x[i] = r.x;
+  b->y[i] = r.y;
+  b->z[i] = r.z;
+  b->dx[i] = r.dx;
+  b->dy[i] = r.dy;
+  b->dz[i] = r.dz;
   b->alive[i] = r.alive;
 }
 
@@ -69,8 +73,11 @@ static void chief_rays(const vlCameraCompiled *c, uint32_t count, vlDirections *
   for (uint32_t i = 0; i < count; i++) {
     vlCameraLocal l = {0.0, 0.0, 0.0, 0.0, 1.0};
     bool valid = vl_optics_unproject(c->optics, c->pitch * d->x[i], c->pitch * d->y[i], &l);
-    d->x[i] = l.ox, d->y[i] = l.oy;
-    d->dx[i] = l.dx, d->dy[i] = l.dy, d->dz[i] = l.dz;
+    d->x[i] = l.ox;
+    d->y[i] = l.oy;
+    d->dx[i] = l.dx;
+    d->dy[i] = l.dy;
+    d->dz[i] = l.dz;
     d->valid[i] = seen[i] = valid ? 1.0 : 0.0;
   }
 }

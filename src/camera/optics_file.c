@@ -20,7 +20,10 @@ static bool is_blank(char c) {
 static void skip(Reader *r) {
   for (;; r->at++) {
     if (*r->at == '#') r->at += strcspn(r->at, "\n");
-    if (*r->at == '\n') r->line++, r->line_start = r->at + 1;
+    if (*r->at == '\n') {
+      r->line++;
+      r->line_start = r->at + 1;
+    }
     if (!is_blank(*r->at)) return;
   }
 }

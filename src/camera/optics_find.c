@@ -37,7 +37,9 @@ static bool search(const vlOptics *o, double radius, Box window, Box *found) {
     for (int k = 0; k <= DOWN; k++) {
       double x = window.x0 + (window.x1 - window.x0) * i / ACROSS, y = window.y1 * k / DOWN;
       if (!passes(o, radius, x, y)) continue;
-      found->x0 = fmin(found->x0, x), found->x1 = fmax(found->x1, x), found->y1 = fmax(found->y1, y);
+      found->x0 = fmin(found->x0, x);
+      found->x1 = fmax(found->x1, x);
+      found->y1 = fmax(found->y1, y);
       any = true;
     }
   return any;
@@ -60,7 +62,8 @@ static Box find_box(const vlOptics *o, double r0, double r1, bool *any) {
     for (int i = 0; i < 3; i++) {
       vlChief chief = o->chiefs[(int)(radii[i] / o->chief_step + 0.5)];
       if (passes(o, radii[i], chief.pupil, 0.0)) {
-        box.x0 = fmin(box.x0, chief.pupil), box.x1 = fmax(box.x1, chief.pupil);
+        box.x0 = fmin(box.x0, chief.pupil);
+        box.x1 = fmax(box.x1, chief.pupil);
         *any = true;
       }
       *any = search(o, radii[i], window, &box) || *any;
@@ -126,7 +129,9 @@ bool vl_optics_chief(const vlOptics *o, double radius, double guess, vlChief *ch
   /* secant method: the height at the stop is nearly linear in the height at the pupil */
   for (int i = 0; i < 40 && fabs(fb) > 1e-15 * size && fb != fa; i++) {
     double next = b - fb * (b - a) / (fb - fa);
-    a = b, fa = fb, b = next;
+    a = b;
+    fa = fb;
+    b = next;
     if (!at_stop(o, radius, b, &fb)) return false;
   }
   if (!(fabs(fb) < 1e-9 * size)) return false; /* no root: the secant method did not converge */

@@ -53,17 +53,20 @@ bool vl_optics_project(const vlOptics *o, double x, double y, double z, double f
     if (!miss(o, r, rho, z, &f)) return false;
     if (fabs(f) <= 1e-16 * (z + rho)) break;
     if (f < 0.0) {
-      a = r, fa = f;
+      a = r;
+      fa = f;
       if (side == -1) fb *= 0.5;
       side = -1;
     } else {
-      b = r, fb = f;
+      b = r;
+      fb = f;
       if (side == 1) fa *= 0.5;
       side = 1;
     }
   }
   double k = rho > 0.0 ? r / rho : 0.0;
-  film[0] = x * k, film[1] = y * k;
+  film[0] = x * k;
+  film[1] = y * k;
   return true;
 }
 
@@ -74,7 +77,9 @@ void vl_optics_unproject_chunk(const vlCameraCompiled *c, uint32_t count, const 
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
     bool good = isfinite(x) && isfinite(y) && vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r);
     vlWorldRay w = vl_camera_place(c, r);
-    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->ox[i] = good ? w.ox : 0.0;
+    out->oy[i] = good ? w.oy : 0.0;
+    out->oz[i] = good ? w.oz : 0.0;
     out->x[i] = good ? w.dx * w.inv_length : 0.0;
     out->y[i] = good ? w.dy * w.inv_length : 0.0;
     out->z[i] = good ? w.dz * w.inv_length : 0.0;
@@ -89,7 +94,9 @@ void vl_optics_project_chunk(const vlCameraCompiled *c, uint32_t count, const vl
     double x = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
     double z = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
     vlPlanePoint p = vl_camera_film_point(c, x, y, z);
-    out->x[i] = p.x, out->y[i] = p.y, out->valid[i] = p.valid;
+    out->x[i] = p.x;
+    out->y[i] = p.y;
+    out->valid[i] = p.valid;
     out->z[i] = p.valid > 0.0 ? z : 0.0;
   }
 }

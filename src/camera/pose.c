@@ -119,16 +119,27 @@ vlResult vl_camera_pose(const vlCameraDef *def, vlCamera *camera, const char **w
     result = basis_from_lookat(def, &b, warning, error);
     if (result != VL_OK) return result;
     /* x = u, y = -v (down), z = -w (forward); 0 - v instead of -v keeps -0 out of the matrix */
-    m.m[0] = b.u.x, m.m[1] = 0.0 - b.v.x, m.m[2] = 0.0 - b.w.x, m.m[3] = def->eye[0];
-    m.m[4] = b.u.y, m.m[5] = 0.0 - b.v.y, m.m[6] = 0.0 - b.w.y, m.m[7] = def->eye[1];
-    m.m[8] = b.u.z, m.m[9] = 0.0 - b.v.z, m.m[10] = 0.0 - b.w.z, m.m[11] = def->eye[2];
+    m.m[0] = b.u.x;
+    m.m[1] = 0.0 - b.v.x;
+    m.m[2] = 0.0 - b.w.x;
+    m.m[3] = def->eye[0];
+    m.m[4] = b.u.y;
+    m.m[5] = 0.0 - b.v.y;
+    m.m[6] = 0.0 - b.w.y;
+    m.m[7] = def->eye[1];
+    m.m[8] = b.u.z;
+    m.m[9] = 0.0 - b.v.z;
+    m.m[10] = 0.0 - b.w.z;
+    m.m[11] = def->eye[2];
   }
   if (def->roll != 0.0) {
     /* about z, from x (right) to y (down): clockwise as seen from behind the camera */
     vlMat4 turn = vl_mat4_identity();
     double s = vl_precise_sin(def->roll), c = vl_precise_cos(def->roll);
-    turn.m[0] = c, turn.m[1] = -s;
-    turn.m[4] = s, turn.m[5] = c;
+    turn.m[0] = c;
+    turn.m[1] = -s;
+    turn.m[4] = s;
+    turn.m[5] = c;
     m = vl_mat4_multiply(m, turn);
   }
   return fill(m, camera, error);

@@ -44,8 +44,11 @@ static vlResult check_stereo(const vlCamera *c, const vlStereo *s, vlError *erro
 static vlMat4 eye_pose(double x, double turn) {
   vlMat4 m = vl_mat4_identity();
   double k = 1.0 / sqrt(1.0 + turn * turn);
-  m.m[0] = k, m.m[2] = turn * k, m.m[3] = x;
-  m.m[8] = 0.0 - turn * k, m.m[10] = k;
+  m.m[0] = k;
+  m.m[2] = turn * k;
+  m.m[3] = x;
+  m.m[8] = 0.0 - turn * k;
+  m.m[10] = k;
   return m;
 }
 
@@ -89,7 +92,10 @@ vlResult vl_camera_stereo(const vlCameraDef *def, vlCamera *left, vlCamera *righ
   vlResult result = vl_camera_make(&between, &camera, warning, error);
   if (result == VL_OK) result = vl_camera_eye(&camera, &def->stereo, VL_EYE_LEFT, &eyes[0], error);
   if (result == VL_OK) result = vl_camera_eye(&camera, &def->stereo, VL_EYE_RIGHT, &eyes[1], error);
-  if (result == VL_OK) *left = eyes[0], *right = eyes[1];
+  if (result == VL_OK) {
+    *left = eyes[0];
+    *right = eyes[1];
+  }
   return result;
 }
 

@@ -131,7 +131,8 @@ static vlResult focus(const vlCameraDef *def, vlCamera *camera, vlError *error) 
       if (!(d->focus_pixel[i] >= 0.0 && d->focus_pixel[i] <= (i ? def->height : def->width)))
         return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus_pixel %g, %g lies outside the image of %u x %u",
                        d->focus_pixel[0], d->focus_pixel[1], def->width, def->height);
-    camera->lens.focus_pixel[0] = d->focus_pixel[0], camera->lens.focus_pixel[1] = d->focus_pixel[1];
+    camera->lens.focus_pixel[0] = d->focus_pixel[0];
+    camera->lens.focus_pixel[1] = d->focus_pixel[1];
   }
   if (!point) return VL_OK;
   double distance;

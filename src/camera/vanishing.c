@@ -148,7 +148,10 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   if (result == VL_OK && def->count == 3) result = orthocentre(def, p, error);
   if (result != VL_OK) return result;
   uint32_t pairs = def->count == 3 ? 3 : 1;
-  if (def->count == 2 && !vl_is_unset(def->cx)) p[0] = def->cx, p[1] = def->cy;
+  if (def->count == 2 && !vl_is_unset(def->cx)) {
+    p[0] = def->cx;
+    p[1] = def->cy;
+  }
   double least = INFINITY; /* of the three equal values, the one with the smallest terms has the least rounding error */
   for (uint32_t i = 0; i < pairs; i++) {
     const double *a = def->points[i], *b = def->points[(i + 1) % def->count];
@@ -173,7 +176,9 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   double axes[3][3];
   for (int i = 0; i < 2; i++) {
     double *v = axes[def->axes[i]], sign = def->away[i] ? 1.0 : -1.0;
-    v[0] = sign * (def->points[i][0] - p[0]), v[1] = sign * (def->points[i][1] - p[1]), v[2] = sign * f;
+    v[0] = sign * (def->points[i][0] - p[0]);
+    v[1] = sign * (def->points[i][1] - p[1]);
+    v[2] = sign * f;
     normalize3(v);
   }
   uint32_t first = def->axes[0], second = def->axes[1], third = 3 - first - second;
@@ -187,7 +192,8 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
   normalize3(axes[second]);
   *camera = vl_default_camera_def(def->width, def->height);
   camera->fx = camera->fy = f;
-  camera->cx = p[0], camera->cy = p[1];
+  camera->cx = p[0];
+  camera->cy = p[1];
   camera->has_matrix = true;
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) camera->world_from_camera[4 * i + k] = axes[i][k] + 0.0;

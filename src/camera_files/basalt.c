@@ -76,7 +76,8 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree, vlCame
   vlResult result = vl_camera_field(file, tree, "value0", &root);
   if (result == VL_OK) result = vl_camera_field(file, root, "intrinsics", &cameras);
   if (result != VL_OK) return result;
-  poses = json_object_get(root, "T_imu_cam"), sizes = json_object_get(root, "resolution");
+  poses = json_object_get(root, "T_imu_cam");
+  sizes = json_object_get(root, "resolution");
   record->frames = (uint32_t)json_array_size(cameras);
   for (uint32_t i = 0; i < record->frames; i++) {
     if (!vl_camera_is_frame(file, i, NULL)) continue;
@@ -90,7 +91,8 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree, vlCame
       if (!(size[k] >= 1.0 && size[k] <= 1 << 24) || size[k] != (double)(uint32_t)size[k])
         return vl_camera_wrong_in(file, pair, NULL, "basalt: \"resolution\" must be two whole numbers of pixels");
     }
-    d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+    d->width = (uint32_t)size[0];
+    d->height = (uint32_t)size[1];
     return VL_OK;
   }
   return vl_camera_wrong_in(file, root, "intrinsics", "basalt: there is no camera \"%s\" among the %u",

@@ -39,7 +39,8 @@ static vlResult read_bundler(const vlCameraFile *file, const char *text, size_t 
   if (result != VL_OK) return result;
   if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
   result = vl_camera_size_beside(file, (const char *const[]){NULL}, record);
-  record->camera.cx = 0.5 * record->camera.width, record->camera.cy = 0.5 * record->camera.height;
+  record->camera.cx = 0.5 * record->camera.width;
+  record->camera.cy = 0.5 * record->camera.height;
   return result;
 }
 

@@ -84,7 +84,8 @@ static vlResult read_named(const vlCameraFile *file, const json_t *tree, const c
   if (result != VL_OK) return result;
   vlCameraPlaces places = {.root = NULL};
   vlCameraFile other = *file;
-  other.path = path, other.places = &places;
+  other.path = path;
+  other.places = &places;
   result = vl_camera_tree(&other, text, size, &inner);
   if (result == VL_OK) result = read_camera(&other, inner, record);
   json_decref(inner);

@@ -28,8 +28,12 @@ static bool look_at(const double v[9], vlMat4 *m) {
   for (int i = 0; i < 3; i++) x[i] /= length;
   for (int i = 0; i < 3; i++) y[i] = z[(i + 1) % 3] * x[(i + 2) % 3] - z[(i + 2) % 3] * x[(i + 1) % 3];
   *m = vl_mat4_identity();
-  for (int i = 0; i < 3; i++)
-    m->m[4 * i] = x[i], m->m[4 * i + 1] = y[i], m->m[4 * i + 2] = z[i], m->m[4 * i + 3] = v[i];
+  for (int i = 0; i < 3; i++) {
+    m->m[4 * i] = x[i];
+    m->m[4 * i + 1] = y[i];
+    m->m[4 * i + 2] = z[i];
+    m->m[4 * i + 3] = v[i];
+  }
   return vl_mat4_is_finite(*m);
 }
 
@@ -85,7 +89,9 @@ static vlResult search(const vlCameraFile *file, const json_t *node, const json_
   if (!name) name = vl_camera_text(node, "id");
   json_array_foreach(json_object_get(node, "/"), i, child) {
     if (has_tag(child, "instance_camera") && !s->camera && vl_camera_is_frame(file, s->count, name)) {
-      s->camera = child, s->depth = depth + 1, s->name = name;
+      s->camera = child;
+      s->depth = depth + 1;
+      s->name = name;
       memcpy(s->stops, stops, sizeof s->stops);
     }
     s->count += has_tag(child, "instance_camera");
@@ -164,7 +170,8 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCam
   if (result == VL_OK) result = vl_camera_size(file, half[0] / half[1], record);
   if (result != VL_OK) return result;
   if (flat) d->projection = VL_PROJECTION_ORTHOGRAPHIC;
-  d->fx = 0.5 * d->width / half[0], d->fy = 0.5 * d->height / half[1];
+  d->fx = 0.5 * d->width / half[0];
+  d->fy = 0.5 * d->height / half[1];
   d->has_matrix = true;
   vl_camera_flip_axes(world.m, d->world_from_camera);
   vl_camera_name(record, s.name);
@@ -189,7 +196,10 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
   double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
   const char *kind = flat ? "orthographic" : "perspective", side = flat ? 'm' : 'f';
   const char *rest = flat ? "ag" : "ov";
-  if (!flat) x = 2.0 / degree * vl_precise_atan(x), y = 2.0 / degree * vl_precise_atan(y);
+  if (!flat) {
+    x = 2.0 / degree * vl_precise_atan(x);
+    y = 2.0 / degree * vl_precise_atan(y);
+  }
   vl_camera_flip_axes(c.world_from_camera, m);
   vl_camera_put(
       text,

@@ -65,7 +65,8 @@ static vlResult read_camera_line(const vlCameraFile *file, const char *path, con
     if (!next_number(&rest, &parameters[count++]))
       return wrong_line(file, path, lines->line, "a parameter is no finite number");
   }
-  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  d->width = (uint32_t)size[0];
+  d->height = (uint32_t)size[1];
   vlError error = {0};
   vlResult result = vl_camera_def_colmap(d, model, parameters, count, &error);
   if (result == VL_OK) return VL_OK;
@@ -331,7 +332,8 @@ vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *
   if (!find_files(file->path, false, cameras, images)) return vl_camera_wrong(file, "colmap: the name is too long");
   if (is_folder(file->path) && mkdir(file->path, 0777) != 0 && errno != EEXIST)
     return vl_fail(file->error, VL_ERROR_IO, "cannot make the folder %s: %s", file->path, strerror(errno));
-  out.width = c.width, out.height = c.height;
+  out.width = c.width;
+  out.height = c.height;
   const double intrinsics[4] = {c.fx, c.fy, c.cx, c.cy};
   memcpy(out.parameters, intrinsics, sizeof intrinsics);
   memcpy(out.parameters + 4, p, count * sizeof *p);

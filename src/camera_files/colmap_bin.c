@@ -107,7 +107,8 @@ vlResult vl_colmap_load(const vlCameraFile *file, const char *path, char **text,
                                   : "colmap: the file goes on after its last record");
   if (result != VL_OK) {
     VL_ARRAY_FREE(file->context, &lines.text);
-    *text = NULL, *size = 0;
+    *text = NULL;
+    *size = 0;
     return result;
   }
   *text = lines.text.items;

@@ -42,13 +42,21 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
     if (!(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
       result = vl_camera_wrong_line(file, &lines, lines.text, "the image's size must be two whole numbers of pixels");
   if (result != VL_OK) return result;
-  d->width = (uint32_t)sides[0], d->height = (uint32_t)sides[1];
+  d->width = (uint32_t)sides[0];
+  d->height = (uint32_t)sides[1];
   bool shares = v[2] < 1.0 && v[3] < 1.0;
-  if (shares)
-    d->fx = v[0] * sides[0], d->fy = v[1] * sides[1], d->cx = v[2] * sides[0], d->cy = v[3] * sides[1];
-  else
+  if (shares) {
+    d->fx = v[0] * sides[0];
+    d->fy = v[1] * sides[1];
+    d->cx = v[2] * sides[0];
+    d->cy = v[3] * sides[1];
+  } else {
     vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
-  if (model == FOV && k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+  }
+  if (model == FOV && k[0] != 0.0) {
+    d->projection = VL_PROJECTION_FOV;
+    d->shape[0] = k[0];
+  }
   if (model == RADTAN) vl_camera_set_opencv(d, k, 4);
   if (model == EQUIDISTANT || model == KANNALA_BRANDT) vl_camera_set_fisheye(d, k);
   vl_camera_set_origin(d);

@@ -107,7 +107,8 @@ static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens, 
   if (result == VL_OK) result = vl_camera_number(file, lens, "znear", &d->near_plane);
   if (result == VL_OK) result = vl_camera_number(file, lens, "zfar", &d->far_plane);
   /* some exporters write negative values; the extent is the same */
-  x = fabs(x), y = fabs(y);
+  x = fabs(x);
+  y = fabs(y);
   if (result == VL_OK && !(x > 0.0 && y > 0.0))
     return vl_camera_wrong(file, "gltf: \"xmag\" and \"ymag\" must not be zero");
   if (result == VL_OK) result = vl_camera_size(file, x / y, record);

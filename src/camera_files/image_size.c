@@ -23,7 +23,8 @@ static bool jpeg_size(FILE *file, uint32_t size[2]) {
     if (length < 2) return false;
     if (frame) {
       if (fread(b, 1, 5, file) != 5) return false;
-      size[0] = big_endian(b + 3, 2), size[1] = big_endian(b + 1, 2);
+      size[0] = big_endian(b + 3, 2);
+      size[1] = big_endian(b + 1, 2);
       return true;
     }
     if (fseek(file, (long)length - 2, SEEK_CUR) != 0) return false;
@@ -38,7 +39,8 @@ static bool size_of(vlContext *context, const char *path, uint32_t size[2]) {
   bool found = false;
   if (fread(b, 1, sizeof b, file) == sizeof b) {
     if (memcmp(b, "\x89PNG\r\n\x1a\n", 8) == 0) {
-      size[0] = big_endian(b + 16, 4), size[1] = big_endian(b + 20, 4);
+      size[0] = big_endian(b + 16, 4);
+      size[1] = big_endian(b + 20, 4);
       found = true;
     } else if (b[0] == 0xff && b[1] == 0xd8) {
       found = jpeg_size(file, size);
@@ -53,7 +55,8 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
   static const char *const suffixes[] = {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"};
   vlCameraDef *d = &record->camera;
   if (file->def->width && file->def->height) {
-    d->width = file->def->width, d->height = file->def->height;
+    d->width = file->def->width;
+    d->height = file->def->height;
     return VL_OK;
   }
   for (; images && *images; images++)
@@ -63,7 +66,8 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
       int length = snprintf(name, sizeof name, "%s%s", *images, suffixes[i]);
       if (!**images || length < 0 || (size_t)length >= sizeof name) continue;
       if (!vl_path_join(file->path, name, path, sizeof path) || !size_of(file->context, path, size)) continue;
-      d->width = size[0], d->height = size[1];
+      d->width = size[0];
+      d->height = size[1];
       return VL_OK;
     }
   return vl_camera_wrong(file, "%s: the file has no image size%s; give one: --size WIDTHxHEIGHT", file->dialect,
@@ -86,6 +90,7 @@ vlResult vl_camera_side_pair(const vlCameraFile *file, const json_t *object, con
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != (double)(uint32_t)size[i])
       return vl_camera_wrong_in(file, object, key, "%s: \"%s\" is %g x %g; it must be whole pixels", file->dialect, key,
                                 size[0], size[1]);
-  record->camera.width = (uint32_t)size[0], record->camera.height = (uint32_t)size[1];
+  record->camera.width = (uint32_t)size[0];
+  record->camera.height = (uint32_t)size[1];
   return VL_OK;
 }

@@ -154,17 +154,21 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
   if (!model) return vl_camera_no_model(file, d);
   if (fov) {
     if (d->distortion != VL_DISTORTION_NONE) return vl_camera_no_model(file, d);
-    k[0] = d->shape[0], n = 1, lens = "fov";
+    k[0] = d->shape[0];
+    n = 1;
+    lens = "fov";
   } else if (equi) {
     if (d->distortion != VL_DISTORTION_NONE && d->distortion != VL_DISTORTION_RADIAL)
       return vl_camera_no_model(file, d);
     memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
-    n = 4, lens = "equidistant";
+    n = 4;
+    lens = "equidistant";
   } else if (d->distortion != VL_DISTORTION_NONE) {
     bool fits = vl_camera_as_opencv(d, k, &n);
     for (int i = 4; i < 14; i++) fits = fits && k[i] == 0.0;
     if (!fits || model->shapes == 2) return vl_camera_no_model(file, d);
-    n = 4, lens = "radtan";
+    n = 4;
+    lens = "radtan";
   }
   vl_camera_put(text, "cam0:\n  camera_model: %s\n  intrinsics: [", model->name);
   for (uint32_t i = 0; i < model->shapes; i++) vl_camera_put(text, "%.17g, ", c.shape[i]);

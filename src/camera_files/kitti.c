@@ -74,7 +74,8 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text, "%s must be fx 0 cx, 0 fy cy, 0 0 1",
                                 rows[1].key);
-  d->width = (uint32_t)s[0], d->height = (uint32_t)s[1];
+  d->width = (uint32_t)s[0];
+  d->height = (uint32_t)s[1];
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, rows[2].values, 5);
   vl_camera_set_pose(d, rows[3].values, rows[4].values);
@@ -98,7 +99,9 @@ static vlResult read_kitti(const vlCameraFile *file, const char *text, size_t si
     char name[16];
     snprintf(name, sizeof name, unrectified ? "%02u" : "P%u", i);
     if (taken == UINT32_MAX && vl_camera_is_frame(file, record->frames, name)) {
-      taken = i, raw = unrectified, chosen = row;
+      taken = i;
+      raw = unrectified;
+      chosen = row;
       vl_camera_name(record, name);
     }
     record->frames++;

@@ -5,8 +5,10 @@
 #include "math/transform.h"
 
 void vl_camera_set_centred(vlCameraDef *def, double fx, double fy, double cx, double cy) {
-  def->fx = fx, def->fy = fy;
-  def->cx = cx + 0.5, def->cy = cy + 0.5;
+  def->fx = fx;
+  def->fy = fy;
+  def->cx = cx + 0.5;
+  def->cy = cy + 0.5;
 }
 
 void vl_camera_set_opencv(vlCameraDef *def, const double *k, uint32_t count) {
@@ -48,7 +50,8 @@ vlLensFamily vl_camera_lens_family(const vlCameraDef *d, double k[14], uint32_t 
 
 bool vl_camera_set_matrix(vlCameraDef *def, const double m[16], bool from_world) {
   vlMat4 pose = vl_mat4_load(m);
-  pose.m[12] = pose.m[13] = pose.m[14] = 0.0, pose.m[15] = 1.0;
+  pose.m[12] = pose.m[13] = pose.m[14] = 0.0;
+  pose.m[15] = 1.0;
   if (from_world && !vl_mat4_inverse(pose, &pose)) return false;
   def->has_matrix = true;
   for (int i = 0; i < 16; i++) def->world_from_camera[i] = pose.m[i] + 0.0;

@@ -67,12 +67,17 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
       width != floor(width))
     return vl_camera_wrong(file, "llff: image %u is %g x %g; it must be whole pixels", chosen, width, height);
   for (int i = 0; i < 3; i++) {
-    m[4 * i] = v[5 * i + 1], m[4 * i + 1] = v[5 * i], m[4 * i + 2] = 0.0 - v[5 * i + 2], m[4 * i + 3] = v[5 * i + 3];
+    m[4 * i] = v[5 * i + 1];
+    m[4 * i + 1] = v[5 * i];
+    m[4 * i + 2] = 0.0 - v[5 * i + 2];
+    m[4 * i + 3] = v[5 * i + 3];
   }
   vl_camera_set_matrix(d, m, false);
-  d->width = (uint32_t)width, d->height = (uint32_t)height;
+  d->width = (uint32_t)width;
+  d->height = (uint32_t)height;
   d->fx = d->fy = v[14];
-  d->cx = 0.5 * width, d->cy = 0.5 * height;
+  d->cx = 0.5 * width;
+  d->cy = 0.5 * height;
   return VL_OK;
 }
 

@@ -72,7 +72,8 @@ static vlResult planes(const vlCameraFile *file, bool flat, double a, double b, 
   double near_plane = plane_at(flat, a, b, z_near), far_plane = plane_at(flat, a, b, 1.0);
   if (near_plane > far_plane) { /* reversed z */
     double other = near_plane;
-    near_plane = far_plane, far_plane = other;
+    near_plane = far_plane;
+    far_plane = other;
   }
   /* the far plane is infinite, inexactly represented in single precision */
   if (!flat && far_plane < 0.0) far_plane = INFINITY;
@@ -183,12 +184,16 @@ static vlMat4 projection_of(const vlCamera *c, const Api *api) {
   if (flat && isinf(f)) f = n + 1e4;
   double lo = api->z_near;
   /* clip.z = a z + b, z = -Z of view space: n maps to lo w, f to w */
-  if (flat)
-    a = (1.0 - lo) / (f - n), b = lo - a * n;
-  else if (isinf(f))
-    a = 1.0, b = (lo - 1.0) * n;
-  else
-    a = (f - lo * n) / (f - n), b = (lo - a) * n;
+  if (flat) {
+    a = (1.0 - lo) / (f - n);
+    b = lo - a * n;
+  } else if (isinf(f)) {
+    a = 1.0;
+    b = (lo - 1.0) * n;
+  } else {
+    a = (f - lo * n) / (f - n);
+    b = (lo - a) * n;
+  }
   return (vlMat4){{2.0 * c->fx / w, -2.0 * c->skew / w, flat ? 0.0 : -x, flat ? x : 0.0, /* x */
                    0.0, -up * 2.0 * c->fy / h, flat ? 0.0 : -y, flat ? y : 0.0,          /* y */
                    0.0, 0.0, -a, b,                                                      /* z */

@@ -39,7 +39,8 @@ static vlResult read_focal(const vlCameraFile *file, const json_t *intrinsic, co
   if (vl_camera_has(intrinsic, "pxFocalLength")) {
     bool pair = json_is_array(json_object_get(intrinsic, "pxFocalLength"));
     result = numbers(file, intrinsic, "pxFocalLength", f, pair ? 2 : 1);
-    d->fx = f[0], d->fy = pair ? f[1] : f[0];
+    d->fx = f[0];
+    d->fy = pair ? f[1] : f[0];
     return result;
   }
   result = numbers(file, intrinsic, "focalLength", &mm, 1);
@@ -88,10 +89,16 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
   if (model == 4) {
     vl_camera_set_fisheye(d, k);
   } else if (model == 5) {
-    if (k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+    if (k[0] != 0.0) {
+      d->projection = VL_PROJECTION_FOV;
+      d->shape[0] = k[0];
+    }
   } else if (count) {
     vl_camera_set_opencv(d, model == 3 ? brown : radial, 5);
-    if (model == 6) d->fx /= 1.0 + k[0] + k[1] + k[2], d->fy /= 1.0 + k[0] + k[1] + k[2];
+    if (model == 6) {
+      d->fx /= 1.0 + k[0] + k[1] + k[2];
+      d->fy /= 1.0 + k[0] + k[1] + k[2];
+    }
   }
   return VL_OK;
 }
@@ -112,9 +119,11 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *tree, con
                                 "meshroom: the image is %g x %g; it must be "
                                 "whole pixels",
                                 size[0], size[1]);
-  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  d->width = (uint32_t)size[0];
+  d->height = (uint32_t)size[1];
   double middle = is_before(version, 2, 1) ? 0.0 : 0.5;
-  d->cx = c[0] + middle * d->width, d->cy = c[1] + middle * d->height;
+  d->cx = c[0] + middle * d->width;
+  d->cy = c[1] + middle * d->height;
   result = read_focal(file, intrinsic, version, d);
   return result == VL_OK ? read_lens(file, intrinsic, d) : result;
 }

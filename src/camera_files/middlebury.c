@@ -38,7 +38,8 @@ static vlResult read_size(const vlCameraFile *file, const char *text, size_t siz
   for (int i = 0; i < 2; i++)
     if (!found[i] || !(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
       return vl_camera_wrong_at(file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
-  record->camera.width = (uint32_t)sides[0], record->camera.height = (uint32_t)sides[1];
+  record->camera.width = (uint32_t)sides[0];
+  record->camera.height = (uint32_t)sides[1];
   return VL_OK;
 }
 

@@ -188,11 +188,14 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   static const char *const names[] = {"crop_offset_x", "crop_offset_y", "crop_width", "crop_height"};
   const json_t *film = NULL, *item;
   size_t i;
-  size[0] = 768.0, size[1] = 576.0; /* Mitsuba's default */
+  size[0] = 768.0;
+  size[1] = 576.0; /* Mitsuba's default */
   json_array_foreach(json_object_get(sensor, "/"), i, item) if (strcmp(tag_of(item), "film") == 0) film = item;
   vlResult result = number(scene, film, "width", &size[0]);
   if (result == VL_OK) result = number(scene, film, "height", &size[1]);
-  crop[0] = crop[1] = 0.0, crop[2] = size[0], crop[3] = size[1];
+  crop[0] = crop[1] = 0.0;
+  crop[2] = size[0];
+  crop[3] = size[1];
   for (int k = 0; k < 4 && result == VL_OK; k++) result = number(scene, film, names[k], &crop[k]);
   if (result != VL_OK) return result;
   for (int k = 0; k < 2; k++)
@@ -277,11 +280,13 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
       for (int i = 0; i < 12; i += 4) m.m[i + k] /= length[k];
     }
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
-    d->fx = 0.5 * size[0] / length[0], d->fy = 0.5 * size[0] / length[1];
+    d->fx = 0.5 * size[0] / length[0];
+    d->fy = 0.5 * size[0] / length[1];
   }
   d->cx = size[0] * (0.5 - offset[0]) - crop[0];
   d->cy = size[1] * (0.5 - offset[1]) - crop[1];
-  d->width = (uint32_t)crop[2], d->height = (uint32_t)crop[3];
+  d->width = (uint32_t)crop[2];
+  d->height = (uint32_t)crop[3];
   d->has_matrix = true;
   vl_camera_flip_columns(m.m, -1.0, -1.0, 1.0, d->world_from_camera);
   return VL_OK;
@@ -350,7 +355,10 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
   if (result != VL_OK) return result;
   double m[16];
   vl_camera_flip_columns(c.world_from_camera, -1.0, -1.0, 1.0, m);
-  for (int i = 0; i < 12 && flat; i += 4) m[i] *= 0.5 * c.width / c.fx, m[i + 1] *= 0.5 * c.width / c.fy;
+  for (int i = 0; i < 12 && flat; i += 4) {
+    m[i] *= 0.5 * c.width / c.fx;
+    m[i + 1] *= 0.5 * c.width / c.fy;
+  }
   vl_camera_put(text, "<!-- pixels count from the film's upper left corner; camera axes x left, y up, z forward -->\n");
   vl_camera_put(text, "<scene version=\"3.0.0\">\n  <sensor type=\"%s\"",
                 flat   ? "orthographic"

@@ -112,10 +112,12 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
   if (result != VL_OK) return result;
   bool fisheye = d->projection == VL_PROJECTION_EQUIDISTANT;
-  if (fisheye && (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE))
-    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k), n = 4;
-  else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n))
+  if (fisheye && (d->distortion == VL_DISTORTION_RADIAL || d->distortion == VL_DISTORTION_NONE)) {
+    memcpy(k, d->distortion_coefficients, d->distortion_count * sizeof *k);
+    n = 4;
+  } else if (d->projection != VL_PROJECTION_PERSPECTIVE || !vl_camera_as_opencv(d, k, &n)) {
     return vl_camera_no_model(file, d);
+  }
   for (int i = 5; i < 14; i++)
     if (k[i] != 0.0) return vl_camera_no_model(file, d);
   vl_camera_flip_axes(c.world_from_camera, m);

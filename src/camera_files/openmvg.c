@@ -63,7 +63,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
     vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k, models[i].count,
                                         models[i].count, NULL);
     if (result != VL_OK) return result;
-    if (i == 4) return vl_camera_set_fisheye(d, k), VL_OK;
+    if (i == 4) {
+      vl_camera_set_fisheye(d, k);
+      return VL_OK;
+    }
     vl_camera_set_opencv(d, (double[]){k[0], k[1], k[3], k[4], k[2]}, 5); /* k1 k2 k3 t1 t2 */
     return VL_OK;
   }
@@ -81,12 +84,17 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
   if (!name) return vl_camera_wrong_in(file, item, NULL, "openmvg: an intrinsic without \"polymorphic_name\"");
   vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
   if (result != VL_OK) return result;
-  if (strcmp(name, "spherical") == 0) return d->projection = VL_PROJECTION_EQUIRECTANGULAR, VL_OK;
+  if (strcmp(name, "spherical") == 0) {
+    d->projection = VL_PROJECTION_EQUIRECTANGULAR;
+    return VL_OK;
+  }
   const json_t *data = data_of(item, "focal_length");
   result = vl_camera_number(file, data, "focal_length", &f);
   if (result == VL_OK) result = vl_camera_numbers(file, data, "principal_point", c, 2, 2, NULL);
   if (result != VL_OK) return result;
-  d->fx = d->fy = f, d->cx = c[0], d->cy = c[1];
+  d->fx = d->fy = f;
+  d->cx = c[0];
+  d->cy = c[1];
   return read_lens(file, item, name, d);
 }
 
@@ -117,8 +125,10 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
     const json_t *view = data_of(item, "id_pose");
     const json_t *own = item_of(extrinsics, id_of(view, "id_pose"));
     if (!view || !own) continue; /* not reconstructed */
-    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename")))
-      chosen = view, pose = json_object_get(own, "value");
+    if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(view, "filename"))) {
+      chosen = view;
+      pose = json_object_get(own, "value");
+    }
     record->frames++;
   }
   if (chosen) return read_view(file, tree, chosen, pose, record);

@@ -57,8 +57,10 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, vlCa
   if (result == VL_OK) result = vl_camera_optional(file, camera, "c_x", &c[0]);
   if (result == VL_OK) result = vl_camera_optional(file, camera, "c_y", &c[1]);
   double side = d->width > d->height ? d->width : d->height;
-  d->fx = f[0] * side, d->fy = f[1] * side;
-  d->cx = 0.5 * d->width + c[0] * side, d->cy = 0.5 * d->height + c[1] * side;
+  d->fx = f[0] * side;
+  d->fy = f[1] * side;
+  d->cx = 0.5 * d->width + c[0] * side;
+  d->cy = 0.5 * d->height + c[1] * side;
   return result;
 }
 
@@ -109,7 +111,11 @@ static vlResult read_opensfm(const vlCameraFile *file, const json_t *tree, vlCam
     const json_t *one = list ? json_array_get(list, i) : tree;
     json_object_foreach(json_object_get(one, "shots"), name, shot) {
       bool wanted = !chosen && vl_camera_is_frame(file, record->frames, name);
-      if (wanted) chosen = shot, chosen_name = name, of = json_object_get(one, "cameras");
+      if (wanted) {
+        chosen = shot;
+        chosen_name = name;
+        of = json_object_get(one, "cameras");
+      }
       record->frames++;
     }
   }
@@ -133,7 +139,10 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
   if (result != VL_OK) return result;
   vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
   bool bent = family == VL_LENS_FISHEYE, whole = record->camera.projection == VL_PROJECTION_EQUIRECTANGULAR;
-  if (whole) family = VL_LENS_PINHOLE, n = 0;
+  if (whole) {
+    family = VL_LENS_PINHOLE;
+    n = 0;
+  }
   if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && !bent) || n > 5)
     return vl_camera_no_model(file, &record->camera);
   double side = c.width > c.height ? c.width : c.height;

@@ -21,7 +21,10 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCa
   double v[7], k[9], r[9], f[4];
   record->frames = (uint32_t)json_array_size(poses);
   for (uint32_t i = 0; i < record->frames && !pose; i++)
-    if (vl_camera_is_frame(file, i, NULL)) pose = json_array_get(poses, i), coefficients = json_array_get(own, i);
+    if (vl_camera_is_frame(file, i, NULL)) {
+      pose = json_array_get(poses, i);
+      coefficients = json_array_get(own, i);
+    }
   if (!pose) return vl_camera_no_frame(file, "camera", record->frames);
   json_t *holder = json_pack("{sO*sO*}", "poses", pose, "perFrameIntrinsicCoeffs", coefficients);
   if (!holder) return vl_fail_memory(file->error);
@@ -37,8 +40,10 @@ static vlResult read_record3d(const vlCameraFile *file, const json_t *tree, vlCa
     return vl_camera_wrong_in(file, pose, NULL, "record3d: the quaternion of \"poses\" is no rotation");
   const double m[16] = {r[0], r[1], r[2], v[4], r[3], r[4], r[5], v[5], r[6], r[7], r[8], v[6], 0, 0, 0, 1};
   set_arkit_pose(m, d);
-  d->fx = single ? f[0] : k[0], d->fy = single ? f[1] : k[4];
-  d->cx = single ? f[2] : k[6], d->cy = single ? f[3] : k[7];
+  d->fx = single ? f[0] : k[0];
+  d->fy = single ? f[1] : k[4];
+  d->cx = single ? f[2] : k[6];
+  d->cy = single ? f[3] : k[7];
   return VL_OK;
 }
 
@@ -104,7 +109,10 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCam
   if (result != VL_OK) return result;
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   set_arkit_pose(m, d);
-  d->fx = k[0], d->fy = k[4], d->cx = k[2], d->cy = k[5];
+  d->fx = k[0];
+  d->fy = k[4];
+  d->cx = k[2];
+  d->cy = k[5];
   return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
 }
 

@@ -89,5 +89,6 @@ void vl_camera_place_error(const vlCameraFile *file) {
   }
   size_t index = holder ? index_of(file->places, holder, key) : 0;
   uint64_t place = index < file->places->at.count ? file->places->at.items[index] : 0;
-  error->line = (uint32_t)(place >> 32), error->column = (uint32_t)place;
+  error->line = (uint32_t)(place >> 32);
+  error->column = (uint32_t)place;
 }

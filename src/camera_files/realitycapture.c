@@ -187,7 +187,8 @@ static vlResult read_row(const vlCameraFile *file, const Row *row, const int of[
   double sine[3], cosine[3], m[16] = {[3] = v[X], [7] = v[Y], [11] = v[ALT], [15] = 1.0};
   for (int i = 0; i < 3; i++) {
     double angle = (i ? v[HEADING + i] : -v[HEADING]) * (3.14159265358979323846 / 180.0);
-    sine[i] = vl_precise_sin(angle), cosine[i] = vl_precise_cos(angle);
+    sine[i] = vl_precise_sin(angle);
+    cosine[i] = vl_precise_cos(angle);
   }
   const double sh = sine[0], ch = cosine[0], sp = sine[1], cp = cosine[1], sr = sine[2], cr = cosine[2];
   const double r[9] = {ch * cr - sh * sp * sr,

@@ -91,7 +91,10 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
   json_array_foreach(list, i, item) {
     if (json_array_size(json_object_get(item, "camera_intrinsic")) == 0) continue; /* lidar and radar */
     const char *token = vl_camera_text(item, "token");
-    if (!chosen && vl_camera_is_frame(file, record->frames, token)) chosen = item, vl_camera_name(record, token);
+    if (!chosen && vl_camera_is_frame(file, record->frames, token)) {
+      chosen = item;
+      vl_camera_name(record, token);
+    }
     record->frames++;
   }
   if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
@@ -191,7 +194,10 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCam
   if (result == VL_OK && vl_camera_has(tree, "tangential_distortion"))
     result = vl_camera_numbers(file, tree, "tangential_distortion", tangential, 0, 2, NULL);
   if (result != VL_OK) return result;
-  d->fx = f, d->fy = f * aspect, d->cx = c[0], d->cy = c[1];
+  d->fx = f;
+  d->fy = f * aspect;
+  d->cx = c[0];
+  d->cy = c[1];
   set_lens((double[]){radial[0], radial[1], tangential[0], tangential[1], radial[2]}, 5, d);
   set_centre(r, p, d);
   return VL_OK;

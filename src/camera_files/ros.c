@@ -101,7 +101,8 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
   if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_at(file, matrix_line, 1,
                               "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
-  d->width = (uint32_t)side[0], d->height = (uint32_t)side[1];
+  d->width = (uint32_t)side[0];
+  d->height = (uint32_t)side[1];
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, lens, lenses);
   vl_camera_set_origin(d);

@@ -15,9 +15,15 @@ void vl_rotation_from_vector(const double v[3], double r[9]) {
   double half = angle < 1e-4 ? 1.0 : vl_precise_sin(0.5 * angle) / (0.5 * angle);
   double c = angle < 1e-4 ? 0.5 - a2 / 24.0 : 0.5 * half * half;
   double x = v[0], y = v[1], z = v[2];
-  r[0] = 1.0 - c * (y * y + z * z), r[1] = c * x * y - s * z, r[2] = c * x * z + s * y;
-  r[3] = c * x * y + s * z, r[4] = 1.0 - c * (x * x + z * z), r[5] = c * y * z - s * x;
-  r[6] = c * x * z - s * y, r[7] = c * y * z + s * x, r[8] = 1.0 - c * (x * x + y * y);
+  r[0] = 1.0 - c * (y * y + z * z);
+  r[1] = c * x * y - s * z;
+  r[2] = c * x * z + s * y;
+  r[3] = c * x * y + s * z;
+  r[4] = 1.0 - c * (x * x + z * z);
+  r[5] = c * y * z - s * x;
+  r[6] = c * x * z - s * y;
+  r[7] = c * y * z + s * x;
+  r[8] = 1.0 - c * (x * x + y * y);
 }
 
 /* Converts through the quaternion, which is well conditioned at every angle. */
@@ -33,9 +39,15 @@ bool vl_rotation_from_quaternion(const double q[4], double r[9]) {
   double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (!(n > 1e-200 && n < 1e200)) return false;
   double s = 2.0 / n, w = q[0], x = q[1], y = q[2], z = q[3];
-  r[0] = 1.0 - s * (y * y + z * z), r[1] = s * (x * y - w * z), r[2] = s * (x * z + w * y);
-  r[3] = s * (x * y + w * z), r[4] = 1.0 - s * (x * x + z * z), r[5] = s * (y * z - w * x);
-  r[6] = s * (x * z - w * y), r[7] = s * (y * z + w * x), r[8] = 1.0 - s * (x * x + y * y);
+  r[0] = 1.0 - s * (y * y + z * z);
+  r[1] = s * (x * y - w * z);
+  r[2] = s * (x * z + w * y);
+  r[3] = s * (x * y + w * z);
+  r[4] = 1.0 - s * (x * x + z * z);
+  r[5] = s * (y * z - w * x);
+  r[6] = s * (x * z - w * y);
+  r[7] = s * (y * z + w * x);
+  r[8] = 1.0 - s * (x * x + y * y);
   return true;
 }
 

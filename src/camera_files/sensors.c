@@ -74,7 +74,10 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree, vlCam
     char name[32];
     if (json_number_value(json_object_get(one, "width")) < 1.0) continue; /* a socket that is not used */
     snprintf(name, sizeof name, "socket%g", json_number_value(json_array_get(pair, 0)));
-    if (!camera && vl_camera_is_frame(file, record->frames, name)) camera = one, vl_camera_name(record, name);
+    if (!camera && vl_camera_is_frame(file, record->frames, name)) {
+      camera = one;
+      vl_camera_name(record, name);
+    }
     record->frames++;
   }
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
@@ -141,7 +144,10 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCame
                               vl_short_text(model).text);
   if (!all_zero(v + 10, 2))
     return vl_camera_wrong_in(file, intrinsics, "ModelParameters", "kinect: the centre of the distortion must be 0, 0");
-  d->cx = v[0] * d->width, d->cy = v[1] * d->height, d->fx = v[2] * d->width, d->fy = v[3] * d->height;
+  d->cx = v[0] * d->width;
+  d->cy = v[1] * d->height;
+  d->fx = v[2] * d->width;
+  d->fy = v[3] * d->height;
   set_lens((double[]){v[4], v[5], v[13], v[12], v[6], v[7], v[8], v[9]}, 8, d);
   vl_camera_set_pose(d, r, t);
   return VL_OK;
@@ -205,7 +211,10 @@ static vlResult read_realsense(const vlCameraFile *file, const json_t *tree, vlC
   record->frames = 0;
   json_object_foreach((json_t *)tree, name, stream) {
     if (!is_stream(stream)) continue;
-    if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = stream, vl_camera_name(record, name);
+    if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
+      chosen = stream;
+      vl_camera_name(record, name);
+    }
     record->frames++;
   }
   return chosen ? read_stream(file, chosen, record) : vl_camera_no_frame(file, "camera", record->frames);

@@ -22,8 +22,14 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
   if (result != VL_OK) return result;
   vl_camera_set_origin(d);
   if (atan) {
-    d->fx = f[0] * d->width, d->fy = f[1] * d->height, d->cx = f[2] * d->width, d->cy = f[3] * d->height;
-    if (k[0] != 0.0) d->projection = VL_PROJECTION_FOV, d->shape[0] = k[0];
+    d->fx = f[0] * d->width;
+    d->fy = f[1] * d->height;
+    d->cx = f[2] * d->width;
+    d->cy = f[3] * d->height;
+    if (k[0] != 0.0) {
+      d->projection = VL_PROJECTION_FOV;
+      d->shape[0] = k[0];
+    }
   } else {
     vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
     vl_camera_set_opencv(d, k, k[0] != 0.0 || k[1] != 0.0 || k[2] != 0.0 || k[3] != 0.0 ? 4 : 0);
@@ -70,7 +76,10 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
   result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
   if (result == VL_OK) result = vl_camera_sides(file, camera, "image_width", "image_height", record);
   if (result != VL_OK) return result;
-  if (unified) d->projection = VL_PROJECTION_UNIFIED, d->shape[0] = k[0];
+  if (unified) {
+    d->projection = VL_PROJECTION_UNIFIED;
+    d->shape[0] = k[0];
+  }
   const double *f = k + unified;
   vl_camera_set_centred(d, f[0], f[1], f[2], f[3]);
   result = read_lens(file, camera, d);

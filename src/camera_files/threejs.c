@@ -32,8 +32,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCame
   if (result != VL_OK) return result;
   if (flat) {
     d->projection = VL_PROJECTION_ORTHOGRAPHIC;
-    d->fx = zoom * d->width / (s[1] - s[0]), d->fy = zoom * d->height / (s[2] - s[3]);
-    d->cx = 0.5 * d->width - 0.5 * d->fx * (s[0] + s[1]), d->cy = 0.5 * d->height + 0.5 * d->fy * (s[2] + s[3]);
+    d->fx = zoom * d->width / (s[1] - s[0]);
+    d->fy = zoom * d->height / (s[2] - s[3]);
+    d->cx = 0.5 * d->width - 0.5 * d->fx * (s[0] + s[1]);
+    d->cy = 0.5 * d->height + 0.5 * d->fy * (s[2] + s[3]);
   } else {
     d->fy = 0.5 * d->height * zoom / vl_precise_tan(0.5 * degree * fov);
     d->fx = d->fy * d->width / (aspect * d->height);

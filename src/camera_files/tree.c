@@ -34,7 +34,10 @@ static bool place_json(const vlCameraFile *file, const char *text, size_t size) 
   uint32_t line = 1;
   for (const char *at = text; at < end && *at;) {
     const char *first = at;
-    if (*at == '\n') line++, line_start = at + 1;
+    if (*at == '\n') {
+      line++;
+      line_start = at + 1;
+    }
     if (strchr(" \t\r\n,:]}", *at)) {
       at++;
       continue;
@@ -79,7 +82,8 @@ vlResult vl_camera_tree(const vlCameraFile *file, const char *text, size_t size,
     first = 0;
   }
   if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* byte order mark */
-    text += 3, size -= 3;
+    text += 3;
+    size -= 3;
     first = strspn(text, " \t\r\n");
   }
   if (first >= size) return vl_camera_wrong(file, "the file is empty");
@@ -177,7 +181,10 @@ vlResult vl_camera_size(const vlCameraFile *file, double aspect, vlCameraRecord 
   const vlCameraFileDef *def = file->def;
   double width = def->width, height = def->height;
   record->size_assumed = !def->width || !def->height;
-  if (record->size_assumed) height = 720.0, width = floor(720.0 * aspect + 0.5);
+  if (record->size_assumed) {
+    height = 720.0;
+    width = floor(720.0 * aspect + 0.5);
+  }
   if (!(width >= 1.0 && width <= 1 << 24))
     return vl_camera_wrong(file, "%s: an aspect ratio of %g gives no image", file->dialect, aspect);
   record->camera.width = (uint32_t)width;

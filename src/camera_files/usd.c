@@ -176,7 +176,10 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   if (result == VL_OK) result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
   if (result == VL_OK && json_object_get(prim, "clippingRange")) {
     result = vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL);
-    if (result == VL_OK) d->near_plane = range[0], d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
+    if (result == VL_OK) {
+      d->near_plane = range[0];
+      d->far_plane = range[1] < 1e37 ? range[1] : INFINITY;
+    }
   }
   if (result != VL_OK) return result;
   const char *projection = vl_camera_text(prim, "projection");
@@ -191,7 +194,10 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
     for (int i = 0; i < 2 && result == VL_OK; i++)
       if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
         return vl_camera_wrong(file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels", size[i]);
-    if (result == VL_OK) d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+    if (result == VL_OK) {
+      d->width = (uint32_t)size[0];
+      d->height = (uint32_t)size[1];
+    }
   } else {
     result = vl_camera_size(file, across / down, record);
   }
@@ -230,7 +236,8 @@ static vlResult read_usd(const vlCameraFile *file, const char *text, size_t size
   /* an error without a line gets the line of the chosen camera, or 1 */
   if (result == VL_ERROR_SCENE && file->error && file->error->line == 0) {
     const json_t *line = json_object_get(search.camera, "#");
-    file->error->line = line ? (uint32_t)json_number_value(line) : 1, file->error->column = 1;
+    file->error->line = line ? (uint32_t)json_number_value(line) : 1;
+    file->error->column = 1;
   }
   json_decref(tree);
   return result;
@@ -261,7 +268,10 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   double w = c.width, h = c.height, m[16];
   /* the scene unit is a metre: 36 mm are 0.36 tenths of it */
   double across = 0.01 * (d->sensor_width_mm > 0.0 ? d->sensor_width_mm : 36.0), focal = c.fx * (across / w);
-  if (flat) across = 10.0 * w / c.fx, focal = 0.5;
+  if (flat) {
+    across = 10.0 * w / c.fx;
+    focal = 0.5;
+  }
   double down = flat ? 10.0 * h / c.fy : across * (h / w) * (c.fx / c.fy);
   bool timed = c.shutter_open != 0.0 || c.shutter_close != 1.0;
   vl_camera_flip_axes(c.world_from_camera, m);

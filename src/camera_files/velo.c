@@ -209,8 +209,10 @@ static vlResult read_curve(const vlCameraFile *file, const json_t *tree, const F
   if (result != VL_OK) return result;
   if (count % 2) return vl_camera_wrong(file, "velo: \"%s\" must be a list of pairs, time and value", field->name);
   d->shutter_points = count / 2;
-  for (uint32_t i = 0; i < d->shutter_points; i++)
-    d->shutter_at[i] = curve[2 * i], d->shutter_value[i] = curve[2 * i + 1];
+  for (uint32_t i = 0; i < d->shutter_points; i++) {
+    d->shutter_at[i] = curve[2 * i];
+    d->shutter_value[i] = curve[2 * i + 1];
+  }
   return VL_OK;
 }
 
@@ -294,8 +296,10 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   for (size_t i = 0; i < fields.count && result == VL_OK; i++) result = read_field(file, tree, &fields.items[i], d);
   d->projection = (vlProjection)projection;
   if (origin) { /* unset values stay unset */
-    d->cx += 0.5, d->cy += 0.5;
-    d->lens.focus_pixel[0] += 0.5, d->lens.focus_pixel[1] += 0.5;
+    d->cx += 0.5;
+    d->cy += 0.5;
+    d->lens.focus_pixel[0] += 0.5;
+    d->lens.focus_pixel[1] += 0.5;
   }
   vl_camera_name(record, vl_camera_text(tree, "name"));
   return result;

@@ -34,8 +34,11 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
   if (result != VL_OK) return result;
   if (strcmp(type, with_distortion) == 0) {
     result = vl_camera_child_number(file, model, "kud", true, &k[0]);
-    if (result == VL_OK && k[0] != 0.0)
-      d->distortion = VL_DISTORTION_RADIAL, d->distortion_count = 1, d->distortion_coefficients[0] = k[0];
+    if (result == VL_OK && k[0] != 0.0) {
+      d->distortion = VL_DISTORTION_RADIAL;
+      d->distortion_count = 1;
+      d->distortion_coefficients[0] = k[0];
+    }
   } else if (strcmp(type, kannala_brandt) == 0) {
     for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
     if (result != VL_OK) return result;
@@ -64,7 +67,8 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   for (int i = 0; i < 2; i++)
     if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
       return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
-  d->width = (uint32_t)size[0], d->height = (uint32_t)size[1];
+  d->width = (uint32_t)size[0];
+  d->height = (uint32_t)size[1];
   return VL_OK;
 }
 
@@ -79,7 +83,10 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCamera
     child_text(camera, "name", name);
     json_array_foreach(json_object_get(camera, "/"), k, model) {
       if (strcmp(vl_camera_text(model, "<"), "model") != 0) continue;
-      if (!chosen && vl_camera_is_frame(file, record->frames, name)) chosen = model, of = camera;
+      if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
+        chosen = model;
+        of = camera;
+      }
       record->frames++;
     }
   }

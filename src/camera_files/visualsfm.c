@@ -74,8 +74,15 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * v[5] + r[3 * i + 1] * v[6] + r[3 * i + 2] * v[7]);
   vl_camera_set_pose(d, r, t);
   result = vl_camera_size_beside(file, (const char *const[]){record->name, NULL}, record);
-  d->fx = d->fy = v[0], d->cx = 0.5 * d->width, d->cy = 0.5 * d->height;
-  if (k) d->fx = fixed[0], d->cx = fixed[1], d->fy = fixed[2], d->cy = fixed[3];
+  d->fx = d->fy = v[0];
+  d->cx = 0.5 * d->width;
+  d->cy = 0.5 * d->height;
+  if (k) {
+    d->fx = fixed[0];
+    d->cx = fixed[1];
+    d->fy = fixed[2];
+    d->cy = fixed[3];
+  }
   set_distortion(v[8], d);
   return result;
 }

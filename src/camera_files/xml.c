@@ -98,7 +98,10 @@ static void on_text(void *data, const char *text, int length) {
 
 static void on_document_type(void *data, const char *name, const char *system, const char *public_id, int internal) {
   Builder *b = data;
-  (void)name, (void)system, (void)public_id, (void)internal;
+  (void)name;
+  (void)system;
+  (void)public_id;
+  (void)internal;
   if (b->result == VL_OK)
     stop(b, vl_camera_wrong_at(b->file, line_of(b), 1, "a document type (DOCTYPE, entities) is not taken"));
 }

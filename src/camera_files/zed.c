@@ -84,7 +84,8 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
   while (vl_camera_next_line(&lines)) {
     if (!is_section(lines.text, name) || (found = mode_of(name, &other)) < 0) continue;
     if (mode < 0 && vl_camera_is_frame(file, record->frames, name)) {
-      mode = found, right = other;
+      mode = found;
+      right = other;
       memcpy(section, name, sizeof section);
     }
     record->frames++;
@@ -96,7 +97,8 @@ static vlResult read_zed(const vlCameraFile *file, const char *text, size_t size
     if (result != VL_OK) return result;
     if (!there && i < 4) return vl_camera_wrong(file, "zed: [%s] has no %s", section, keys[i]);
   }
-  d->width = modes[mode].width, d->height = modes[mode].height;
+  d->width = modes[mode].width;
+  d->height = modes[mode].height;
   vl_camera_set_centred(d, v[0], v[1], v[2], v[3]);
   bool bent = false;
   for (int i = 4; i < 9; i++) bent = bent || v[i] != 0.0;

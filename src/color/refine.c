@@ -24,7 +24,9 @@ static void shown(const double weight[3][PADDED], const double c[3], double rgb[
     double t = i * (1.0 / (VL_LAMBDA_COUNT - 1)), x = (c[0] * t + c[1]) * t + c[2];
     double inv = 1 / __builtin_sqrt(1 + x * x), d = 0.5 * inv * inv * inv;
     s[i] = 0.5 + 0.5 * x * inv;
-    slope[0][i] = d * t * t, slope[1][i] = d * t, slope[2][i] = d;
+    slope[0][i] = d * t * t;
+    slope[1][i] = d * t;
+    slope[2][i] = d;
   }
   for (int k = 0; k < 3; k++) {
     rgb[k] = dot(weight[k], s);

@@ -33,7 +33,8 @@ static double sampled(const float *v, int count, int stride, int lambda) {
 void vl_daylight_xy(double t, double xy[2]) {
   double x = t <= 7000.0 ? -4.6070e9 / (t * t * t) + 2.9678e6 / (t * t) + 0.09911e3 / t + 0.244063
                          : -2.0064e9 / (t * t * t) + 1.9018e6 / (t * t) + 0.24748e3 / t + 0.237040;
-  xy[0] = x, xy[1] = -3.0 * x * x + 2.870 * x - 0.275;
+  xy[0] = x;
+  xy[1] = -3.0 * x * x + 2.870 * x - 0.275;
 }
 
 void vl_daylight(double kelvin, double light[VL_LAMBDA_COUNT]) {

@@ -125,7 +125,10 @@ static bool has_bytes(const char *path, const void *data, size_t size) {
 static bool keep_path(vlExport *x, const char *path, bool made) {
   char *copy = vl_strdup(x->context, path);
   char **slot = !copy ? NULL : made ? VL_PUSH(x->context, &x->made) : VL_PUSH(x->context, &x->passed);
-  if (slot) return *slot = copy, true;
+  if (slot) {
+    *slot = copy;
+    return true;
+  }
   vl_free(x->context, copy);
   return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
 }
@@ -265,7 +268,11 @@ vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *
     return vl_fail(error, VL_ERROR_ARGUMENT, "%.300s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", path);
   vlExport *x = vl_alloc_zero(scene->context, 1, sizeof *x);
   if (!x) return vl_fail_memory(error);
-  x->context = scene->context, x->scene = scene, x->path = path, x->error = error, x->binary = binary;
+  x->context = scene->context;
+  x->scene = scene;
+  x->path = path;
+  x->error = error;
+  x->binary = binary;
   x->def = def ? def : &plain;
   bool fine = true;
   if (x->def->strict) {

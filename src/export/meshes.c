@@ -34,19 +34,27 @@ static void quadric(const vlShapeDef *d, double a, double b, float p[3], float n
   double phi = a * d->phi_max, c = vl_precise_cos(phi), s = vl_precise_sin(phi), r = d->radius;
   if (d->kind == VL_SHAPE_DISK) {
     double at = r + b * (d->inner_radius - r);
-    p[0] = (float)(at * c), p[1] = (float)(at * s), p[2] = d->height;
-    n[0] = n[1] = 0, n[2] = 1;
+    p[0] = (float)(at * c);
+    p[1] = (float)(at * s);
+    p[2] = d->height;
+    n[0] = n[1] = 0;
+    n[2] = 1;
     return;
   }
   if (d->kind == VL_SHAPE_CYLINDER) {
-    p[0] = (float)(r * c), p[1] = (float)(r * s), p[2] = (float)(d->z_min + b * (d->z_max - d->z_min));
-    n[0] = (float)c, n[1] = (float)s, n[2] = 0;
+    p[0] = (float)(r * c);
+    p[1] = (float)(r * s);
+    p[2] = (float)(d->z_min + b * (d->z_max - d->z_min));
+    n[0] = (float)c;
+    n[1] = (float)s;
+    n[2] = 0;
     return;
   }
   double low = vl_precise_acos(fmin(1, fmax(-1, d->z_min / r))),
          high = vl_precise_acos(fmin(1, fmax(-1, d->z_max / r)));
   double theta = low + b * (high - low);
-  n[0] = (float)(vl_precise_sin(theta) * c), n[1] = (float)(vl_precise_sin(theta) * s),
+  n[0] = (float)(vl_precise_sin(theta) * c);
+  n[1] = (float)(vl_precise_sin(theta) * s);
   n[2] = (float)vl_precise_cos(theta);
   for (int i = 0; i < 3; i++) p[i] = (float)(r * (double)n[i]);
 }
@@ -56,7 +64,10 @@ static bool facets(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
   float *p = vl_alloc_array(x->context, count, 3 * sizeof *p), *n = vl_alloc_array(x->context, count, 3 * sizeof *n),
         *uv = vl_alloc_array(x->context, count, 2 * sizeof *uv);
   uint32_t *indices = vl_alloc_array(x->context, ALONG * across, 6 * sizeof *indices), *to = indices;
-  mesh->own[0] = p, mesh->own[1] = n, mesh->own[2] = uv, mesh->own[3] = indices;
+  mesh->own[0] = p;
+  mesh->own[1] = n;
+  mesh->own[2] = uv;
+  mesh->own[3] = indices;
   if (!p || !n || !uv || !indices) {
     vl_export_free_mesh(x, mesh);
     return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
@@ -69,14 +80,27 @@ static bool facets(vlExport *x, const vlShapeDef *d, vlExportMesh *mesh) {
       size_t k = (size_t)j * (ALONG + 1) + i;
       double a = (double)i / ALONG, b = (double)j / across;
       quadric(d, a, b, p + 3 * k, n + 3 * k);
-      uv[2 * k] = (float)a, uv[2 * k + 1] = (float)b;
+      uv[2 * k] = (float)a;
+      uv[2 * k + 1] = (float)b;
       if (i == ALONG || j == across) continue;
       uint32_t k00 = (uint32_t)k, k10 = k00 + 1, k01 = k00 + ALONG + 1, k11 = k01 + 1;
-      if (!(cup && j == 0)) *to++ = k00, *to++ = k10, *to++ = k11;
-      if (!((cap && j + 1 == across) || point)) *to++ = k00, *to++ = k11, *to++ = k01;
+      if (!(cup && j == 0)) {
+        *to++ = k00;
+        *to++ = k10;
+        *to++ = k11;
+      }
+      if (!((cap && j + 1 == across) || point)) {
+        *to++ = k00;
+        *to++ = k11;
+        *to++ = k01;
+      }
     }
-  mesh->vertices = count, mesh->faces = (uint32_t)(to - indices) / 3;
-  mesh->positions = p, mesh->normals = n, mesh->uvs[0] = uv, mesh->indices = indices;
+  mesh->vertices = count;
+  mesh->faces = (uint32_t)(to - indices) / 3;
+  mesh->positions = p;
+  mesh->normals = n;
+  mesh->uvs[0] = uv;
+  mesh->indices = indices;
   return true;
 }
 
@@ -125,12 +149,14 @@ static bool own_uvs(vlExport *x, const vlShapeDef *d, vlExportMesh *m) {
   m->uvs[1] = m->uvs[2] = m->uvs[3] = NULL;
   uint32_t *indices = vl_alloc_array(x->context, count, sizeof *indices);
   float *uvs = vl_alloc_array(x->context, count, 2 * sizeof *uvs);
-  m->own[9] = indices, m->own[10] = uvs;
+  m->own[9] = indices;
+  m->own[10] = uvs;
   if (!indices || !uvs) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   for (size_t i = 0; i < count; i++) indices[i] = (uint32_t)i;
   for (size_t i = 0; i < m->faces; i++)
     memcpy(uvs + 6 * i, d->kind == VL_SHAPE_BILINEAR ? patch[i % 2] : triangle, sizeof triangle);
-  m->indices = indices, m->uvs[0] = uvs;
+  m->indices = indices;
+  m->uvs[0] = uvs;
   m->vertices = (uint32_t)count;
   return true;
 }

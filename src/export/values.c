@@ -117,7 +117,8 @@ void vl_export_metal_rgb(vlExport *x, const vlMaterialDef *m, float rgb[3]) {
   vlSpectrum s = vl_spectrum_constant(1);
   s.kind = VL_SPECTRUM_SAMPLED;
   s.count = VL_LAMBDA_COUNT;
-  s.wavelengths = nm, s.values = eta;
+  s.wavelengths = nm;
+  s.values = eta;
   to_rgb(&s, VL_ROLE_ALBEDO, rgb);
 }
 

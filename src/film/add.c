@@ -46,12 +46,16 @@ uint32_t vl_film_add(vlFilm *film, const vlFilmSamples *s, int32_t *bad_x, int32
     int64_t weight = (int64_t)((double)w * (1 << VL_WEIGHT_BITS) + (w < 0.0f ? -0.5 : 0.5));
     vlInt128 red = vl_film_product(s->r[i], weight), green = vl_film_product(s->g[i], weight);
     vlInt128 blue = vl_film_product(s->b[i], weight);
-    p->color[0] += red, p->color[1] += green, p->color[2] += blue;
+    p->color[0] += red;
+    p->color[1] += green;
+    p->color[2] += blue;
     if (film->def.errors) {
       vl_film_add_moments(film, at, (const float[3]){s->r[i], s->g[i], s->b[i]});
       if (s->index && s->index[i] < film->part) {
         vlFilmMoments *m = &film->moments[1][at];
-        m->first[0] += red, m->first[1] += green, m->first[2] += blue;
+        m->first[0] += red;
+        m->first[1] += green;
+        m->first[2] += blue;
         m->first_weight += weight;
       }
     }

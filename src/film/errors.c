@@ -35,7 +35,8 @@ static Pixel take_pixel(const vlFilm *film, size_t at) {
   Pixel p = {.share = film->front ? vl_film_first_share(film, at) : 0};
   for (int c = 0; c < 3; c++) {
     double error = vl_film_independent_error(film, at, c);
-    p.independent[c] = error * error, p.sum += error * error;
+    p.independent[c] = error * error;
+    p.sum += error * error;
     if (!(p.share > 0)) continue;
     double d = vl_film_linear_mean(film->front + at, c) - vl_film_first_mean(film, at, c);
     p.parts += p.share / (1 - p.share) * d * d; /* d = (n1 / n) D */
@@ -62,7 +63,8 @@ static double pixel_factor(const Pixel *p, const Pixel *cell, uint32_t count, bo
   for (uint32_t i = 0; i < count; i++) {
     const Pixel *q = &cell[i];
     bool alike = q->valid && q->sum <= ALIKE * p->sum && p->sum <= ALIKE * q->sum;
-    sum += alike ? q->sum : 0, parts += alike ? q->parts : 0;
+    sum += alike ? q->sum : 0;
+    parts += alike ? q->parts : 0;
   }
   double r = parts / sum;
   return apart || p->samples < LEAST_SAMPLES ? r : variance_of_ratio(r, p->samples, p->share);

@@ -50,7 +50,9 @@ static void limit(const float m[9], float most, uint32_t n, float *r, float *g, 
     float z = m[6] * r[i] + m[7] * g[i] + m[8] * b[i], top = x > y ? x : y;
     top = top > z ? top : z;
     float f = top > most ? most / top : 1.0f;
-    r[i] *= f, g[i] *= f, b[i] *= f;
+    r[i] *= f;
+    g[i] *= f;
+    b[i] *= f;
   }
 }
 
@@ -68,7 +70,11 @@ void vl_film_expose(const vlFilm *film, vlIsa isa, const vlExposure *e, float *r
     convert(space, balance, e, r, g, b);
   }
   float f = e->exposure;
-  for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) r[i] *= f, g[i] *= f, b[i] *= f;
+  for (uint32_t i = 0; f != 1.0f && i < VL_PAD(e->n); i++) {
+    r[i] *= f;
+    g[i] *= f;
+    b[i] *= f;
+  }
   if (!(vl_film_def(film)->max_component < 3e38f)) return;
   values_from_rgb(film, balance, m);
   limit(m, vl_film_def(film)->max_component, e->n, r, g, b);

@@ -22,7 +22,9 @@ static vlResult get_bytes(const vlFilmReader *r, void *data, size_t size, uint64
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return vl_fail(error, VL_ERROR_IO, "cannot read %s: %s", r->path, strerror(errno));
     if (n == 0) return damaged(r, "it ends too early", error);
-    to += n, at += (uint64_t)n, size -= (size_t)n;
+    to += n;
+    at += (uint64_t)n;
+    size -= (size_t)n;
   }
   return VL_OK;
 }
@@ -33,7 +35,8 @@ static vlResult get(vlFilmReader *r, void *data, size_t size, uint64_t at, vlErr
   if (size > sizeof r->buffer) return get_bytes(r, data, size, at, error);
   if (at < r->buffer_at || at + size > r->buffer_at + r->buffered) {
     uint64_t rest = r->size - at;
-    r->buffer_at = at, r->buffered = 0;
+    r->buffer_at = at;
+    r->buffered = 0;
     size_t count = rest < sizeof r->buffer ? (size_t)rest : sizeof r->buffer;
     vlResult result = get_bytes(r, r->buffer, count, at, error);
     if (result != VL_OK) return result;
@@ -143,7 +146,8 @@ vlResult vl_film_reader_next(vlFilmReader *r, vlError *error) {
   if (h->range_count > r->range_capacity) {
     vlSampleSpan *more = vl_realloc_array(r->context, r->ranges, h->range_count, sizeof *more);
     if (!more) return vl_fail_memory(error);
-    r->ranges = more, r->range_capacity = h->range_count;
+    r->ranges = more;
+    r->range_capacity = h->range_count;
   }
   size_t size = h->range_count * sizeof *r->ranges;
   if (size && (result = get(r, r->ranges, size, r->at + sizeof *h, error)) != VL_OK) return result;

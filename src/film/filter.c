@@ -47,7 +47,8 @@ typedef struct At {
 } At;
 
 static double box_value(const vlPixelFilter *filter, At at) {
-  (void)filter, (void)at;
+  (void)filter;
+  (void)at;
   return 1.0;
 }
 

@@ -18,7 +18,8 @@ static inline void add_square(uint64_t sum[3], float value) {
   }
   __extension__ typedef unsigned __int128 Wide;
   Wide low = (Wide)square << place, old = (Wide)sum[1] << 64 | sum[0], now = old + low;
-  sum[0] = (uint64_t)now, sum[1] = (uint64_t)(now >> 64);
+  sum[0] = (uint64_t)now;
+  sum[1] = (uint64_t)(now >> 64);
   sum[2] += (place > 80 ? square >> (128 - place) : 0) + (now < old);
 }
 

@@ -45,7 +45,8 @@ static double display_square(const Display *d, const double mean[3], const doubl
   double e = 0;
   for (int c = 0; c < 3; c++) {
     double error = sqrt(square[c]);
-    low[c] = (float)((mean[c] - error) * d->factor), high[c] = (float)((mean[c] + error) * d->factor);
+    low[c] = (float)((mean[c] - error) * d->factor);
+    high[c] = (float)((mean[c] + error) * d->factor);
   }
   vl_view_display(d->view, low, low);
   vl_view_display(d->view, high, high);
@@ -60,8 +61,10 @@ static double display_square(const Display *d, const double mean[3], const doubl
  * white an error is hardly seen in the pixel, and must not be seen in its neighbours. */
 static void limit(double white, double *mean, double *square) {
   double error = sqrt(*square), low = *mean - error, high = *mean + error;
-  low = low < 0 ? 0 : low > white ? white : low, high = high < 0 ? 0 : high > white ? white : high;
-  *mean = 0.5 * (low + high), *square = 0.25 * (high - low) * (high - low);
+  low = low < 0 ? 0 : low > white ? white : low;
+  high = high < 0 ? 0 : high > white ? white : high;
+  *mean = 0.5 * (low + high);
+  *square = 0.25 * (high - low) * (high - low);
 }
 
 /* The limited values, each replaced by the mean over the pixels of the block that are next to it. */
@@ -70,7 +73,8 @@ static void pool(const Block *from, double white, Block *to) {
   for (uint32_t y = 0; y < from->height; y++)
     for (uint32_t x = 0; x < from->width; x++)
       for (int c = 0; c < 3; c++) limit(white, &limited.mean[y][x][c], &limited.square[y][x][c]);
-  to->width = from->width, to->height = from->height;
+  to->width = from->width;
+  to->height = from->height;
   for (uint32_t y = 0; y < from->height; y++)
     for (uint32_t x = 0; x < from->width; x++) {
       uint32_t x0 = x > 0 ? x - 1 : 0, x1 = x + 1 < from->width ? x + 2 : from->width;
@@ -79,8 +83,12 @@ static void pool(const Block *from, double white, Block *to) {
       for (int c = 0; c < 3; c++) {
         double mean = 0, square = 0;
         for (uint32_t j = y0; j < y1; j++)
-          for (uint32_t i = x0; i < x1; i++) mean += limited.mean[j][i][c], square += limited.square[j][i][c];
-        to->mean[y][x][c] = mean / n, to->square[y][x][c] = square / n;
+          for (uint32_t i = x0; i < x1; i++) {
+            mean += limited.mean[j][i][c];
+            square += limited.square[j][i][c];
+          }
+        to->mean[y][x][c] = mean / n;
+        to->square[y][x][c] = square / n;
       }
     }
 }
@@ -105,7 +113,8 @@ static Mean block_square(const Block *b, const Display *d, double correlation) {
   for (uint32_t y = 0; y < b->height; y++)
     for (uint32_t x = 0; x < b->width; x++) {
       double e = display_square(d, b->mean[y][x], b->square[y][x]);
-      sum += e, squares += e * e;
+      sum += e;
+      squares += e * e;
     }
   return mean_of(sum, squares, pixels_of(b), correlation);
 }
@@ -118,7 +127,10 @@ static double upper_limit(Mean mean) {
 static double difference_square(const Display *d, const double mean[3], const double earlier[3]) {
   float now[3], then[3];
   double sum = 0;
-  for (int c = 0; c < 3; c++) now[c] = (float)(mean[c] * d->factor), then[c] = (float)(earlier[c] * d->factor);
+  for (int c = 0; c < 3; c++) {
+    now[c] = (float)(mean[c] * d->factor);
+    then[c] = (float)(earlier[c] * d->factor);
+  }
   vl_view_display(d->view, now, now);
   vl_view_display(d->view, then, then);
   for (int c = 0; c < 3; c++) sum += ((double)now[c] - (double)then[c]) * ((double)now[c] - (double)then[c]) / 3.0;
@@ -139,7 +151,8 @@ static double square_ratio(const vlFilm *film, size_t first, const Block *b, con
       if (!(share > 0)) return 1;
       for (int c = 0; c < 3; c++) earlier[c] = vl_film_first_mean(film, at, c);
       double p = share / (1 - share) * difference_square(d, b->mean[y][x], earlier);
-      sum += p, squares += p * p;
+      sum += p;
+      squares += p * p;
     }
   Mean difference = mean_of(sum, squares, pixels_of(b), correlation);
   double ratio = difference.value / square.value, other = ratio * square.error;
@@ -167,7 +180,8 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
       if (p->weight <= 0) return INFINITY;
       for (int c = 0; c < 3; c++) {
         double error = vl_film_independent_error(film, at, c);
-        b.mean[y][x][c] = vl_film_linear_mean(p, c), b.square[y][x][c] = error * error;
+        b.mean[y][x][c] = vl_film_linear_mean(p, c);
+        b.square[y][x][c] = error * error;
       }
     }
   Block pooled;

@@ -74,8 +74,10 @@ void vl_film_spectrum_commit(vlFilm *film) {
     if (s->stamp[i] != film->pass) copy_pixel(film, i);
   vlInt128 *sums = s->sums[0];
   int64_t *weights = s->weights[0];
-  s->sums[0] = s->sums[1], s->weights[0] = s->weights[1];
-  s->sums[1] = sums, s->weights[1] = weights;
+  s->sums[0] = s->sums[1];
+  s->weights[0] = s->weights[1];
+  s->sums[1] = sums;
+  s->weights[1] = weights;
 }
 
 void vl_film_spectrum_clear(vlFilm *film) {

@@ -16,10 +16,12 @@ static void chromaticity(double kelvin, double xy[2]) {
   }
   vl_daylight(kelvin, light);
   for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
-    sum[0] += light[i] * (double)vl_cie_x()[i], sum[1] += light[i] * (double)vl_cie_y()[i];
+    sum[0] += light[i] * (double)vl_cie_x()[i];
+    sum[1] += light[i] * (double)vl_cie_y()[i];
     sum[2] += light[i] * (double)vl_cie_z()[i];
   }
-  xy[0] = sum[0] / (sum[0] + sum[1] + sum[2]), xy[1] = sum[1] / (sum[0] + sum[1] + sum[2]);
+  xy[0] = sum[0] / (sum[0] + sum[1] + sum[2]);
+  xy[1] = sum[1] / (sum[0] + sum[1] + sum[2]);
 }
 
 static void response(double x, double y, double lms[3]) {

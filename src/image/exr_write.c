@@ -250,7 +250,9 @@ vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
 /* Ignores an error. OpenEXR calls this handler while it holds the lock of its context, so vl_exr_on_error cannot be
  * used: reading the user data would take the lock again. */
 static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message) {
-  (void)context, (void)code, (void)message;
+  (void)context;
+  (void)code;
+  (void)message;
 }
 
 vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const vlWriteDef *def, vlFileWriter *writer,

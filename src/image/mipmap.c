@@ -210,7 +210,10 @@ static void find_space(const vlImage *image, vlMipmap *map) {
     vl_space_chromaticities((vlColorSpace)k, xy);
     for (int i = 0; i < 8; i++)
       same = same && a.numbers[i] - (double)xy[i] < 1e-3 && (double)xy[i] - a.numbers[i] < 1e-3;
-    if (same && !map->space_given) map->space_given = true, map->space = (vlColorSpace)k;
+    if (same && !map->space_given) {
+      map->space_given = true;
+      map->space = (vlColorSpace)k;
+    }
   }
 }
 

@@ -78,7 +78,8 @@ static bool separate_faces(vlContext *context, vlPlainMesh *m) {
   bool ok = made.positions && made.colors && made.indices && (!m->normals || made.normals) && (!m->uvs || made.uvs);
   for (size_t i = 0; ok && i < count; i++) {
     memcpy(made.colors + 4 * i, m->face_colors + i / 3 * 3, 3 * sizeof *made.colors);
-    made.colors[4 * i + 3] = 1, made.indices[i] = (uint32_t)i;
+    made.colors[4 * i + 3] = 1;
+    made.indices[i] = (uint32_t)i;
   }
   if (!ok) {
     free_mesh(context, &made);
@@ -111,8 +112,12 @@ vlResult vl_import_plain_mesh(vlScene *scene, const char *path, const vlLoadDef 
   vl_label_of_file(path, name);
   def.source.file = path;
   def.label.name = name;
-  def.vertices = m->vertices, def.faces = m->triangles;
-  def.positions = m->positions, def.normals = m->normals, def.uvs = m->uvs, def.colors = m->colors;
+  def.vertices = m->vertices;
+  def.faces = m->triangles;
+  def.positions = m->positions;
+  def.normals = m->normals;
+  def.uvs = m->uvs;
+  def.colors = m->colors;
   def.indices = m->indices;
   def.material = add_material(scene, m->colors != NULL);
   vlRepairs repairs = {0};

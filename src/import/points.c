@@ -27,7 +27,8 @@ static double distance2(const float *a, const float *b) {
 
 static double diagonal(const vlPlainMesh *m) {
   float low[3], high[3];
-  memcpy(low, m->positions, sizeof low), memcpy(high, m->positions, sizeof high);
+  memcpy(low, m->positions, sizeof low);
+  memcpy(high, m->positions, sizeof high);
   for (size_t i = 0; i < 3 * (size_t)m->vertices; i++) {
     low[i % 3] = fminf(low[i % 3], m->positions[i]);
     high[i % 3] = fmaxf(high[i % 3], m->positions[i]);
@@ -65,7 +66,10 @@ static void disc(const float *n, float radius, float corners[CORNERS][3]) {
   double l = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]), u[3], v[3], w[3], lu = 0;
   for (int i = 0; i < 3; i++) w[i] = l > 0 ? n[i] / l : i == 2;
   int least = fabs(w[0]) < fabs(w[1]) ? (fabs(w[0]) < fabs(w[2]) ? 0 : 2) : fabs(w[1]) < fabs(w[2]) ? 1 : 2;
-  for (int i = 0; i < 3; i++) u[i] = (i == least) - w[least] * w[i], lu += u[i] * u[i];
+  for (int i = 0; i < 3; i++) {
+    u[i] = (i == least) - w[least] * w[i];
+    lu += u[i] * u[i];
+  }
   for (int i = 0; i < 3; i++) u[i] /= sqrt(lu);
   for (int i = 0; i < 3; i++) v[i] = w[(i + 1) % 3] * u[(i + 2) % 3] - w[(i + 2) % 3] * u[(i + 1) % 3];
   for (int k = 0; k < CORNERS; k++)
@@ -92,8 +96,10 @@ bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
   made.indices = vl_alloc_array(context, count * faces, 3 * sizeof(uint32_t));
   if (m->colors) made.colors = vl_alloc_array(context, count * CORNERS, 4 * sizeof(float));
   if (!made.positions || !made.normals || !made.indices || (m->colors && !made.colors)) {
-    vl_free(context, made.positions), vl_free(context, made.normals);
-    vl_free(context, made.indices), vl_free(context, made.colors);
+    vl_free(context, made.positions);
+    vl_free(context, made.normals);
+    vl_free(context, made.indices);
+    vl_free(context, made.colors);
     return false;
   }
   for (size_t i = 0; i < count; i++) {
@@ -115,8 +121,11 @@ bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
         made.indices[3 * (i * faces + f) + k] =
             (uint32_t)(i * CORNERS) + (m->normals ? disc_faces[f][k] : ball_faces[f][k]);
   }
-  vl_free(context, m->positions), vl_free(context, m->normals), vl_free(context, m->uvs);
-  vl_free(context, m->colors), vl_free(context, m->indices);
+  vl_free(context, m->positions);
+  vl_free(context, m->normals);
+  vl_free(context, m->uvs);
+  vl_free(context, m->colors);
+  vl_free(context, m->indices);
   made.face_colors = m->face_colors;
   *m = made;
   vlError where = {0};

@@ -119,7 +119,10 @@ void vl_repairs_report(vlContext *context, const vlRepairs *r, const char *file)
   snprintf(place.file, sizeof place.file, "%s", file);
   if (r->shapes) {
     vlError first = place;
-    if (r->file[0]) snprintf(first.file, sizeof first.file, "%s", r->file), first.line = r->line;
+    if (r->file[0]) {
+      snprintf(first.file, sizeof first.file, "%s", r->file);
+      first.line = r->line;
+    }
     vl_log(context, VL_LOG_WARNING, &first,
            "repaired (zero or not finite): %llu normal%s, %llu uv%s in %llu shape%s, of which this is the first",
            (unsigned long long)r->normals, plural(r->normals), (unsigned long long)r->uvs, plural(r->uvs),

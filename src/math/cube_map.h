@@ -17,12 +17,22 @@ static inline vlVec3 vl_cube_map_direction(uint32_t face, float s, float t) {
 static inline uint32_t vl_cube_map_face(vlVec3 d, float *s, float *t) {
   float x = vl_abs(d.x), y = vl_abs(d.y), z = vl_abs(d.z), m;
   uint32_t face;
-  if (x >= y && x >= z)
-    face = d.x < 0, m = x, *s = face ? d.z : -d.z, *t = -d.y;
-  else if (y >= z)
-    face = 2 + (d.y < 0), m = y, *s = d.x, *t = face == 2 ? d.z : -d.z;
-  else
-    face = 4 + (d.z < 0), m = z, *s = face == 4 ? d.x : -d.x, *t = -d.y;
+  if (x >= y && x >= z) {
+    face = d.x < 0;
+    m = x;
+    *s = face ? d.z : -d.z;
+    *t = -d.y;
+  } else if (y >= z) {
+    face = 2 + (d.y < 0);
+    m = y;
+    *s = d.x;
+    *t = face == 2 ? d.z : -d.z;
+  } else {
+    face = 4 + (d.z < 0);
+    m = z;
+    *s = face == 4 ? d.x : -d.x;
+    *t = -d.y;
+  }
   *s /= m;
   *t /= m;
   return face;

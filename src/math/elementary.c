@@ -88,8 +88,8 @@ static Pair exp_series(Pair x, int terms) {
 static Pair exp_pair(Pair x, int *exponent) {
   double n = floor(x.high * 1.4426950408889634 + 0.5);
   Pair r = add(x, negate(times_ln2(n)));
-  r.high *= 0x1p-6,
-      r.low *= 0x1p-6; /* |r| is now below 0.0055, so terms after the 14th are smaller than the last bit */
+  r.high *= 0x1p-6;
+  r.low *= 0x1p-6; /* |r| is now below 0.0055, so terms after the 14th are smaller than the last bit */
   Pair e = add(one(1.0), multiply(r, exp_series(r, 14)));
   for (int k = 0; k < 6; k++) e = multiply(e, e);
   *exponent = (int)n;
@@ -110,7 +110,10 @@ static double exp_of(Pair x) {
 static Pair log_pair(double x) {
   int exponent;
   double m = frexp(x, &exponent);
-  if (m < 0.70710678118654752) m *= 2.0, exponent--;
+  if (m < 0.70710678118654752) {
+    m *= 2.0;
+    exponent--;
+  }
   Pair s = divide(one(m - 1.0), sum(m, 1.0)), z = multiply(s, s), t = one(0.0);
   for (int k = 24; k >= 0; k--) t = add(multiply(t, z), divide(one(2.0), one(2 * k + 1)));
   return add(times_ln2(exponent), multiply(s, t));
@@ -235,7 +238,10 @@ static double angle_of(Pair y, Pair x) {
 
 double vl_precise_atan2(double y, double x) {
   if (isnan(x) || isnan(y)) return NAN;
-  if (isinf(x) || isinf(y)) y = copysign(isinf(y) ? 1.0 : 0.0, y), x = copysign(isinf(x) ? 1.0 : 0.0, x);
+  if (isinf(x) || isinf(y)) {
+    y = copysign(isinf(y) ? 1.0 : 0.0, y);
+    x = copysign(isinf(x) ? 1.0 : 0.0, x);
+  }
   if (y == 0.0) return signbit(x) ? copysign(2.0 * (half_pi[0] + half_pi[1]), y) : y;
   /* the scale avoids overflow and underflow of products */
   int exponent;

@@ -98,7 +98,8 @@ bool vl_motion_make(const double open[16], const double close[16], vlMotion *mot
   double apart = 0, together = 0;
   for (int i = 0; i < 4; i++) {
     double a = motion->q0[i], b = motion->q1[i];
-    apart += (b - a) * (b - a), together += (b + a) * (b + a);
+    apart += (b - a) * (b - a);
+    together += (b + a) * (b + a);
   }
   double angle = 2 * vl_atan2_double(sqrt(apart), sqrt(together));
   bool turns = angle > 1e-9; /* below, linear interpolation errs by angle^2 = 1e-18, less than a rounding */

@@ -39,12 +39,16 @@ static inline float vl_noise_mix(float t, float a, float b) {
 static inline float vl_noise(float x, float y, float z) {
   float all = vl_abs(x) + vl_abs(y) + vl_abs(z); /* vl_max would lose a NaN */
   float on = all < 1e9f ? 1.0f : 0.0f;
-  x = on > 0.0f ? x : 0.0f, y = on > 0.0f ? y : 0.0f, z = on > 0.0f ? z : 0.0f;
+  x = on > 0.0f ? x : 0.0f;
+  y = on > 0.0f ? y : 0.0f;
+  z = on > 0.0f ? z : 0.0f;
   float fx = __builtin_floorf(x), fy = __builtin_floorf(y), fz = __builtin_floorf(z);
   uint32_t i = (uint32_t)(int32_t)fx, j = (uint32_t)(int32_t)fy, k = (uint32_t)(int32_t)fz;
   float dx = x - fx, dy = y - fy, dz = z - fz;
   /* hashed one after the other, in the order of the reference implementation */
-  i &= 255, j &= 255, k &= 255;
+  i &= 255;
+  j &= 255;
+  k &= 255;
   float w000 = vl_noise_gradient(i, j, k, dx, dy, dz), w100 = vl_noise_gradient(i + 1, j, k, dx - 1, dy, dz);
   float w010 = vl_noise_gradient(i, j + 1, k, dx, dy - 1, dz);
   float w110 = vl_noise_gradient(i + 1, j + 1, k, dx - 1, dy - 1, dz);

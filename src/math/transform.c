@@ -66,7 +66,9 @@ vlMat4 vl_mat4_scale(double x, double y, double z) {
 vlMat4 vl_mat4_rotate(double radians, double x, double y, double z) {
   double length = sqrt(x * x + y * y + z * z);
   if (!(length > 0)) return vl_mat4_identity();
-  x /= length, y /= length, z /= length;
+  x /= length;
+  y /= length;
+  z /= length;
   double s = vl_precise_sin(radians), c = vl_precise_cos(radians), t = 1 - c;
   return (vlMat4){{x * x * t + c, x * y * t - z * s, x * z * t + y * s, 0, x * y * t + z * s, y * y * t + c,
                    y * z * t - x * s, 0, x * z * t - y * s, y * z * t + x * s, z * z * t + c, 0, 0, 0, 0, 1}};

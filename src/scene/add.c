@@ -69,11 +69,15 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_TEXTURE, scene->textures.count, (vlSource){0}, "texture"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_texture_family, (int)def->kind);
-  if (!row) return bad(scene, def->source, "texture", "unknown kind"), none;
+  if (!row) {
+    bad(scene, def->source, "texture", "unknown kind");
+    return none;
+  }
   char what[64];
   snprintf(what, sizeof what, "%s texture", row->name ? row->name : "vertex colour");
   vlTextureDef d = vl_default_texture_def(def->kind, def->spectrum);
-  d.name = def->name, d.source = def->source;
+  d.name = def->name;
+  d.source = def->source;
   vl_row_copy_members(row, def, &d);
   if (!vl_scene_copy_source(scene, &d.source) || !check_texture_def(scene, &d, row) ||
       !vl_row_take(scene, row, &d, d.spectrum, d.source, what) || !vl_scene_copy_string(scene, &d.name))
@@ -81,7 +85,10 @@ static vlTextureId add_texture(vlScene *scene, const vlTextureDef *def, bool ado
   if (!adopt && (!vl_scene_copy_image(scene, &d.image) || !vl_scene_copy_block(scene, d.data, d.data_size, 1, &d.data)))
     return none;
   vlTextureDef *slot = VL_PUSH(scene->context, &scene->textures);
-  if (!slot) return out_of_memory(scene), none;
+  if (!slot) {
+    out_of_memory(scene);
+    return none;
+  }
   *slot = d;
   return (vlTextureId){(uint32_t)scene->textures.count};
 }
@@ -121,7 +128,10 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_MATERIAL, scene->materials.count, (vlSource){0}, "material"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_material_family, (int)def->kind);
-  if (!row) return bad(scene, def->source, "material", "unknown kind"), none;
+  if (!row) {
+    bad(scene, def->source, "material", "unknown kind");
+    return none;
+  }
   if (def->kind == VL_MATERIAL_MIX && !check_mix(scene, def)) return none;
   char what[64];
   snprintf(what, sizeof what, "%s material", row->name);
@@ -131,13 +141,20 @@ vlMaterialId vl_scene_add_material(vlScene *scene, const vlMaterialDef *def) {
   if (!vl_scene_copy_source(scene, &d.source) || !vl_row_take(scene, row, &d, true, def->source, what) ||
       !vl_scene_copy_string(scene, &d.name) || !vl_scene_copy_string(scene, &d.place))
     return none;
-  if (d.conserve_energy && !vl_coat_in_closed_form(&d))
-    return bad(scene, def->source, what,
-               "energy is conserved over a diffuse base only, under a medium of albedo 0 and untextured thickness"),
-           none;
-  if (d.kind == VL_MATERIAL_MIX) d.materials[0] = def->materials[0], d.materials[1] = def->materials[1];
+  if (d.conserve_energy && !vl_coat_in_closed_form(&d)) {
+    bad(scene, def->source, what,
+        "energy is conserved over a diffuse base only, under a medium of albedo 0 and untextured thickness");
+    return none;
+  }
+  if (d.kind == VL_MATERIAL_MIX) {
+    d.materials[0] = def->materials[0];
+    d.materials[1] = def->materials[1];
+  }
   vlMaterialDef *slot = VL_PUSH(scene->context, &scene->materials);
-  if (!slot) return out_of_memory(scene), none;
+  if (!slot) {
+    out_of_memory(scene);
+    return none;
+  }
   *slot = d;
   return (vlMaterialId){(uint32_t)scene->materials.count};
 }
@@ -150,12 +167,20 @@ vlEmissionId vl_scene_add_emission(vlScene *scene, const vlEmissionDef *def) {
     return none;
   vlEmissionDef d = *def;
   if (!vl_row_take(scene, vl_kind_row(&vl_emission_family, 0), &d, true, d.source, "emission")) return none;
-  if (d.power < 0.0) return bad(scene, d.source, "emission", "power must not be negative"), none;
-  if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE)
-    return bad(scene, d.source, "emission", "its texture must be an image"), none;
+  if (d.power < 0.0) {
+    bad(scene, d.source, "emission", "power must not be negative");
+    return none;
+  }
+  if (d.texture.index && scene->textures.items[d.texture.index - 1].kind != VL_TEXTURE_IMAGE) {
+    bad(scene, d.source, "emission", "its texture must be an image");
+    return none;
+  }
   if (!vl_scene_copy_source(scene, &d.source)) return none;
   vlEmissionDef *slot = VL_PUSH(scene->context, &scene->emissions);
-  if (!slot) return out_of_memory(scene), none;
+  if (!slot) {
+    out_of_memory(scene);
+    return none;
+  }
   *slot = d;
   return (vlEmissionId){(uint32_t)scene->emissions.count};
 }
@@ -206,7 +231,10 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
   if (!may_add(scene, def, def && def->cookie == VL_COOKIE_LIGHT, scene->lights.count, (vlSource){0}, "light"))
     return none;
   const vlKindRow *row = vl_kind_row(&vl_light_family, (int)def->kind);
-  if (!row) return bad(scene, def->source, "light", "unknown kind"), none;
+  if (!row) {
+    bad(scene, def->source, "light", "unknown kind");
+    return none;
+  }
   char what[80];
   snprintf(what, sizeof what, "%s light", row->name);
   vlLightDef d = vl_default_light_def(def->kind); /* members that the kind does not use keep their defaults */
@@ -222,7 +250,10 @@ vlLightId vl_scene_add_light(vlScene *scene, const vlLightDef *def) {
       !vl_scene_copy_source(scene, &d.source) || !vl_scene_copy_image(scene, &d.image))
     return none;
   vlLightDef *slot = VL_PUSH(scene->context, &scene->lights);
-  if (!slot) return out_of_memory(scene), none;
+  if (!slot) {
+    out_of_memory(scene);
+    return none;
+  }
   *slot = d;
   return (vlLightId){(uint32_t)scene->lights.count};
 }

@@ -132,7 +132,10 @@ static Box *group_boxes(vlCheck *c, const Box *boxes) {
   Box *groups = vl_alloc_array(c->context, s->groups.count + 1, sizeof *groups);
   if (!groups) c->no_memory = true;
   for (size_t g = 0; groups && g <= s->groups.count; g++)
-    for (int k = 0; k < 3; k++) groups[g].low[k] = INFINITY, groups[g].high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+      groups[g].low[k] = INFINITY;
+      groups[g].high[k] = -INFINITY;
+    }
   for (size_t i = 0; groups && i < s->shapes.count; i++) {
     Box *b = &groups[s->shapes.items[i].group.index];
     for (int k = 0; k < 3; k++) {
@@ -247,7 +250,8 @@ static Gate gate_of(const vlLightDef *l) {
   double x[3], y[3];
   for (int i = 0; i < 3; i++) {
     g.corner[i] = (double)l->portal[0][i];
-    x[i] = (double)l->portal[3][i] - g.corner[i], y[i] = (double)l->portal[1][i] - g.corner[i];
+    x[i] = (double)l->portal[3][i] - g.corner[i];
+    y[i] = (double)l->portal[1][i] - g.corner[i];
   }
   for (int i = 0; i < 3; i++) { /* y cross x: the sky is on the other side, where x cross y points to */
     int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -274,7 +278,8 @@ static void heights(const Gate *g, const Box *b, const double *pose, double *low
       vl_mat4_point(&m, q, p);
     }
     double h = height_of(g, p);
-    *low = fmin(*low, h), *high = fmax(*high, h);
+    *low = fmin(*low, h);
+    *high = fmax(*high, h);
   }
 }
 

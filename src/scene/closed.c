@@ -55,7 +55,10 @@ static void corner(const vlShapeDef *d, size_t face, int k, double p[3]) {
 /* The normal as the order of the corners gives it; its length is twice the area. */
 static void face_normal(const double p[3][3], double n[3]) {
   double a[3], b[3];
-  for (int i = 0; i < 3; i++) a[i] = p[1][i] - p[0][i], b[i] = p[2][i] - p[0][i];
+  for (int i = 0; i < 3; i++) {
+    a[i] = p[1][i] - p[0][i];
+    b[i] = p[2][i] - p[0][i];
+  }
   for (int i = 0; i < 3; i++) n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
@@ -67,9 +70,11 @@ static bool meets_box(const double low[3], const double high[3], const double o[
     double inverse = 1 / d[i], a = (low[i] - o[i]) * inverse, b = (high[i] - o[i]) * inverse;
     if (a > b) {
       double c = a;
-      a = b, b = c;
+      a = b;
+      b = c;
     }
-    t0 = a > t0 ? a : t0, t1 = b < t1 ? b : t1; /* NaN: the plane of a face, which does not cut */
+    t0 = a > t0 ? a : t0;
+    t1 = b < t1 ? b : t1; /* NaN: the plane of a face, which does not cut */
   }
   return t0 <= t1;
 }
@@ -87,8 +92,12 @@ static void meet_block(const Placed *p, size_t first, const double o[3], const d
     if (!(t > 0 && t < seen->t)) continue;
     for (int i = 0; i < 3; i++) r[i] = q[(i + 1) % 3] * d[(i + 2) % 3] - q[(i + 2) % 3] * d[(i + 1) % 3];
     double u = 0, v = 0;
-    for (int i = 0; i < 3; i++) u -= (c[2][i] - c[0][i]) * r[i], v += (c[1][i] - c[0][i]) * r[i];
-    u /= along, v /= along;
+    for (int i = 0; i < 3; i++) {
+      u -= (c[2][i] - c[0][i]) * r[i];
+      v += (c[1][i] - c[0][i]) * r[i];
+    }
+    u /= along;
+    v /= along;
     if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
     *seen = (Seen){.t = t, .placed = p, .back = (along > 0) != p->flip};
   }
@@ -117,13 +126,19 @@ static void cast(void *user, uint32_t ray, uint32_t worker) {
 
 static double radical_inverse(uint32_t i, uint32_t base) {
   double sum = 0, f = 1;
-  for (; i; i /= base) f /= base, sum += f * (i % base);
+  for (; i; i /= base) {
+    f /= base;
+    sum += f * (i % base);
+  }
   return sum;
 }
 
 static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
   double size[3], middle[3];
-  for (int i = 0; i < 3; i++) size[i] = box->high[i] - box->low[i], middle[i] = 0.5 * (box->low[i] + box->high[i]);
+  for (int i = 0; i < 3; i++) {
+    size[i] = box->high[i] - box->low[i];
+    middle[i] = 0.5 * (box->low[i] + box->high[i]);
+  }
   for (uint32_t k = 0; k < OUTSIDE; k++)
     for (int i = 0; i < 3; i++) {
       static const uint32_t bases[3] = {2, 3, 5};
@@ -136,7 +151,9 @@ static void aim(Survey *s, const vlExtent *box, const double eye[3]) {
     double z = 1 - (2 * i + 1) / (double)AROUND, r = sqrt(1 - z * z), turn = 2.399963229728653 * i + 0.3;
     memcpy(s->o[k], middle, sizeof middle);
     if (point) s->o[k][(point - 1) / 2] += (point & 1 ? 0.23 : -0.23) * size[(point - 1) / 2];
-    s->d[k][0] = r * vl_precise_cos(turn), s->d[k][1] = z, s->d[k][2] = r * vl_precise_sin(turn);
+    s->d[k][0] = r * vl_precise_cos(turn);
+    s->d[k][1] = z;
+    s->d[k][2] = r * vl_precise_sin(turn);
   }
 }
 
@@ -158,7 +175,10 @@ static bool make_blocks(vlContext *context, Survey *s, const vlShapeDef *d, size
       }
     double margin = 0;
     for (int i = 0; i < 3; i++) margin += 1e-6 * (b->high[i] - b->low[i]);
-    for (int i = 0; i < 3; i++) b->low[i] -= margin, b->high[i] += margin;
+    for (int i = 0; i < 3; i++) {
+      b->low[i] -= margin;
+      b->high[i] += margin;
+    }
   }
   return true;
 }
@@ -169,7 +189,10 @@ static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t sha
   vlMat4 m = vl_mat4_multiply(*world_from_group, vl_mat4_load(d->group_from_shape));
   Placed *p = &s->placed[s->count];
   if (!vl_mat4_inverse(m, &p->to_shape)) return true;
-  p->def = d, p->blocks = s->blocks[shape], p->shape = shape, p->fixed = fixed;
+  p->def = d;
+  p->blocks = s->blocks[shape];
+  p->shape = shape;
+  p->fixed = fixed;
   p->flip = d->reverse_orientation != (vl_mat4_determinant3(m) < 0);
   vlExtent box = vl_extent_nothing;
   for (size_t i = 0; i < d->vertices; i++) {
@@ -177,7 +200,8 @@ static bool place(vlContext *context, Survey *s, const vlShapeDef *d, size_t sha
     vl_mat4_point(&m, v, q);
     vl_extent_grow(&box, q);
   }
-  memcpy(p->low, box.low, sizeof p->low), memcpy(p->high, box.high, sizeof p->high);
+  memcpy(p->low, box.low, sizeof p->low);
+  memcpy(p->high, box.high, sizeof p->high);
   return ++s->count < MOST_PLACED;
 }
 
@@ -229,7 +253,8 @@ static bool is_convex(const vlShapeDef *d) {
       double q[3] = {(double)d->positions[3 * i] - c[0][0], (double)d->positions[3 * i + 1] - c[0][1],
                      (double)d->positions[3 * i + 2] - c[0][2]};
       double away = dot(n, q);
-      low = away < low ? away : low, high = away > high ? away : high;
+      low = away < low ? away : low;
+      high = away > high ? away : high;
       length = high - low;
     }
     if (fmin(-low, high) > 0.02 * length) return false;
@@ -248,7 +273,8 @@ static bool normals_disagree(const Placed *p) {
     face_normal((const double(*)[3])c, n);
     const float *own = d->normals + 3 * (size_t)d->indices[3 * face];
     const double v[3] = {own[0], own[1], own[2]};
-    against += dot(n, v) < 0, count++;
+    against += dot(n, v) < 0;
+    count++;
   }
   return 2 * against > count;
 }
@@ -261,10 +287,14 @@ static int best_point(const Survey *s, double *covered, double *front) {
     double met = 0, faces = 0;
     for (int i = 0; i < AROUND; i++) {
       const Seen *seen = &s->seen[OUTSIDE + point * AROUND + i];
-      met += seen->placed != NULL, faces += seen->placed && !seen->back;
+      met += seen->placed != NULL;
+      faces += seen->placed && !seen->back;
     }
-    if (faces > AROUND * *front || (faces == AROUND * *front && met > AROUND * *covered))
-      best = point, *covered = met / AROUND, *front = faces / AROUND;
+    if (faces > AROUND * *front || (faces == AROUND * *front && met > AROUND * *covered)) {
+      best = point;
+      *covered = met / AROUND;
+      *front = faces / AROUND;
+    }
   }
   return best;
 }
@@ -363,7 +393,10 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face, co
     vl_mat4_point(m, p, c[k]);
   }
   face_normal((const double(*)[3])c, n);
-  for (int i = 0; i < 3; i++) to_eye[i] = eye[i] - c[0][i], to_middle[i] = closed->middle[i] - c[0][i];
+  for (int i = 0; i < 3; i++) {
+    to_eye[i] = eye[i] - c[0][i];
+    to_middle[i] = closed->middle[i] - c[0][i];
+  }
   double a = dot(n, to_eye), b = dot(n, to_middle);
   if (closed->inward && (a < 0) == d->reverse_orientation) return false;
   return (a > 0 && b < 0) || (a < 0 && b > 0);
@@ -381,8 +414,12 @@ static bool open_shape(vlScene *scene, vlShapeDef *d, const vlClosed *closed, co
     memcpy(kept + 3 * (size_t)n++, d->indices + 3 * face, 3 * sizeof *kept);
   }
   *count += d->faces - n;
-  if (n == 0) kept[0] = kept[1] = kept[2] = d->indices[0], n = 1; /* without area: a shape has a face */
-  d->faces = n, d->indices = kept;
+  if (n == 0) {
+    kept[0] = kept[1] = kept[2] = d->indices[0];
+    n = 1;
+  } /* without area: a shape has a face */
+  d->faces = n;
+  d->indices = kept;
   return vl_scene_own(scene, kept);
 }
 

@@ -32,8 +32,10 @@ static void widen(void *user, const double p[3]) {
   Frame *f = user;
   double d[3] = {p[0] - f->center[0], p[1] - f->center[1], p[2] - f->center[2]};
   double x = dot(d, f->right), y = dot(d, f->up), z = dot(d, f->ahead);
-  f->sides[0] = fmax(f->sides[0], x - f->tan_x * z), f->sides[1] = fmax(f->sides[1], -x - f->tan_x * z);
-  f->sides[2] = fmax(f->sides[2], y - f->tan_y * z), f->sides[3] = fmax(f->sides[3], -y - f->tan_y * z);
+  f->sides[0] = fmax(f->sides[0], x - f->tan_x * z);
+  f->sides[1] = fmax(f->sides[1], -x - f->tan_x * z);
+  f->sides[2] = fmax(f->sides[2], y - f->tan_y * z);
+  f->sides[3] = fmax(f->sides[3], -y - f->tan_y * z);
 }
 
 /* Directions of the scene, and from where the camera looks. */
@@ -72,7 +74,8 @@ static void mean_normal(const vlScene *scene, double n[3]) {
 
 /* Flat models are seen nearly along their normal, from the side of their faces' fronts. */
 static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, const vlExtent *box, View *v) {
-  v->azimuth = 0.45, v->elevation = 0.3;
+  v->azimuth = 0.45;
+  v->elevation = 0.3;
   if (def->framing == VL_FRAMING_FRONT) v->azimuth = v->elevation = 0;
   if (def->framing == VL_FRAMING_FRONT) return "from the front, as asked";
   double x = extent_along(box, v->right), y = extent_along(box, v->up), z = extent_along(box, v->front), n[3];
@@ -81,17 +84,20 @@ static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, c
   mean_normal(scene, n);
   if (y <= flat * fmin(x, z)) {
     bool below = dot(n, v->up) < -0.1 * sqrt(dot(n, n));
-    v->elevation = below ? -0.9 : 0.9, v->azimuth = 0.25;
+    v->elevation = below ? -0.9 : 0.9;
+    v->azimuth = 0.25;
     return below ? "flat: from below" : "flat: from above";
   }
   if (z <= flat * fmin(x, y)) {
     bool behind = dot(n, v->front) < -0.1 * sqrt(dot(n, n));
-    v->azimuth = (behind ? half_turn : 0) + 0.25, v->elevation = 0.15;
+    v->azimuth = (behind ? half_turn : 0) + 0.25;
+    v->elevation = 0.15;
     return behind ? "flat: from behind" : "flat: from the front";
   }
   if (x <= flat * fmin(y, z)) {
     bool left = dot(n, v->right) < -0.1 * sqrt(dot(n, n));
-    v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25, v->elevation = 0.15;
+    v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25;
+    v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";
   }
   return "from the front, a little from the right and above";
@@ -100,10 +106,15 @@ static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, c
 static void set_camera(vlScene *scene, const double up[3], double fov, const double eye[3], const double lookat[3]) {
   vlSceneDefs *s = &scene->defs;
   vlCameraDef camera = vl_default_camera_def(s->film.width, s->film.height);
-  camera.shutter_open = s->camera.shutter_open, camera.shutter_close = s->camera.shutter_close;
+  camera.shutter_open = s->camera.shutter_open;
+  camera.shutter_close = s->camera.shutter_close;
   camera.fov = fov;
   camera.fov_axis = VL_FOV_SMALLER;
-  for (int i = 0; i < 3; i++) camera.lookat[i] = lookat[i], camera.eye[i] = eye[i], camera.up[i] = up[i];
+  for (int i = 0; i < 3; i++) {
+    camera.lookat[i] = lookat[i];
+    camera.eye[i] = eye[i];
+    camera.up[i] = up[i];
+  }
   s->camera = camera;
   s->camera_source = (vlSource){0};
   s->camera_missing = false;
@@ -130,7 +141,8 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, con
   vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
   if (isfinite(f.sides[0])) {
-    x = 0.5 * (f.sides[0] - f.sides[1]), y = 0.5 * (f.sides[2] - f.sides[3]);
+    x = 0.5 * (f.sides[0] - f.sides[1]);
+    y = 0.5 * (f.sides[2] - f.sides[3]);
     d = fmax((f.sides[0] + f.sides[1]) / (2 * f.tan_x), (f.sides[2] + f.sides[3]) / (2 * f.tan_y));
   }
   if (!(d > 0) || !isfinite(d)) d = 1;
@@ -147,7 +159,10 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, con
 static bool open_model(vlScene *scene, const View *v, vlClosed *closed, vlExtent *box, const vlExtent *boxes) {
   double eye[3], size = 0;
   uint64_t count = 0;
-  for (int i = 0; i < 3; i++) eye[i] = scene->defs.camera.eye[i], size += box->high[i] - box->low[i];
+  for (int i = 0; i < 3; i++) {
+    eye[i] = scene->defs.camera.eye[i];
+    size += box->high[i] - box->low[i];
+  }
   if (closed->kind == VL_CLOSED_DOME) {
     vlExtent inner = vl_extent_nothing;
     vl_extent_visit(scene, boxes, closed->shell, vl_extent_grow, &inner);
@@ -293,7 +308,8 @@ vlResult vl_scene_complete(vlScene *scene, const vlCompleteDef *given, vlError *
   bool camera = s->camera_missing || def.reframe;
   if (camera && def.width && def.height) {
     const uint32_t whole[4] = {0, 0, def.width, def.height};
-    s->film.width = def.width, s->film.height = def.height;
+    s->film.width = def.width;
+    s->film.height = def.height;
     memcpy(s->film.crop, whole, sizeof whole);
   }
   vlEnvironmentKind kind = def.environment;

@@ -17,7 +17,10 @@ bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], doub
   for (int i = 0; i < 3; i++) l += def->up[i] * def->up[i];
   for (int i = 0; i < 3; i++) up[i] = l > 0 ? def->up[i] / sqrt(l) : 0;
   for (int i = 0; i < 3; i++) d += def->front[i] * up[i];
-  for (int i = 0; i < 3; i++) front[i] = def->front[i] - d * up[i], f += front[i] * front[i];
+  for (int i = 0; i < 3; i++) {
+    front[i] = def->front[i] - d * up[i];
+    f += front[i] * front[i];
+  }
   for (int i = 0; i < 3; i++) front[i] /= f > 0 ? sqrt(f) : 1;
   for (int i = 0; i < 3; i++) right[i] = up[(i + 1) % 3] * front[(i + 2) % 3] - up[(i + 2) % 3] * front[(i + 1) % 3];
   return l > 0 && f > 1e-12 && isfinite(l + f);

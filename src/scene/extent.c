@@ -40,7 +40,10 @@ static void visit_shape(const vlShapeDef *d, const vlMat4 *world_from_group, siz
 
 void vl_extent_grow(void *user, const double p[3]) {
   vlExtent *b = user;
-  for (int i = 0; i < 3; i++) b->low[i] = fmin(b->low[i], p[i]), b->high[i] = fmax(b->high[i], p[i]);
+  for (int i = 0; i < 3; i++) {
+    b->low[i] = fmin(b->low[i], p[i]);
+    b->high[i] = fmax(b->high[i], p[i]);
+  }
 }
 
 const vlExtent vl_extent_nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};

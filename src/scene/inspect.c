@@ -13,12 +13,18 @@
 static const double pi = 3.14159265358979323846;
 
 void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
-  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
   size_t n = s->groups.count + 1;
   double(*boxes)[6] = vl_alloc_array(s->context, n, sizeof *boxes);
   if (!boxes) return;
   for (size_t g = 0; g < n; g++)
-    for (int k = 0; k < 3; k++) boxes[g][k] = INFINITY, boxes[g][3 + k] = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+      boxes[g][k] = INFINITY;
+      boxes[g][3 + k] = -INFINITY;
+    }
   for (size_t i = 0; i < s->shapes.count; i++) {
     double a[3], b[3], *box = boxes[s->shapes.items[i].group.index];
     vl_shape_box(&s->shapes.items[i], a, b);
@@ -35,7 +41,10 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
     for (int c = 0; box[0] <= box[3] && c < 8; c++) {
       double p[3] = {box[c & 1 ? 3 : 0], box[c & 2 ? 4 : 1], box[c & 4 ? 5 : 2]}, q[3];
       vl_mat4_point(&m, p, q);
-      for (int k = 0; k < 3; k++) low[k] = q[k] < low[k] ? q[k] : low[k], high[k] = q[k] > high[k] ? q[k] : high[k];
+      for (int k = 0; k < 3; k++) {
+        low[k] = q[k] < low[k] ? q[k] : low[k];
+        high[k] = q[k] > high[k] ? q[k] : high[k];
+      }
     }
   }
   vl_free(s->context, boxes);
@@ -45,7 +54,10 @@ void vl_scene_bounds(const vlScene *s, double low[3], double high[3]) {
 
 static double triangle_area(const double p[3][3]) {
   double e[2][3], n[3];
-  for (int k = 0; k < 3; k++) e[0][k] = p[1][k] - p[0][k], e[1][k] = p[2][k] - p[0][k];
+  for (int k = 0; k < 3; k++) {
+    e[0][k] = p[1][k] - p[0][k];
+    e[1][k] = p[2][k] - p[0][k];
+  }
   n[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
   n[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
   n[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
@@ -120,9 +132,15 @@ uint32_t vl_scene_light_count(const vlScene *s) {
 
 vlResult vl_scene_light_info(const vlScene *s, uint32_t index, vlLightInfo *info) {
   if (!s || !info) return VL_ERROR_ARGUMENT;
-  if (index < s->lights.count) return *info = light(s, &s->lights.items[index]), VL_OK;
+  if (index < s->lights.count) {
+    *info = light(s, &s->lights.items[index]);
+    return VL_OK;
+  }
   size_t left = index - s->lights.count;
   for (size_t i = 0; i < s->shapes.count; i++)
-    if (s->shapes.items[i].emission.index && left-- == 0) return *info = shape_light(s, &s->shapes.items[i]), VL_OK;
+    if (s->shapes.items[i].emission.index && left-- == 0) {
+      *info = shape_light(s, &s->shapes.items[i]);
+      return VL_OK;
+    }
   return VL_ERROR_ARGUMENT;
 }

@@ -26,7 +26,12 @@ static double lit_by(const vlLightDef *l, double strength, const double p[3]) {
   vl_mat4_point(&m, from, at);
   for (int i = 0; i < 3; i++) axis[i] = (double)l->to[i] - from[i];
   vl_mat4_vector(&m, axis, axis);
-  for (int i = 0; i < 3; i++) d[i] = p[i] - at[i], d2 += d[i] * d[i], a2 += axis[i] * axis[i], along += d[i] * axis[i];
+  for (int i = 0; i < 3; i++) {
+    d[i] = p[i] - at[i];
+    d2 += d[i] * d[i];
+    a2 += axis[i] * axis[i];
+    along += d[i] * axis[i];
+  }
   if (!(d2 > 0)) return 0;
   bool outside = l->kind == VL_LIGHT_SPOT && along < vl_precise_cos((double)l->cone_angle) * sqrt(d2 * a2);
   return outside ? 0 : strength / d2;
@@ -38,7 +43,8 @@ static void meter(void *user, const double p[3]) {
   for (size_t i = 0; i < m->scene->lights.count; i++) sum += lit_by(&m->scene->lights.items[i], m->strength[i], p);
   if (!(sum > 0) || !isfinite(sum)) return;
   double bin = PER_STOP * (vl_precise_log2(sum) + STOPS);
-  m->bins[bin < 0 ? 0 : bin >= BINS ? BINS - 1 : (int)bin]++, m->count++;
+  m->bins[bin < 0 ? 0 : bin >= BINS ? BINS - 1 : (int)bin]++;
+  m->count++;
 }
 
 double vl_lamp_illuminance(const vlScene *scene, const vlExtent *boxes) {

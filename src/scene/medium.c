@@ -71,9 +71,16 @@ static bool check_medium(vlScene *scene, const vlMediumDef *d, const vlKindRow *
 /* Copies the members that give values per cell, for kinds with grids. */
 static void copy_cells(const vlMediumDef *from, vlMediumDef *to) {
   bool own = to->kind == VL_MEDIUM_RGB_GRID;
-  if (to->kind == VL_MEDIUM_GRID)
-    to->density = from->density, to->emission_scales = from->emission_scales, to->temperature = from->temperature;
-  if (own) to->rgb_a = from->rgb_a, to->rgb_s = from->rgb_s, to->rgb_emission = from->rgb_emission;
+  if (to->kind == VL_MEDIUM_GRID) {
+    to->density = from->density;
+    to->emission_scales = from->emission_scales;
+    to->temperature = from->temperature;
+  }
+  if (own) {
+    to->rgb_a = from->rgb_a;
+    to->rgb_s = from->rgb_s;
+    to->rgb_emission = from->rgb_emission;
+  }
 }
 
 vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
@@ -84,7 +91,10 @@ vlMediumId vl_scene_add_medium(vlScene *scene, const vlMediumDef *def) {
     return none;
   }
   const vlKindRow *row = vl_kind_row(&vl_medium_family, (int)def->kind);
-  if (!row) return bad(scene, def, "unknown kind"), none;
+  if (!row) {
+    bad(scene, def, "unknown kind");
+    return none;
+  }
   if (def->rgb_absorption && !check_rgb_absorption(scene, def)) return none;
   char what[120];
   snprintf(what, sizeof what, "medium \"%s\"", vl_short_text(def->name).text);

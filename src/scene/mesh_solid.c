@@ -144,11 +144,13 @@ typedef struct Edges {
 static Edge *find_edge(const Edges *e, uint32_t a, uint32_t b) {
   if (a > b) {
     uint32_t t = a;
-    a = b, b = t;
+    a = b;
+    b = t;
   }
   uint32_t i = (uint32_t)mix(((uint64_t)a << 32) | b) & e->mask;
   while (e->slots[i].count && (e->slots[i].a != a || e->slots[i].b != b)) i = (i + 1) & e->mask;
-  e->slots[i].a = a, e->slots[i].b = b;
+  e->slots[i].a = a;
+  e->slots[i].b = b;
   return &e->slots[i];
 }
 
@@ -170,7 +172,10 @@ static bool count_edges(const vlScene *scene, const vlMeshSolid *b, Edges *e) {
  * a point's neighbours lie in the eight cells around the nearest cell corner. */
 static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool *changed) {
   double low[3], high[3], size = 0;
-  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
   uint32_t *same = vl_alloc_array(scene->context, b->corners + 1, sizeof *same);
   uint8_t *open = vl_alloc_zero(scene->context, b->corners + 1, 1);
   size_t opens = 0;
@@ -255,7 +260,10 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
   }
   if (fine) fine = (b->parts = vl_alloc_zero(scene->context, b->part_count + 1, sizeof *b->parts)) != NULL;
   for (uint32_t i = 0; fine && i < b->part_count; i++)
-    for (int k = 0; k < 3; k++) b->parts[i].low[k] = INFINITY, b->parts[i].high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+      b->parts[i].low[k] = INFINITY;
+      b->parts[i].high[k] = -INFINITY;
+    }
   for (uint32_t i = 0; fine && i < b->faces; i++) {
     vlMeshSolidPart *part = &b->parts[b->part[i]];
     const uint32_t *f = b->faces3 + 3 * (size_t)i;

@@ -29,7 +29,9 @@ static const vlSceneInstance *find_instance(const vlScene *scene, uint32_t id) {
 }
 
 static void set_label(vlIdInfo *info, const vlLabel *label) {
-  info->name = label->name, info->path = label->path, info->place = label->place;
+  info->name = label->name;
+  info->path = label->path;
+  info->place = label->place;
 }
 
 vlResult vl_scene_id_info(const vlScene *scene, vlIdKind kind, uint32_t id, vlIdInfo *info) {
@@ -66,7 +68,10 @@ vlResult vl_scene_id_info(const vlScene *scene, vlIdKind kind, uint32_t id, vlId
 bool vl_scene_add_choice(vlScene *scene, vlChoiceKind kind, const char *name, double seconds) {
   if (!vl_scene_copy_string(scene, &name)) return false;
   vlSceneChoice *choice = VL_PUSH(scene->context, &scene->choices);
-  if (!choice) return vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory"), false;
+  if (!choice) {
+    vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
+    return false;
+  }
   *choice = (vlSceneChoice){kind, {name, seconds}};
   return true;
 }
@@ -79,6 +84,9 @@ uint32_t vl_scene_choice_count(const vlScene *scene, vlChoiceKind kind) {
 
 vlResult vl_scene_choice_info(const vlScene *scene, vlChoiceKind kind, uint32_t index, vlChoiceInfo *info) {
   for (size_t i = 0; scene && info && i < scene->choices.count; i++)
-    if (scene->choices.items[i].kind == kind && index-- == 0) return *info = scene->choices.items[i].info, VL_OK;
+    if (scene->choices.items[i].kind == kind && index-- == 0) {
+      *info = scene->choices.items[i].info;
+      return VL_OK;
+    }
   return VL_ERROR_ARGUMENT;
 }

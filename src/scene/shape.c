@@ -42,14 +42,23 @@ static bool check_floats(vlScene *scene, const vlShapeDef *d, const float *v, si
 
 static bool check_motion(vlScene *scene, const vlShapeDef *d) {
   if (!d->positions_close && !d->normals_close) return true;
-  if (d->kind != VL_SHAPE_TRIANGLES) return bad(scene, d, "only vertices of triangles can move"), false;
-  if (!d->positions_close) return bad(scene, d, "normals move, but positions do not"), false;
-  if (!d->normals != !d->normals_close)
-    return bad(scene, d, "normals are needed at both ends of a motion or at neither"), false;
-  if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1]))
-    return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "vertices cannot move from %g to %g seconds", d->times[0],
-                         d->times[1]),
-           false;
+  if (d->kind != VL_SHAPE_TRIANGLES) {
+    bad(scene, d, "only vertices of triangles can move");
+    return false;
+  }
+  if (!d->positions_close) {
+    bad(scene, d, "normals move, but positions do not");
+    return false;
+  }
+  if (!d->normals != !d->normals_close) {
+    bad(scene, d, "normals are needed at both ends of a motion or at neither");
+    return false;
+  }
+  if (!isfinite(d->times[0]) || !isfinite(d->times[1]) || !(d->times[0] < d->times[1])) {
+    vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "vertices cannot move from %g to %g seconds", d->times[0],
+                  d->times[1]);
+    return false;
+  }
   return check_floats(scene, d, d->positions_close, 3, "position at the end") &&
          check_floats(scene, d, d->normals_close, 3, "normal at the end");
 }
@@ -63,8 +72,14 @@ static bool check_colors(vlScene *scene, const vlShapeDef *d) {
 static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
   size_t per = d->kind == VL_SHAPE_TRIANGLES ? 3 : 4;
   const char *face = per == 3 ? "triangle" : "patch";
-  if (d->vertices == 0 || !d->positions) return bad(scene, d, "mesh has no vertices"), false;
-  if (d->faces == 0 || !d->indices) return bad(scene, d, "mesh has no faces"), false;
+  if (d->vertices == 0 || !d->positions) {
+    bad(scene, d, "mesh has no vertices");
+    return false;
+  }
+  if (d->faces == 0 || !d->indices) {
+    bad(scene, d, "mesh has no faces");
+    return false;
+  }
   size_t count = (size_t)d->faces * per;
   uint32_t top = 0;
   for (size_t i = 0; i < count; i++) top = d->indices[i] > top ? d->indices[i] : top;
@@ -84,30 +99,51 @@ static bool check_mesh(vlScene *scene, const vlShapeDef *d) {
 }
 
 static bool check_curves(vlScene *scene, const vlShapeDef *d) {
-  if (d->faces == 0 || !d->positions || !d->widths) return bad(scene, d, "curves have no segments"), false;
-  if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces)
-    return bad(scene, d, "curves need four points for each segment"), false;
-  if (d->curve == VL_CURVE_RIBBON && !d->normals) return bad(scene, d, "ribbons need normals"), false;
+  if (d->faces == 0 || !d->positions || !d->widths) {
+    bad(scene, d, "curves have no segments");
+    return false;
+  }
+  if (d->faces > 0x1fffffff || d->vertices != 4 * d->faces) {
+    bad(scene, d, "curves need four points for each segment");
+    return false;
+  }
+  if (d->curve == VL_CURVE_RIBBON && !d->normals) {
+    bad(scene, d, "ribbons need normals");
+    return false;
+  }
   if (first_not_finite(d->widths, 2 * (size_t)d->faces) < 2 * (size_t)d->faces ||
-      (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces))
-    return bad(scene, d, "a width or normal of a curve is not finite"), false;
+      (d->normals && first_not_finite(d->normals, 6 * (size_t)d->faces) < 6 * (size_t)d->faces)) {
+    bad(scene, d, "a width or normal of a curve is not finite");
+    return false;
+  }
   for (size_t i = 0; i < 2 * (size_t)d->faces; i++)
-    if (d->widths[i] < 0.0f) return bad(scene, d, "a curve's width is negative"), false;
+    if (d->widths[i] < 0.0f) {
+      bad(scene, d, "a curve's width is negative");
+      return false;
+    }
   return check_floats(scene, d, d->positions, 3, "position");
 }
 
 static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
-  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff)
-    return bad(scene, d, "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1"), false;
-  if (d->emission.index) return bad(scene, d, "many spheres as one shape cannot be area lights"), false;
+  if (!d->centers || !d->radii || d->faces == 0 || d->faces > 0x7fffffff) {
+    bad(scene, d, "many spheres: they need centers, radii and a number of faces from 1 to 2^31 - 1");
+    return false;
+  }
+  if (d->emission.index) {
+    bad(scene, d, "many spheres as one shape cannot be area lights");
+    return false;
+  }
   for (size_t i = 0; i < d->faces; i++) {
     const double *c = d->centers + 3 * i;
-    if (!isfinite(c[0] + c[1] + c[2]))
-      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite", i), false;
-    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i]))
-      return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the radius of sphere %zu must be above 0, it is %g", i,
-                           (double)d->radii[i]),
-             false;
+    if (!isfinite(c[0] + c[1] + c[2])) {
+      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the center of sphere %zu is not finite", i);
+      return false;
+    }
+    if (!(d->radii[i] > 0.0f) || !isfinite(d->radii[i])) {
+      vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "the radius of sphere %zu must be above 0, it is %g", i,
+                    (double)d->radii[i]);
+      return false;
+    }
   }
   return true;
 }
@@ -115,19 +151,28 @@ static bool check_spheres(vlScene *scene, const vlShapeDef *d) {
 /* Checks rules that the ranges of the row do not express. */
 static bool check_quadric(vlScene *scene, const vlShapeDef *d) {
   if (d->centers || d->radii) return check_spheres(scene, d);
-  if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius)
-    return bad(scene, d, "inner radius must be less than the radius"), false;
-  if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) return bad(scene, d, "zmin must be below zmax"), false;
-  if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius))
-    return bad(scene, d, "zmin and zmax leave nothing of the sphere"), false;
+  if (d->kind == VL_SHAPE_DISK && d->inner_radius >= d->radius) {
+    bad(scene, d, "inner radius must be less than the radius");
+    return false;
+  }
+  if (d->kind != VL_SHAPE_DISK && !(d->z_min < d->z_max)) {
+    bad(scene, d, "zmin must be below zmax");
+    return false;
+  }
+  if (d->kind == VL_SHAPE_SPHERE && (d->z_min >= d->radius || d->z_max <= -d->radius)) {
+    bad(scene, d, "zmin and zmax leave nothing of the sphere");
+    return false;
+  }
   return true;
 }
 
 static bool check_displacement(vlScene *scene, const vlShapeDef *d) {
   uint32_t index = d->displacement.texture.index;
   if (!index) return true;
-  if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close)
-    return bad(scene, d, "displacement: only triangles at rest can be displaced"), false;
+  if (d->kind != VL_SHAPE_TRIANGLES || d->positions_close) {
+    bad(scene, d, "displacement: only triangles at rest can be displaced");
+    return false;
+  }
   return true;
 }
 
@@ -138,23 +183,44 @@ bool vl_shape_may_emit(const vlShapeDef *d) {
 
 static bool check_shape(vlScene *scene, vlShapeDef *d) {
   const vlKindRow *row = vl_kind_row(&vl_shape_family, (int)d->kind);
-  if (!row) return bad(scene, d, "unknown kind of shape"), false;
+  if (!row) {
+    bad(scene, d, "unknown kind of shape");
+    return false;
+  }
   if (!vl_row_take(scene, row, d, false, d->source, row->name)) return false;
-  if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS))
-    return bad(scene, d, "shapes of this kind cannot be area lights"), false;
-  if (d->group.index > scene->groups.count) return bad(scene, d, "there is no such group"), false;
-  if (d->material.index > scene->materials.count) return bad(scene, d, "there is no such material"), false;
-  if (d->emission.index > scene->emissions.count) return bad(scene, d, "there is no such emission"), false;
-  if (d->inside.index > scene->media.count || d->outside.index > scene->media.count)
-    return bad(scene, d, "there is no such medium"), false;
+  if (d->emission.index && !(row->traits & VL_SHAPE_TRAIT_EMITS)) {
+    bad(scene, d, "shapes of this kind cannot be area lights");
+    return false;
+  }
+  if (d->group.index > scene->groups.count) {
+    bad(scene, d, "there is no such group");
+    return false;
+  }
+  if (d->material.index > scene->materials.count) {
+    bad(scene, d, "there is no such material");
+    return false;
+  }
+  if (d->emission.index > scene->emissions.count) {
+    bad(scene, d, "there is no such emission");
+    return false;
+  }
+  if (d->inside.index > scene->media.count || d->outside.index > scene->media.count) {
+    bad(scene, d, "there is no such medium");
+    return false;
+  }
   if (!check_displacement(scene, d)) return false;
   const double *m = d->group_from_shape;
   for (int i = 0; i < 16; i++)
-    if (!isfinite(m[i])) return bad(scene, d, "transform of the shape is not finite"), false;
+    if (!isfinite(m[i])) {
+      bad(scene, d, "transform of the shape is not finite");
+      return false;
+    }
   double det =
       m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  if (det == 0.0 || !isfinite(det))
-    return bad(scene, d, "transform of the shape is singular: it flattens the shape"), false;
+  if (det == 0.0 || !isfinite(det)) {
+    bad(scene, d, "transform of the shape is singular: it flattens the shape");
+    return false;
+  }
   if (row->traits & VL_SHAPE_TRAIT_MESH) return check_mesh(scene, d);
   if (row->traits & VL_SHAPE_TRAIT_QUADRIC) return check_quadric(scene, d);
   return d->kind != VL_SHAPE_CURVES || check_curves(scene, d); /* for other kinds the row is enough */
@@ -173,7 +239,10 @@ static vlShapeId push_shape(vlScene *scene, const vlShapeDef *d) {
 }
 
 static void drop_unused(vlShapeDef *d) {
-  if (d->kind != VL_SHAPE_SPHERE) d->centers = NULL, d->radii = NULL;
+  if (d->kind != VL_SHAPE_SPHERE) {
+    d->centers = NULL;
+    d->radii = NULL;
+  }
   if (vl_shape_is_mesh(d->kind)) {
     d->widths = NULL;
     return;

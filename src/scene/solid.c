@@ -19,16 +19,22 @@ vlShapeDef vl_shape_one_sphere(const vlShapeDef *d, uint32_t k) {
   vlShapeDef one = *d;
   vlMat4 m = vl_mat4_multiply(vl_mat4_load(d->group_from_shape), vl_mat4_translate(c[0], c[1], c[2]));
   memcpy(one.group_from_shape, m.m, sizeof one.group_from_shape);
-  one.radius = one.z_max = d->radii[k], one.z_min = -one.radius;
+  one.radius = one.z_max = d->radii[k];
+  one.z_min = -one.radius;
   one.phi_max = 2.0f * 3.14159265358979f;
-  one.centers = NULL, one.radii = NULL, one.faces = 0;
+  one.centers = NULL;
+  one.radii = NULL;
+  one.faces = 0;
   return one;
 }
 
 void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
   double p[3], q[3];
-  for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    low[k] = INFINITY;
+    high[k] = -INFINITY;
+  }
   if (d->vertices && d->positions) {
     for (uint32_t i = 0; i < d->vertices; i++) {
       for (int k = 0; k < 3; k++) p[k] = d->positions[3 * (size_t)i + (size_t)k];
@@ -41,7 +47,8 @@ void vl_shape_box(const vlShapeDef *d, double low[3], double high[3]) {
     double a[3], b[3];
     vlShapeDef one = vl_shape_one_sphere(d, i);
     vl_shape_box(&one, a, b);
-    grow(low, high, a), grow(low, high, b);
+    grow(low, high, a);
+    grow(low, high, b);
   }
   if (d->centers) return;
   double a[3], b[3];

@@ -71,7 +71,9 @@ static void transform_light(vlLightDef *light, const Similarity *s) {
   double position[3] = {m[3], m[7], m[11]}, moved[3];
   vl_mat4_point(&s->matrix, position, moved);
   apply(&s->turn, m);
-  m[3] = moved[0], m[7] = moved[1], m[11] = moved[2];
+  m[3] = moved[0];
+  m[7] = moved[1];
+  m[11] = moved[2];
   for (int i = 0; i < 3; i++) {
     light->from[i] = (float)(light->from[i] * s->scale);
     light->to[i] = (float)(light->to[i] * s->scale);

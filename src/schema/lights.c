@@ -105,7 +105,8 @@ vlLightDef vl_default_light_def(vlLightKind kind) {
 typedef double Power(const vlLightDef *def, double luminance, double radius);
 
 static double point_power(const vlLightDef *def, double luminance, double radius) {
-  (void)def, (void)radius;
+  (void)def;
+  (void)radius;
   return 4 * PI * luminance;
 }
 
@@ -126,12 +127,16 @@ static double infinite_power(const vlLightDef *def, double luminance, double rad
 }
 
 static double goniometric_power(const vlLightDef *def, double luminance, double radius) {
-  (void)def, (void)luminance, (void)radius;
+  (void)def;
+  (void)luminance;
+  (void)radius;
   return NAN;
 }
 
 static double projection_power(const vlLightDef *def, double luminance, double radius) {
-  (void)def, (void)luminance, (void)radius;
+  (void)def;
+  (void)luminance;
+  (void)radius;
   return NAN;
 }
 

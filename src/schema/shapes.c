@@ -124,8 +124,10 @@ VL_KIND_FAMILY(vl_shape_family, VL_SHAPE_KINDS, ROW, "shapes", "shape", "Shape")
 
 static void round_box(const vlShapeDef *d, double z0, double z1, double low[3], double high[3]) {
   double r = d->radius;
-  low[0] = low[1] = -r, low[2] = z0;
-  high[0] = high[1] = r, high[2] = z1;
+  low[0] = low[1] = -r;
+  low[2] = z0;
+  high[0] = high[1] = r;
+  high[2] = z1;
 }
 
 static void sphere_box(const vlShapeDef *d, double low[3], double high[3]) {
@@ -142,7 +144,10 @@ static void cylinder_box(const vlShapeDef *d, double low[3], double high[3]) {
 }
 
 static void points_box(const vlShapeDef *d, double low[3], double high[3]) {
-  for (int k = 0; k < 3; k++) low[k] = (double)INFINITY, high[k] = -(double)INFINITY;
+  for (int k = 0; k < 3; k++) {
+    low[k] = (double)INFINITY;
+    high[k] = -(double)INFINITY;
+  }
   for (size_t i = 0; i < d->vertices; i++)
     for (int k = 0; k < 3; k++) {
       double x = d->positions[3 * i + (size_t)k];

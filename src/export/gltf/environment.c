@@ -47,8 +47,14 @@ static void look_octahedral(const vlMipmap *map, vlVec3 d, float out[3]) {
   out[0] = out[1] = out[2] = 0;
   for (int k = 0; k < 4; k++) {
     int a = i + (k & 1), b = j + (k >> 1);
-    if (a < 0 || a >= n) a = a < 0 ? 0 : n - 1, b = n - 1 - b;
-    if (b < 0 || b >= n) b = b < 0 ? 0 : n - 1, a = n - 1 - a;
+    if (a < 0 || a >= n) {
+      a = a < 0 ? 0 : n - 1;
+      b = n - 1 - b;
+    }
+    if (b < 0 || b >= n) {
+      b = b < 0 ? 0 : n - 1;
+      a = n - 1 - a;
+    }
     float w = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
     for (uint32_t c = 0; c < 3; c++)
       out[c] += w * vl_mip_texel(map, 0, (uint32_t)a, (uint32_t)b, map->channels < 3 ? 0 : c);
@@ -136,7 +142,10 @@ static bool add_sky(Cube *cube, const vlLightDef *d) {
     for (int c = 0; c < 3; c++) sky.rgb[c] *= d->scale * (float)lux;
   }
   Sky *slot = VL_PUSH(cube->x->context, &cube->skies);
-  if (slot) return *slot = sky, true;
+  if (slot) {
+    *slot = sky;
+    return true;
+  }
   vl_mipmap_destroy(sky.map);
   return vl_export_fail(cube->x, VL_ERROR_MEMORY, "out of memory");
 }
@@ -148,7 +157,8 @@ static const float *texel_at(const Level *level, vlVec3 d) {
   const uint32_t face = vl_cube_map_face(d, &s, &t);
   const int n = (int)level->side;
   int i = (int)((s + 1) * 0.5f * (float)n), j = (int)((t + 1) * 0.5f * (float)n);
-  i = i < 0 ? 0 : i >= n ? n - 1 : i, j = j < 0 ? 0 : j >= n ? n - 1 : j;
+  i = i < 0 ? 0 : i >= n ? n - 1 : i;
+  j = j < 0 ? 0 : j >= n ? n - 1 : j;
   return level->texels + 3 * (((size_t)face * level->side + (size_t)j) * level->side + (size_t)i);
 }
 
@@ -280,10 +290,14 @@ static json_t *irradiance(const Cube *cube, double intensity) {
 static json_int_t put_face(vlExport *x, const Level *level, uint32_t face, double intensity) {
   static const char *const names[] = {"R", "G", "B", "A"};
   vlImageDef def = vl_default_image_def(level->side, level->side, 4);
-  def.type = VL_PIXEL_U16, def.encoding = VL_ENCODING_SRGB, def.names = names;
+  def.type = VL_PIXEL_U16;
+  def.encoding = VL_ENCODING_SRGB;
+  def.names = names;
   vlImage *image = NULL;
-  if (vl_image_create(x->context, &def, &image) != VL_OK)
-    return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory"), -1;
+  if (vl_image_create(x->context, &def, &image) != VL_OK) {
+    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return -1;
+  }
   const size_t count = (size_t)level->side * level->side;
   uint16_t *to = vl_image_pixels(image);
   for (size_t i = 0; i < count; i++) {
@@ -321,7 +335,10 @@ static bool put_cube(const Cube *cube, json_t *scene) {
     json_array_append_new(levels, faces);
     for (uint32_t face = 0; face < 6; face++) {
       const json_int_t index = put_face(x, &cube->lobes[k], face, intensity);
-      if (index < 0) return json_decref(levels), false;
+      if (index < 0) {
+        json_decref(levels);
+        return false;
+      }
       json_array_append_new(faces, json_integer(index));
     }
   }

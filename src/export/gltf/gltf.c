@@ -68,7 +68,10 @@ static json_int_t put_indices(vlExport *x, const vlExportMesh *m, bool turned) {
   size_t count = 3 * (size_t)m->faces;
   bool small = m->vertices < 65535;
   uint32_t *wide = vl_alloc_array(x->context, count, sizeof *wide);
-  if (!wide) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory"), -1;
+  if (!wide) {
+    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return -1;
+  }
   uint16_t *narrow = (uint16_t *)wide;
   for (size_t i = 0; i < count; i++) {
     size_t from = turned && i % 3 ? i + (i % 3 == 1 ? 1 : (size_t)-1) : i;
@@ -94,7 +97,10 @@ static void make_unit(const float *v, float sign, float *to) {
 static float *vectors(vlExport *x, const vlExportMesh *m, bool tangents, bool turned) {
   size_t per = tangents ? 4 : 3;
   float *to = vl_alloc_array(x->context, m->vertices, per * sizeof *to);
-  if (!to) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory"), NULL;
+  if (!to) {
+    vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+    return NULL;
+  }
   for (size_t i = 0; i < m->vertices; i++) {
     make_unit((tangents ? m->tangents : m->normals) + 3 * i, turned && !tangents ? -1 : 1, to + per * i);
     if (tangents) to[4 * i + 3] = m->signs && m->signs[i] < 0 ? -1.0f : 1.0f;
@@ -124,7 +130,10 @@ static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attribute
     if (!m->uvs[k]) break;
     float *v = vl_alloc_array(x->context, m->vertices, 2 * sizeof *v);
     if (!v) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
-    for (size_t i = 0; i < m->vertices; i++) v[2 * i] = m->uvs[k][2 * i], v[2 * i + 1] = 1.0f - m->uvs[k][2 * i + 1];
+    for (size_t i = 0; i < m->vertices; i++) {
+      v[2 * i] = m->uvs[k][2 * i];
+      v[2 * i + 1] = 1.0f - m->uvs[k][2 * i + 1];
+    }
     put_attribute(x, attributes, sets[k], v, m, 2);
     vl_free(x->context, v);
   }
@@ -214,8 +223,11 @@ static bool is_sheared(const double m[16]) {
   for (int a = 0; a < 3; a++) {
     int b = (a + 1) % 3;
     double dot = 0, aa = 0, bb = 0;
-    for (int i = 0; i < 3; i++)
-      dot += m[4 * i + a] * m[4 * i + b], aa += m[4 * i + a] * m[4 * i + a], bb += m[4 * i + b] * m[4 * i + b];
+    for (int i = 0; i < 3; i++) {
+      dot += m[4 * i + a] * m[4 * i + b];
+      aa += m[4 * i + a] * m[4 * i + a];
+      bb += m[4 * i + b] * m[4 * i + b];
+    }
     if (!(fabs(dot) <= 1e-6 * sqrt(aa * bb))) return true;
   }
   return false;
@@ -343,12 +355,16 @@ static bool write_files(vlExport *x) {
   if (x->binary) {
     vlBytes file = {0};
     uint32_t whole = (uint32_t)(12 + 8 + length + padding + (size ? 8 + size : 0));
-    put_little(x, &file, 0x46546C67), put_little(x, &file, 2), put_little(x, &file, whole);
-    put_little(x, &file, (uint32_t)(length + padding)), put_little(x, &file, 0x4E4F534A);
+    put_little(x, &file, 0x46546C67);
+    put_little(x, &file, 2);
+    put_little(x, &file, whole);
+    put_little(x, &file, (uint32_t)(length + padding));
+    put_little(x, &file, 0x4E4F534A);
     vl_bytes_put(x->context, &file, text, length);
     vl_bytes_put(x->context, &file, "   ", padding);
     if (size) {
-      put_little(x, &file, (uint32_t)size), put_little(x, &file, 0x004E4942);
+      put_little(x, &file, (uint32_t)size);
+      put_little(x, &file, 0x004E4942);
       vl_bytes_put(x->context, &file, x->buffer.data.items, size);
     }
     fine = file.full ? vl_export_fail(x, VL_ERROR_MEMORY, "out of memory")

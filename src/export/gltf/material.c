@@ -281,7 +281,8 @@ static void put_subsurface(vlExport *x, json_t *material, const vlMaterialDef *m
 
 static void put_grey(vlExport *x, json_t *material, const vlMaterialDef *m, vlMediumId inside, double coverage) {
   const vlSpectrumInput grey = vl_spectrum_input(vl_spectrum_constant(0.5f));
-  (void)m, (void)inside;
+  (void)m;
+  (void)inside;
   vl_export_lose(x, "materials of kinds that glTF has not: grey");
   put_base(x, material, &grey, coverage, 0, 1);
 }

@@ -17,7 +17,8 @@ static bool is_file_parameter(const vlParameter *p) {
 static bool prepare_file(vlExport *x, const vlParameter *p, const char *path, char name[300]) {
   vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
   t.path = path;
-  t.encoding = VL_ENCODING_LINEAR, t.encoding_given = true;
+  t.encoding = VL_ENCODING_LINEAR;
+  t.encoding_given = true;
   return vl_pbrt_image(x, &t, strcmp(p->name, "normalmap") == 0 ? VL_PBRT_COLORS : VL_PBRT_ANY, name);
 }
 

@@ -85,7 +85,8 @@ static bool put_camera(vlExport *x) {
   vlResult r = vl_camera_write(x->context, path, &def, &record, &error);
   if (r == VL_ERROR_UNSUPPORTED) {
     vl_export_lose(x, "the camera: %.120s", error.message);
-    def.drop = beyond, def.drop_count = sizeof beyond / sizeof *beyond;
+    def.drop = beyond;
+    def.drop_count = sizeof beyond / sizeof *beyond;
     r = vl_camera_write(x->context, path, &def, &record, &error);
   }
   if (r == VL_OK) r = vl_file_read_given(x->context, path, false, &text, &size, &error);
@@ -167,7 +168,8 @@ static bool put_light(vlExport *x, const vlLightDef *d) {
   char name[300] = "";
   if (d->path || d->image) {
     vlTextureDef t = vl_default_texture_def(VL_TEXTURE_IMAGE, true);
-    t.path = d->path, t.image = d->image;
+    t.path = d->path;
+    t.image = d->image;
     if (!vl_pbrt_image(x, &t, VL_PBRT_COLORS, name)) return false;
   }
   PUT("AttributeBegin\n");

@@ -70,7 +70,10 @@ static bool repair(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, const ch
 bool vl_pbrt_image(vlExport *x, const vlTextureDef *t, vlPbrtFile kind, char name[300]) {
   const uint32_t variant = (uint32_t)kind + 3 * (t->encoding_given ? 1 + (uint32_t)t->encoding : 0);
   vlExportImage *known = find_image(x, t, variant);
-  if (known) return memcpy(name, known->name, sizeof known->name), true;
+  if (known) {
+    memcpy(name, known->name, sizeof known->name);
+    return true;
+  }
   char *bytes = NULL;
   size_t size = 0;
   const char *suffix = ".exr", *dot = t->path ? strrchr(t->path, '.') : NULL;
@@ -154,7 +157,10 @@ static bool work(vlExport *x, const vlTextureDef *t, Change change, char name[30
                          change.lost, change.metal ? 1 : 0};
   for (size_t i = 0; i < sizeof key; i++) variant = (variant ^ ((const uint8_t *)key)[i]) * 16777619u | 16u;
   vlExportImage *known = find_image(x, t, variant);
-  if (known) return memcpy(name, known->name, sizeof known->name), true;
+  if (known) {
+    memcpy(name, known->name, sizeof known->name);
+    return true;
+  }
   vlImage *image = t->image ? NULL : vl_export_decode(x, t), *made = NULL;
   const vlImage *from = t->image ? t->image : image;
   if (!from) return false;

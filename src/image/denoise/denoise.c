@@ -66,7 +66,8 @@ static uint32_t tiles_down(const vlDenoisePlanes *p) {
 
 static vlResult make_planes(Denoise *d) {
   vlDenoisePlanes *p = &d->planes;
-  p->width = d->image->width, p->height = d->image->height;
+  p->width = d->image->width;
+  p->height = d->image->height;
   size_t stride = (size_t)tiles_across(p) * VL_DENOISE_TILE_X + 2 * VL_DENOISE_BORDER;
   size_t size = stride * ((size_t)tiles_down(p) * VL_DENOISE_TILE_Y + 2 * VL_DENOISE_BORDER);
   p->stride = (ptrdiff_t)stride;
@@ -75,11 +76,17 @@ static vlResult make_planes(Denoise *d) {
   if (!d->memory || !d->scratch) return VL_ERROR_MEMORY;
   float *at = d->memory + VL_DENOISE_BORDER * stride + VL_DENOISE_BORDER;
   for (int c = 0; c < COLOR; c++) {
-    p->color[c] = at, at += size;
-    p->variance[c] = at, at += size;
-    p->result[c] = at, at += size;
+    p->color[c] = at;
+    at += size;
+    p->variance[c] = at;
+    at += size;
+    p->result[c] = at;
+    at += size;
   }
-  for (int k = 0; k < VL_DENOISE_FEATURES; k++) p->feature[k] = at, at += size;
+  for (int k = 0; k < VL_DENOISE_FEATURES; k++) {
+    p->feature[k] = at;
+    at += size;
+  }
   p->valid = at;
   return VL_OK;
 }
@@ -140,8 +147,10 @@ static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], p
       for (int dx = -reach; dx <= reach; dx++) {
         ptrdiff_t q = at + dy * p->stride + dx;
         count += p->valid[q];
-        for (int c = 0; c < COLOR && p->valid[q] != 0.0f; c++)
-          sums[c] += plane[c][q], squares[c] += plane[c][q] * plane[c][q];
+        for (int c = 0; c < COLOR && p->valid[q] != 0.0f; c++) {
+          sums[c] += plane[c][q];
+          squares[c] += plane[c][q] * plane[c][q];
+        }
       }
   for (int c = 0; c < COLOR; c++) {
     mean[c] = count > 0.0f ? sums[c] / count : 0.0f;
@@ -154,7 +163,10 @@ static void nearest_valid(const vlDenoisePlanes *p, float *const plane[COLOR], p
 static void fill(const vlDenoisePlanes *p, ptrdiff_t at) {
   float mean[COLOR], variance[COLOR];
   nearest_valid(p, p->color, at, mean, variance);
-  for (int c = 0; c < COLOR; c++) p->color[c][at] = mean[c], p->variance[c][at] = variance[c];
+  for (int c = 0; c < COLOR; c++) {
+    p->color[c][at] = mean[c];
+    p->variance[c][at] = variance[c];
+  }
 }
 
 static void fill_row(void *user, uint32_t y, uint32_t worker) {
@@ -183,7 +195,8 @@ static float third_neighbour(const vlDenoisePlanes *p, ptrdiff_t at) {
       for (int k = 0; k < RANK; k++)
         if (v > top[k]) {
           float less = top[k];
-          top[k] = v, v = less;
+          top[k] = v;
+          v = less;
         }
     }
   return top[RANK - 1];
@@ -290,7 +303,10 @@ static vlResult denoise(Denoise *d, vlImage *clean, vlError *error) {
     vl_parallel_for(context, p->height, fill_row, d);
     vl_parallel_for(context, p->height, cap_row, d);
     vl_parallel_for(context, p->height, scale_row, d);
-    for (int c = 0; c < COLOR; c++) mirror_plane(p, p->color[c]), mirror_plane(p, p->variance[c]);
+    for (int c = 0; c < COLOR; c++) {
+      mirror_plane(p, p->color[c]);
+      mirror_plane(p, p->variance[c]);
+    }
     vl_parallel_for(context, tiles_across(p) * tiles_down(p), fit_tile, d);
     for (uint32_t y = 0; y < p->height; y++) write_row(d, y, clean);
   }

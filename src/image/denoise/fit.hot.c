@@ -107,8 +107,12 @@ static void set_neighbour(const vlDenoisePlanes *p, Group *q, int g, const float
   }
   float ox = (float)dx * (1.0f / R), oy = (float)dy * (1.0f / R);
   VL_SIMD for (int i = 0; i < N; i++) {
-    q->value[g][F][i] = ox, q->value[g][F + 1][i] = oy, q->value[g][F + 2][i] = 1.0f;
-    q->weighted[g][F][i] = w[i] * ox, q->weighted[g][F + 1][i] = w[i] * oy, q->weighted[g][F + 2][i] = w[i];
+    q->value[g][F][i] = ox;
+    q->value[g][F + 1][i] = oy;
+    q->value[g][F + 2][i] = 1.0f;
+    q->weighted[g][F][i] = w[i] * ox;
+    q->weighted[g][F + 1][i] = w[i] * oy;
+    q->weighted[g][F + 2][i] = w[i];
   }
   for (int c = 0; c < 3; c++) memcpy(q->value[g][U + c], p->color[c] + to, N * sizeof(float));
 }

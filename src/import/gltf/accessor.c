@@ -78,8 +78,12 @@ static uint32_t read_uint(const uint8_t *p, uint32_t type) {
   uint16_t s;
   uint32_t i;
   if (type == VL_GLTF_UBYTE) return *p;
-  if (type == VL_GLTF_USHORT) return memcpy(&s, p, 2), s;
-  return memcpy(&i, p, 4), i;
+  if (type == VL_GLTF_USHORT) {
+    memcpy(&s, p, 2);
+    return s;
+  }
+  memcpy(&i, p, 4);
+  return i;
 }
 
 const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_t index) {
@@ -99,29 +103,41 @@ const vlGltfAccessor *vl_gltf_accessor(vlGltf *g, const vlGltfPlace *from, size_
   a->components = component_count(type, &a->matrix);
   a->type = component <= VL_GLTF_FLOAT ? (uint32_t)component : 0;
   size_t one = component_size(a->type);
-  if (!a->components)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "type"),
-                        "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
-                        vl_short_text(type).text),
-           NULL;
-  if (!one)
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126",
-                        component),
-           NULL;
-  if (a->count == 0) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1"), NULL;
-  if (a->count > UINT32_MAX) return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count), NULL;
-  if (a->matrix && one < 4) return vl_gltf_fail(g, at, "matrices of small integers are not supported"), NULL;
+  if (!a->components) {
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "type"), "unknown type \"%s\" (known: SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4)",
+                 vl_short_text(type).text);
+    return NULL;
+  }
+  if (!one) {
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "componentType"), "%zu is not 5120, 5121, 5122, 5123, 5125 or 5126", component);
+    return NULL;
+  }
+  if (a->count == 0) {
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "must be at least 1");
+    return NULL;
+  }
+  if (a->count > UINT32_MAX) {
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu is too many", a->count);
+    return NULL;
+  }
+  if (a->matrix && one < 4) {
+    vl_gltf_fail(g, at, "matrices of small integers are not supported");
+    return NULL;
+  }
   size_t size = one * a->components;
   a->stride = view >= 0 && g->views[view].stride ? g->views[view].stride : size;
-  if (a->stride < size)
-    return vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size, a->stride), NULL;
+  if (a->stride < size) {
+    vl_gltf_fail(g, at, "its elements of %zu bytes overlap at a byteStride of %zu", size, a->stride);
+    return NULL;
+  }
   if (view >= 0) {
     if (!fits(g, at, view, offset, a->count, size, a->stride)) return NULL;
     a->data = g->views[view].data + offset;
   } else if (a->count >
              g->total +
                  65536) { /* without a view all elements are zero, so the file's size does not limit their number */
-    return vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count), NULL;
+    vl_gltf_fail(g, VL_GLTF_KEY(at, "count"), "%zu zeros are out of proportion to the file", a->count);
+    return NULL;
   }
   if (!read_sparse(g, at, json, a, size)) return NULL;
   for (size_t i = 0; i < a->sparse_count; i++) {
@@ -211,11 +227,16 @@ float *vl_gltf_load_floats(vlGltf *g, const vlGltfPlace *at, size_t index, uint3
                            size_t *read) {
   const vlGltfAccessor *a = vl_gltf_accessor(g, at, index);
   if (!a) return NULL;
-  if (count && a->count != count)
-    return vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count), NULL;
+  if (count && a->count != count) {
+    vl_gltf_fail(g, at, "accessors[%zu] has %zu elements, %zu are needed", index, a->count, count);
+    return NULL;
+  }
   if (!vl_gltf_spend(g, at, (uint64_t)a->count * components * 4)) return NULL;
   float *out = vl_alloc_array(g->context, a->count, components * sizeof(float));
-  if (!out) return vl_gltf_fail_memory(g), NULL;
+  if (!out) {
+    vl_gltf_fail_memory(g);
+    return NULL;
+  }
   if (components > a->components)
     for (size_t i = 0; i < a->count * components; i++) out[i] = i % components == 3 ? 1.0f : 0.0f;
   vl_gltf_read_floats(a, components, out);

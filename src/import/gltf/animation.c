@@ -55,7 +55,10 @@ static void slerp(const float *a, const float *b, double u, double out[4]) {
   double sign = dot < 0 ? -1 : 1;
   dot = fmin(fabs(dot), 1);
   double angle = vl_precise_acos(dot), s = vl_precise_sin(angle), wa = 1 - u, wb = u;
-  if (s > 1e-6) wa = vl_precise_sin((1 - u) * angle) / s, wb = vl_precise_sin(u * angle) / s;
+  if (s > 1e-6) {
+    wa = vl_precise_sin((1 - u) * angle) / s;
+    wb = vl_precise_sin(u * angle) / s;
+  }
   for (int i = 0; i < 4; i++) q[i] = wa * a[i] + sign * wb * b[i];
   memcpy(out, q, sizeof q);
 }

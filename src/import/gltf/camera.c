@@ -11,7 +11,10 @@ enum { HEIGHT = 720, SIDE = 1280 }; /* default image size: glTF has no resolutio
 static void set_size(vlGltf *g, double aspect) {
   vlSceneDefs *s = vl_scene_defs(g->scene);
   double width = SIDE, height = SIDE / aspect;
-  if (height > HEIGHT) height = HEIGHT, width = HEIGHT * aspect;
+  if (height > HEIGHT) {
+    height = HEIGHT;
+    width = HEIGHT * aspect;
+  }
   s->film.width = width >= 1 ? (uint32_t)(width + 0.5) : 1;
   s->film.height = height >= 1 ? (uint32_t)(height + 0.5) : 1;
   const uint32_t whole[4] = {0, 0, s->film.width, s->film.height};
@@ -40,11 +43,15 @@ static bool take_orthographic(vlGltf *g, const vlGltfPlace *at, const json_t *js
   if (!vl_gltf_number(g, at, json, "xmag", &x) || !vl_gltf_number(g, at, json, "ymag", &y) ||
       !vl_gltf_number(g, at, json, "znear", &near_plane) || !vl_gltf_number(g, at, json, "zfar", &far_plane))
     return false;
-  x = fabs(x), y = fabs(y); /* some exporters write negative values */
+  x = fabs(x);
+  y = fabs(y); /* some exporters write negative values */
   if (!(x > 0 && y > 0 && x / y > 1e-3 && x / y < 1e3)) return vl_gltf_fail(g, at, "needs xmag and ymag above 0");
   set_size(g, x / y);
   def->projection = VL_PROJECTION_ORTHOGRAPHIC;
-  def->screen_min_x = -x, def->screen_max_x = x, def->screen_min_y = -y, def->screen_max_y = y;
+  def->screen_min_x = -x;
+  def->screen_max_x = x;
+  def->screen_min_y = -y;
+  def->screen_max_y = y;
   def->near_plane = near_plane > 0 ? near_plane : 0;
   def->far_plane = far_plane > def->near_plane ? far_plane : INFINITY;
   return true;
@@ -78,13 +85,17 @@ static bool take_camera(vlGltf *g, size_t camera, const vlGltfNode *node) {
     return false;
   def.has_matrix = true;
   set_pose(&node->world, def.world_from_camera);
-  if (g->moves) def.shutter_open = 0, def.shutter_close = g->close - g->open;
+  if (g->moves) {
+    def.shutter_open = 0;
+    def.shutter_close = g->close - g->open;
+  }
   def.has_matrix_close = vl_gltf_node_moves(g, node);
   if (def.has_matrix_close) set_pose(&node->keys[VL_GLTF_KEYS - 1], def.world_from_camera_close);
   if (!(fabs(vl_mat4_determinant3(vl_mat4_load(def.world_from_camera))) > 1e-9))
     return vl_gltf_fail(g, at, "its node's transform is singular");
   vlSceneDefs *s = vl_scene_defs(g->scene);
-  def.width = s->film.width, def.height = s->film.height;
+  def.width = s->film.width;
+  def.height = s->film.height;
   s->camera = def;
   s->camera_source.file = NULL;
   s->camera_missing = false;

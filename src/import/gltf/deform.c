@@ -98,7 +98,10 @@ static bool joint_matrices(vlGltf *g, size_t skin, vlMat4 **matrices, size_t *co
     if (!vl_mat4_is_finite(m[i])) ok = vl_gltf_fail(g, VL_GLTF_ITEM(at, "joints", i), "its matrix is not finite");
   }
   vl_free(g->context, columns);
-  if (!ok) vl_free(g->context, m), m = NULL;
+  if (!ok) {
+    vl_free(g->context, m);
+    m = NULL;
+  }
   *matrices = m;
   return ok;
 }

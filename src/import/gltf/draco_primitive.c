@@ -28,7 +28,9 @@ static bool fill(vlGltf *g, const vlGltfPlace *at, const vlDraco *mesh, size_t i
     vl_draco_indices(mesh, (uint32_t *)(void *)data);
   else if (!vl_draco_values(mesh, (uint32_t)id, type, a->components, data))
     return vl_gltf_fail(g, at, "the compressed mesh has no attribute %d of this type", (int)id);
-  a->data = data, a->type = type, a->stride = size * a->components;
+  a->data = data;
+  a->type = type;
+  a->stride = size * a->components;
   return true;
 }
 

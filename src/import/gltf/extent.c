@@ -13,7 +13,8 @@ static bool bounds(const json_t *accessor, double low[3], double high[3]) {
   for (size_t i = 0; i < 3; i++) {
     const json_t *a = json_array_get(min, i), *b = json_array_get(max, i);
     if (!json_is_number(a) || !json_is_number(b)) return false;
-    low[i] = json_number_value(a), high[i] = json_number_value(b);
+    low[i] = json_number_value(a);
+    high[i] = json_number_value(b);
     if (!(fabs(low[i]) < 1e30) || !(fabs(high[i]) < 1e30)) return false;
   }
   return true;
@@ -23,7 +24,10 @@ static void grow(const vlMat4 *world, const double low[3], const double high[3],
   for (int k = 0; k < 8; k++) {
     double p[3] = {k & 1 ? low[0] : high[0], k & 2 ? low[1] : high[1], k & 4 ? low[2] : high[2]}, q[3];
     vl_mat4_point(world, p, q);
-    for (int i = 0; i < 3; i++) box[i] = fmin(box[i], q[i]), box[3 + i] = fmax(box[3 + i], q[i]);
+    for (int i = 0; i < 3; i++) {
+      box[i] = fmin(box[i], q[i]);
+      box[3 + i] = fmax(box[3 + i], q[i]);
+    }
   }
 }
 

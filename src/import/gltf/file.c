@@ -29,8 +29,14 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
     if (size > end - at - 8)
       return vl_gltf_fail(g, NULL, "broken .glb: chunk %d of %zu bytes at byte %zu goes past the end", k, size, at);
     if (k == 0 && kind != 0x4E4F534A) return vl_gltf_fail(g, NULL, "broken .glb: its first chunk is not JSON");
-    if (k == 0) *json = (const char *)g->file + at + 8, *json_size = size;
-    if (kind == 0x004E4942 && !g->chunk) g->chunk = g->file + at + 8, g->chunk_size = size;
+    if (k == 0) {
+      *json = (const char *)g->file + at + 8;
+      *json_size = size;
+    }
+    if (kind == 0x004E4942 && !g->chunk) {
+      g->chunk = g->file + at + 8;
+      g->chunk_size = size;
+    }
     at += 8 + size;
     at = (at + 3) & ~(size_t)3;
   }
@@ -40,7 +46,10 @@ static bool split_glb(vlGltf *g, const char **json, size_t *json_size) {
 
 static bool parse(vlGltf *g, const char *text, size_t size) {
   while (size && (text[size - 1] == 0 || text[size - 1] == ' ')) size--; /* padding */
-  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) text += 3, size -= 3;
+  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
+    text += 3;
+    size -= 3;
+  }
   json_error_t error;
   g->root = vl_json_parse(text, size, 0, &error);
   if (!g->root) {
@@ -119,8 +128,10 @@ bool vl_gltf_open(vlGltf *g) {
 
 void vl_gltf_close(vlGltf *g) {
   json_decref(g->root);
-  for (size_t i = 0; g->nodes && i < g->node_count; i++)
-    vl_free(g->context, g->nodes[i].weights), vl_free(g->context, g->nodes[i].weights_close);
+  for (size_t i = 0; g->nodes && i < g->node_count; i++) {
+    vl_free(g->context, g->nodes[i].weights);
+    vl_free(g->context, g->nodes[i].weights_close);
+  }
   vl_gltf_free_labels(g);
   vl_free(g->context, g->buffers);
   vl_free(g->context, g->views);
@@ -181,7 +192,10 @@ static bool unpack(vlGltf *g, const vlGltfPlace *at, const char *uri, const uint
     if (digit < 0) return vl_gltf_fail(g, at, "broken data: uri, byte %zu is not of base64", (size_t)(s - uri));
     bits = (bits << 6 | (uint32_t)digit) & 0xffffff;
     held += 6;
-    if (held >= 8) held -= 8, block[n++] = (uint8_t)(bits >> held);
+    if (held >= 8) {
+      held -= 8;
+      block[n++] = (uint8_t)(bits >> held);
+    }
   }
   *size = n;
   return true;

@@ -61,7 +61,10 @@ static bool frame_node(vlGltf *g, size_t node, Box *boxes, bool first) {
   if (!n->reached || !mesh) return true;
   const bool deforms = vl_gltf_deforms(g, n);
   if (first || deforms) {
-    for (int k = 0; k < 3; k++) boxes[node].low[k] = INFINITY, boxes[node].high[k] = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+      boxes[node].low[k] = INFINITY;
+      boxes[node].high[k] = -INFINITY;
+    }
     if (!vl_gltf_mesh_box(g, (size_t)json_number_value(mesh), n, boxes[node].low, boxes[node].high)) return false;
   }
   return add_corners(g, &boxes[node], json_object_get(n->json, "skin") ? &identity : &n->world);

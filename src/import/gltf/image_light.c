@@ -52,7 +52,8 @@ static void look(const Cube *cube, vlVec3 d, float out[3]) {
   out[0] = out[1] = out[2] = 0;
   for (int k = 0; k < 4; k++) {
     int a = i + (k & 1), b = j + (k >> 1);
-    a = a < 0 ? 0 : a >= n ? n - 1 : a, b = b < 0 ? 0 : b >= n ? n - 1 : b;
+    a = a < 0 ? 0 : a >= n ? n - 1 : a;
+    b = b < 0 ? 0 : b >= n ? n - 1 : b;
     float w = (k & 1 ? fu : 1 - fu) * (k >> 1 ? fv : 1 - fv);
     const float *p = cube->faces[face] + 3 * ((size_t)b * (size_t)n + (size_t)a);
     for (int c = 0; c < 3; c++) out[c] += w * p[c];

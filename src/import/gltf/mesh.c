@@ -134,10 +134,16 @@ static bool add_shape(vlGltf *g, const vlGltfMaterial *m, vlGltfPrimitive *p, vl
   def.one_sided = !m->double_sided;
   def.vertices = (uint32_t)p->vertices;
   def.faces = (uint32_t)p->faces;
-  def.positions = p->positions, def.normals = p->normals, def.tangents = p->tangents, def.uvs = p->uvs[0];
-  def.tangent_signs = signs, def.colors = p->colors, def.indices = p->indices;
+  def.positions = p->positions;
+  def.normals = p->normals;
+  def.tangents = p->tangents;
+  def.uvs = p->uvs[0];
+  def.tangent_signs = signs;
+  def.colors = p->colors;
+  def.indices = p->indices;
   for (int k = 0; k < 3; k++) def.more_uvs[k] = p->uvs[k + 1];
-  def.positions_close = p->positions_close, def.normals_close = p->normals_close;
+  def.positions_close = p->positions_close;
+  def.normals_close = p->normals_close;
   def.times[1] = p->positions_close ? g->close - g->open : def.times[1];
   if (g->def->permissive) vl_repair_mesh(g->context, &g->repairs, &def); /* out of memory: the scene checks it */
   vlShapeId id = vl_scene_adopt_shape(g->scene, &def);
@@ -178,7 +184,8 @@ static bool read_close(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, con
             vl_gltf_morph(g, at, mesh, primitive, node, &q) && (!skinned || vl_gltf_skin(g, at, primitive, node, &q));
   g->closing = false;
   if (ok && memcmp(p->positions, q.positions, 3 * p->vertices * sizeof(float)) != 0) {
-    p->positions_close = q.positions, p->normals_close = q.normals;
+    p->positions_close = q.positions;
+    p->normals_close = q.normals;
     q.positions = q.normals = NULL;
   }
   vl_gltf_free_primitive(g->context, &q);
@@ -273,8 +280,10 @@ static bool primitive_box(vlGltf *g, const vlGltfPlace *at, const json_t *mesh, 
   bool ok = vl_gltf_unpack_primitive(g, at, primitive) && read_attributes(g, at, attributes, position, &p) &&
             vl_gltf_morph(g, at, mesh, primitive, node, &p) && (!skinned || vl_gltf_skin(g, at, primitive, node, &p));
   for (size_t i = 0; ok && i < p.vertices; i++)
-    for (size_t k = 0; k < 3; k++)
-      low[k] = fmin(low[k], (double)p.positions[3 * i + k]), high[k] = fmax(high[k], (double)p.positions[3 * i + k]);
+    for (size_t k = 0; k < 3; k++) {
+      low[k] = fmin(low[k], (double)p.positions[3 * i + k]);
+      high[k] = fmax(high[k], (double)p.positions[3 * i + k]);
+    }
   vl_gltf_free_primitive(g->context, &p);
   return ok;
 }

@@ -11,10 +11,14 @@
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
   double n = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
   double x = r[0], y = r[1], z = r[2], w = r[3];
-  if (n > 0)
-    x /= n, y /= n, z /= n, w /= n;
-  else
+  if (n > 0) {
+    x /= n;
+    y /= n;
+    z /= n;
+    w /= n;
+  } else {
     w = 1;
+  }
   vlMat4 m = {{(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y - z * w) * s[1], 2 * (x * z + y * w) * s[2], t[0],
                2 * (x * y + z * w) * s[0], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z - x * w) * s[2], t[1],
                2 * (x * z - y * w) * s[0], 2 * (y * z + x * w) * s[1], (1 - 2 * (x * x + y * y)) * s[2], t[2], 0, 0, 0,
@@ -321,11 +325,17 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
   char names[200] = "", *end;
   for (size_t i = 0; i < g->scene_count; i++) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
-    if (own && strcmp(own, wanted) == 0) return *chosen = i, true;
+    if (own && strcmp(own, wanted) == 0) {
+      *chosen = i;
+      return true;
+    }
     if (own) vl_list_name(names, sizeof names, vl_short_text(own).text);
   }
   unsigned long number = strtoul(wanted, &end, 10);
-  if (end != wanted && !*end && number < g->scene_count) return *chosen = number, true;
+  if (end != wanted && !*end && number < g->scene_count) {
+    *chosen = number;
+    return true;
+  }
   return vl_gltf_fail(g, NULL, "there is no scene \"%s\" (%zu are there%s)", vl_argument_text(wanted).text,
                       g->scene_count, names);
 }

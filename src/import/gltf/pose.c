@@ -11,7 +11,8 @@ static bool pose_at(vlGltf *g, double time) {
 }
 
 bool vl_gltf_pose(vlGltf *g) {
-  g->open = g->def->time, g->close = g->def->time_close;
+  g->open = g->def->time;
+  g->close = g->def->time_close;
   bool both = g->open == g->open && g->close == g->close;
   if (both && g->close < g->open)
     return vl_gltf_fail(g, NULL, "the shutter cannot close (%g s) before it opens (%g s)", g->close, g->open);
@@ -29,12 +30,14 @@ bool vl_gltf_pose(vlGltf *g) {
       n->keys = g->keys + i * VL_GLTF_KEYS;
       n->keys[k] = n->world;
       if (k != VL_GLTF_KEYS - 1) continue;
-      n->weights_close = n->weights, n->weight_close_count = n->weight_count;
+      n->weights_close = n->weights;
+      n->weight_close_count = n->weight_count;
       n->weights = NULL;
     }
   }
   vlCameraDef *camera = &vl_scene_defs(g->scene)->camera;
-  camera->shutter_open = 0, camera->shutter_close = g->close - g->open;
+  camera->shutter_open = 0;
+  camera->shutter_close = g->close - g->open;
   return true;
 }
 

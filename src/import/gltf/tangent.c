@@ -75,7 +75,10 @@ static void face_directions(Maker *m) {
     const float *a = m->uvs + 2 * (size_t)k[0], *b = m->uvs + 2 * (size_t)k[1], *c = m->uvs + 2 * (size_t)k[2];
     double s1 = (double)b[0] - a[0], t1 = (double)b[1] - a[1], s2 = (double)c[0] - a[0], t2 = (double)c[1] - a[1];
     double area = s1 * t2 - s2 * t1;
-    for (int i = 0; i < 3; i++) t[i] = (t2 * e1[i] - t1 * e2[i]) * (area < 0 ? -1 : 1), l += t[i] * t[i];
+    for (int i = 0; i < 3; i++) {
+      t[i] = (t2 * e1[i] - t1 * e2[i]) * (area < 0 ? -1 : 1);
+      l += t[i] * t[i];
+    }
     l = sqrt(l);
     m->sign[f] = fabs(area) > 1e-30 && l > 0 ? (area > 0 ? 1 : -1) : 0;
     for (int i = 0; i < 3; i++) m->direction[3 * f + (size_t)i] = m->sign[f] ? (float)(t[i] / l) : 0.0f;
@@ -83,12 +86,16 @@ static void face_directions(Maker *m) {
 }
 
 static uint32_t find(uint32_t *group, uint32_t i) {
-  while (group[i] != i) group[i] = group[group[i]], i = group[i];
+  while (group[i] != i) {
+    group[i] = group[group[i]];
+    i = group[i];
+  }
   return i;
 }
 
 static void join(uint32_t *group, uint32_t a, uint32_t b) {
-  a = find(group, a), b = find(group, b);
+  a = find(group, a);
+  b = find(group, b);
   if (a < b)
     group[b] = a;
   else
@@ -137,7 +144,10 @@ static bool join_edges(vlContext *context, Maker *m) {
 static bool project(const float *v, const float *n, double out[3]) {
   double d = 0, l = 0;
   for (int i = 0; i < 3; i++) d += (double)v[i] * n[i];
-  for (int i = 0; i < 3; i++) out[i] = v[i] - d * n[i], l += out[i] * out[i];
+  for (int i = 0; i < 3; i++) {
+    out[i] = v[i] - d * n[i];
+    l += out[i] * out[i];
+  }
   l = sqrt(l);
   for (int i = 0; i < 3 && l > 0; i++) out[i] /= l;
   return l > 1e-12;
@@ -154,7 +164,10 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
   const float *a = p->positions + 3 * (size_t)k[(c + 1) % 3 == 0 ? 0 : (c % 3 + 1) % 3];
   const float *b = p->positions + 3 * (size_t)k[(c % 3 + 2) % 3];
   float to_a[3], to_b[3];
-  for (int i = 0; i < 3; i++) to_a[i] = a[i] - x[i], to_b[i] = b[i] - x[i];
+  for (int i = 0; i < 3; i++) {
+    to_a[i] = a[i] - x[i];
+    to_b[i] = b[i] - x[i];
+  }
   double pa[3], pb[3], t[3];
   if (!project(to_a, n, pa) || !project(to_b, n, pb) || !project(m->direction + 3 * (size_t)f, n, t)) return;
   double dot = pa[0] * pb[0] + pa[1] * pb[1] + pa[2] * pb[2];
@@ -201,7 +214,10 @@ static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
   for (size_t f = 0; normals && f < faces; f++) {
     const float *v = positions + 9 * f;
     double a[3], b[3], n[3], l = 0;
-    for (int i = 0; i < 3; i++) a[i] = (double)v[3 + i] - v[i], b[i] = (double)v[6 + i] - v[i];
+    for (int i = 0; i < 3; i++) {
+      a[i] = (double)v[3 + i] - v[i];
+      b[i] = (double)v[6 + i] - v[i];
+    }
     for (int i = 0; i < 3; i++) {
       n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
       l += n[i] * n[i];
@@ -241,7 +257,9 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
     while (table[slot] && (from[table[slot] - 1] != vertex || group[table[slot] - 1] != of))
       slot = (slot + 1) & (size - 1);
     if (!table[slot]) {
-      from[count] = vertex, group[count] = of, signs[count] = 0;
+      from[count] = vertex;
+      group[count] = of;
+      signs[count] = 0;
       table[slot] = (uint32_t)++count;
     }
     indices[c] = table[slot] - 1;

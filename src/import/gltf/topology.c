@@ -56,7 +56,9 @@ static uint32_t put_vertex(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, 
 
 static void put_face(NewMesh *b, uint32_t i, uint32_t j, uint32_t k) {
   uint32_t *f = b->made.indices + 3 * b->faces++;
-  f[0] = i, f[1] = j, f[2] = k;
+  f[0] = i;
+  f[1] = j;
+  f[2] = k;
 }
 
 /* An octahedron subdivided once and projected to the sphere: 18 vertices, 32 faces. */
@@ -86,16 +88,23 @@ static void put_ball(NewMesh *b, const vlGltfPrimitive *p, uint32_t at, float ra
 static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32_t to, float radius) {
   const float *ends[2] = {p->positions + 3 * (size_t)from, p->positions + 3 * (size_t)to};
   double d[3], u[3], v[3], l = 0;
-  for (int i = 0; i < 3; i++) d[i] = (double)ends[1][i] - ends[0][i], l += d[i] * d[i];
+  for (int i = 0; i < 3; i++) {
+    d[i] = (double)ends[1][i] - ends[0][i];
+    l += d[i] * d[i];
+  }
   l = sqrt(l);
   if (!(l > 0) || !isfinite(l)) return;
   for (int i = 0; i < 3; i++) d[i] /= l;
   int least = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2) : fabs(d[1]) < fabs(d[2]) ? 1 : 2;
   double e[3] = {least == 0, least == 1, least == 2};
-  u[0] = d[1] * e[2] - d[2] * e[1], u[1] = d[2] * e[0] - d[0] * e[2], u[2] = d[0] * e[1] - d[1] * e[0];
+  u[0] = d[1] * e[2] - d[2] * e[1];
+  u[1] = d[2] * e[0] - d[0] * e[2];
+  u[2] = d[0] * e[1] - d[1] * e[0];
   double n = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
   for (int i = 0; i < 3; i++) u[i] /= n;
-  v[0] = d[1] * u[2] - d[2] * u[1], v[1] = d[2] * u[0] - d[0] * u[2], v[2] = d[0] * u[1] - d[1] * u[0];
+  v[0] = d[1] * u[2] - d[2] * u[1];
+  v[1] = d[2] * u[0] - d[0] * u[2];
+  v[2] = d[0] * u[1] - d[1] * u[0];
   uint32_t ring[2][TUBE_SIDES];
   for (int side = 0; side < 2; side++)
     for (int k = 0; k < TUBE_SIDES; k++) {
@@ -181,10 +190,15 @@ bool vl_gltf_triangles(vlGltf *g, const vlGltfPlace *at, uint32_t mode, uint32_t
   }
   for (size_t i = 0; ok && i < p->faces; i++) {
     uint32_t *f = p->indices + 3 * i;
-    if (mode == TRIANGLE_STRIP)
-      f[0] = indices[i], f[1] = indices[i + 1 + i % 2], f[2] = indices[i + 2 - i % 2];
-    else
-      f[0] = indices[i + 1], f[1] = indices[i + 2], f[2] = indices[0];
+    if (mode == TRIANGLE_STRIP) {
+      f[0] = indices[i];
+      f[1] = indices[i + 1 + i % 2];
+      f[2] = indices[i + 2 - i % 2];
+    } else {
+      f[0] = indices[i + 1];
+      f[1] = indices[i + 2];
+      f[2] = indices[0];
+    }
   }
   vl_free(g->context, indices);
   return ok;
@@ -208,7 +222,10 @@ bool vl_gltf_compact(vlGltf *g, vlGltfPrimitive *p) {
     }
     size_t n = 0;
     for (size_t i = 0; i < p->vertices; i++)
-      if (to[i]) from[n] = (uint32_t)i, to[i] = (uint32_t)n++;
+      if (to[i]) {
+        from[n] = (uint32_t)i;
+        to[i] = (uint32_t)n++;
+      }
     for (size_t i = 0; i < 3 * p->faces; i++) p->indices[i] = to[p->indices[i]];
     move_rows(p->positions, 3, from, count);
     move_rows(p->normals, 3, from, count);

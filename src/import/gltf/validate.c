@@ -89,8 +89,14 @@ static bool read_node(vlGltf *g, size_t index) {
 }
 
 static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t *reported) {
-  for (size_t i = 0; i < g->accessor_count; i++) check_accessor(g, i, reported), flush(g, kept, reported);
-  for (size_t i = 0; i < g->animation_count; i++) vl_gltf_apply_animation(g, i), flush(g, kept, reported);
+  for (size_t i = 0; i < g->accessor_count; i++) {
+    check_accessor(g, i, reported);
+    flush(g, kept, reported);
+  }
+  for (size_t i = 0; i < g->animation_count; i++) {
+    vl_gltf_apply_animation(g, i);
+    flush(g, kept, reported);
+  }
   for (size_t i = 0; i < g->material_count; i++) {
     if (used[i] & HAS_MATERIAL) continue;
     report_unused(g, "materials", i, reported);
@@ -105,8 +111,14 @@ static void read_unused(vlGltf *g, vlScene *kept, const uint8_t *used, uint32_t 
     flush(g, kept, reported);
   }
   for (size_t i = 0; i < g->node_count; i++)
-    if (!g->nodes[i].reached) read_node(g, i), flush(g, kept, reported);
-  for (size_t i = 0; i < g->camera_count; i++) vl_gltf_check_camera(g, i), flush(g, kept, reported);
+    if (!g->nodes[i].reached) {
+      read_node(g, i);
+      flush(g, kept, reported);
+    }
+  for (size_t i = 0; i < g->camera_count; i++) {
+    vl_gltf_check_camera(g, i);
+    flush(g, kept, reported);
+  }
 }
 
 void vl_gltf_validate(vlGltf *g) {

@@ -62,7 +62,9 @@ bool vl_gltf_angle_texture(vlGltf *g, vlTextureId from, float rotation, vlFloatI
     }
   }
   if (ok) {
-    def.data = NULL, def.path = NULL, def.image = angles;
+    def.data = NULL;
+    def.path = NULL;
+    def.image = angles;
     def.filter = VL_FILTER_POINT;
     def.channel = -1;
     def.tint[0] = def.tint[1] = def.tint[2] = 1;

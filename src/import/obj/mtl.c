@@ -41,7 +41,10 @@ static bool find_file(vlObj *obj, const char *name, char *path, size_t size) {
 
 /* Reports a missing file: as an error if strict. */
 static bool report_missing(vlObj *obj, const char *what, const char *name) {
-  if (!obj->strict) return vl_obj_warn(obj, VL_LOG_WARNING, "%s \"%.200s\"; done without", what, name), true;
+  if (!obj->strict) {
+    vl_obj_warn(obj, VL_LOG_WARNING, "%s \"%.200s\"; done without", what, name);
+    return true;
+  }
   vl_scene_fail(obj->scene, VL_ERROR_MISSING, (vlSource){obj->path, obj->line, 1}, "%s \"%.200s\"", what, name);
   return false;
 }
@@ -95,7 +98,10 @@ static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   size_t n = vl_obj_word(obj, &word), size;
   double v[3] = {0, 0, 0};
   *fine = true;
-  if (n < 2 || word[0] != '-') return obj->at = at, false;
+  if (n < 2 || word[0] != '-') {
+    obj->at = at;
+    return false;
+  }
   if (is_word(word, n, "-o") || is_word(word, n, "-s") || is_word(word, n, "-t")) {
     bool offset = word[1] == 'o', scale = word[1] == 's';
     v[0] = v[1] = v[2] = scale ? 1 : 0;
@@ -107,7 +113,8 @@ static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
   if (is_word(word, n, "-mm")) {
     v[1] = 1;
     *fine = option_numbers(obj, "-mm", 2, 2, v);
-    map->base = (float)v[0], map->gain = (float)v[1];
+    map->base = (float)v[0];
+    map->gain = (float)v[1];
     return true;
   }
   if (is_word(word, n, "-bm")) {
@@ -127,9 +134,15 @@ static bool read_option(vlObj *obj, vlMtlMap *map, bool *fine) {
     return true;
   }
   for (int i = 0; i < 4; i++)
-    if (is_word(word, n, words[i])) return *fine = option_word(obj, words[i], &value, &size), true;
+    if (is_word(word, n, words[i])) {
+      *fine = option_word(obj, words[i], &value, &size);
+      return true;
+    }
   for (int i = 0; i < 2; i++)
-    if (is_word(word, n, numbers[i])) return *fine = option_numbers(obj, numbers[i], 1, 1, v), true;
+    if (is_word(word, n, numbers[i])) {
+      *fine = option_numbers(obj, numbers[i], 1, 1, v);
+      return true;
+    }
   obj->at = at;
   return false;
 }
@@ -263,12 +276,15 @@ static bool read_library(vlObj *obj, char *name) {
   /* Errors name the library's line; the OBJ file's own place is restored afterwards. */
   const char *own_path = obj->path;
   uint32_t own_line = obj->line, own_more = obj->more_lines, current = 0;
-  obj->path = path, obj->line = obj->more_lines = 0;
+  obj->path = path;
+  obj->line = obj->more_lines = 0;
   char *from = data;
   bool fine = true;
   while (fine && vl_obj_statement(obj, &from, data + size)) fine = read_statement(obj, &current);
   vl_free(obj->context, data);
-  obj->path = own_path, obj->line = own_line, obj->more_lines = own_more;
+  obj->path = own_path;
+  obj->line = own_line;
+  obj->more_lines = own_more;
   return fine;
 }
 
@@ -290,6 +306,8 @@ bool vl_obj_read_libraries(vlObj *obj) {
       if (*name) fine = read_library(obj, name);
     }
   }
-  obj->line_start = line_start, obj->at = at, obj->end = end;
+  obj->line_start = line_start;
+  obj->at = at;
+  obj->end = end;
   return fine;
 }

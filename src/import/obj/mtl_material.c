@@ -22,8 +22,10 @@ static vlTextureDef texture_def(const vlObj *obj, const vlMtlMap *map, bool spec
   def.path = map->path;
   def.filter = VL_FILTER_TRILINEAR;
   def.wrap = map->clamp ? VL_WRAP_CLAMP : VL_WRAP_REPEAT;
-  def.su = map->scale[0], def.sv = map->scale[1];
-  def.du = map->offset[0], def.dv = map->offset[1];
+  def.su = map->scale[0];
+  def.sv = map->scale[1];
+  def.du = map->offset[0];
+  def.dv = map->offset[1];
   def.scale = map->gain;
   if (!spectrum) {
     def.encoding_given = true;

@@ -145,7 +145,8 @@ static bool read_vertex(vlObj *obj) {
   size_t before = obj->positions.count;
   for (int i = 0; i < 3; i++) {
     obj->positions.items[obj->positions.count++] = (float)v[i];
-    obj->low[i] = fmin(obj->low[i], v[i]), obj->high[i] = fmax(obj->high[i], v[i]);
+    obj->low[i] = fmin(obj->low[i], v[i]);
+    obj->high[i] = fmax(obj->high[i], v[i]);
   }
   if (count < 6 && obj->colors.count == 0) return true;
   size_t missing = before - obj->colors.count;
@@ -295,10 +296,16 @@ uint32_t vl_obj_material(vlObj *obj, const char *name) {
   for (uint32_t i = *head; i; i = obj->materials.items[i - 1].next)
     if (strcmp(obj->materials.items[i - 1].name, name) == 0) return i - 1;
   const char *kept = name;
-  if (obj->materials.count >= MAX_MATERIALS) return vl_obj_fail(obj, "too many materials"), UINT32_MAX;
+  if (obj->materials.count >= MAX_MATERIALS) {
+    vl_obj_fail(obj, "too many materials");
+    return UINT32_MAX;
+  }
   if (!vl_scene_copy_string(obj->scene, &kept)) return UINT32_MAX;
   vlObjMaterial *m = VL_PUSH(obj->context, &obj->materials);
-  if (!m) return vl_obj_fail_memory(obj), UINT32_MAX;
+  if (!m) {
+    vl_obj_fail_memory(obj);
+    return UINT32_MAX;
+  }
   m->name = kept;
   m->mtl = vl_mtl_default();
   m->next = *head;
@@ -360,7 +367,10 @@ static bool read_statement(vlObj *obj) {
   for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
     if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0) return true;
   for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
-    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) return once(obj, REPORTED_CURVES, word, n), true;
+    if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) {
+      once(obj, REPORTED_CURVES, word, n);
+      return true;
+    }
   for (size_t i = 0; i < n; i++)
     if ((unsigned char)word[i] < 32) return vl_obj_fail(obj, "not an OBJ file: byte %d here", (unsigned char)word[i]);
   once(obj, REPORTED_UNKNOWN, word, n);
@@ -403,9 +413,18 @@ vlResult vl_import_obj(vlScene *scene, const char *path, const vlLoadDef *def, v
     vl_scene_fail(scene, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
     return vl_scene_result(scene, error);
   }
-  obj->context = scene->context, obj->scene = scene, obj->path = path;
-  if (def) obj->permissive = def->permissive, obj->strict = def->strict, obj->search_path = def->search_path;
-  for (int i = 0; i < 3; i++) obj->low[i] = INFINITY, obj->high[i] = -INFINITY;
+  obj->context = scene->context;
+  obj->scene = scene;
+  obj->path = path;
+  if (def) {
+    obj->permissive = def->permissive;
+    obj->strict = def->strict;
+    obj->search_path = def->search_path;
+  }
+  for (int i = 0; i < 3; i++) {
+    obj->low[i] = INFINITY;
+    obj->high[i] = -INFINITY;
+  }
   bool fine = vl_obj_material(obj, "") == 0;
   if (fine) obj->materials.items[0].defined = true;
   char *from = size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0 ? data + 3 : data;

@@ -55,7 +55,8 @@ static bool add_points(vlObj *obj, const vlObjMark *marks, size_t count, float r
     radii[i] = radius;
   }
   def->kind = VL_SHAPE_SPHERE;
-  def->centers = centers, def->radii = radii;
+  def->centers = centers;
+  def->radii = radii;
   bool fine = centers && radii ? vl_scene_add_shape(obj->scene, def).index != 0 : vl_obj_fail_memory(obj);
   vl_free(obj->context, centers);
   vl_free(obj->context, radii);
@@ -74,7 +75,8 @@ static bool add_lines(vlObj *obj, const vlObjMark *marks, size_t count, float ra
   def->kind = VL_SHAPE_CURVES;
   def->curve = VL_CURVE_CYLINDER;
   def->vertices = (uint32_t)(4 * count);
-  def->positions = points, def->widths = widths;
+  def->positions = points;
+  def->widths = widths;
   bool fine = points && widths ? vl_scene_add_shape(obj->scene, def).index != 0 : vl_obj_fail_memory(obj);
   vl_free(obj->context, points);
   vl_free(obj->context, widths);
@@ -96,7 +98,8 @@ bool vl_obj_add_marks(vlObj *obj) {
     if (!vl_obj_make_material(obj, m)) return false;
     vlShapeDef def = vl_default_shape_def(VL_SHAPE_SPHERE);
     def.source = (vlSource){obj->path, marks[i].line, 1};
-    def.material = m->material, def.alpha = m->alpha;
+    def.material = m->material;
+    def.alpha = m->alpha;
     def.faces = (uint32_t)(end - i);
     if (!(marks[i].from ? add_lines : add_points)(obj, marks + i, end - i, radius, &def)) return false;
   }

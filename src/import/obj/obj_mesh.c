@@ -22,7 +22,10 @@ static const float *position(const vlObj *obj, uint32_t v) {
 static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
   const float *a = position(obj, c[0].v), *b = position(obj, c[1].v), *d = position(obj, c[2].v);
   double e[3], f[3];
-  for (int i = 0; i < 3; i++) e[i] = (double)b[i] - a[i], f[i] = (double)d[i] - a[i];
+  for (int i = 0; i < 3; i++) {
+    e[i] = (double)b[i] - a[i];
+    f[i] = (double)d[i] - a[i];
+  }
   for (int i = 0; i < 3; i++) n[i] = e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3];
 }
 
@@ -31,7 +34,9 @@ static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
   double ee = 0, ff = 0, ef = 0;
   for (int k = 0; k < 3; k++) {
     double e = (double)b[k] - a[k], f = (double)d[k] - a[k];
-    ee += e * e, ff += f * f, ef += e * f;
+    ee += e * e;
+    ff += f * f;
+    ef += e * f;
   }
   double x = ef / sqrt(ee * ff);
   return x < 1 ? x > -1 ? vl_acos_double(x) : 3.14159265358979323846 : 0;
@@ -47,10 +52,12 @@ static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
 
 static void unit(double n[3]) {
   double l = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-  if (l > 0 && isfinite(l))
+  if (l > 0 && isfinite(l)) {
     for (int i = 0; i < 3; i++) n[i] /= l;
-  else
-    n[0] = n[1] = 0, n[2] = 1;
+  } else {
+    n[0] = n[1] = 0;
+    n[2] = 1;
+  }
 }
 
 static size_t table_size(size_t items) {
@@ -94,7 +101,8 @@ static bool make_normals(vlObj *obj) {
         slot = (slot + 1) & (size - 1);
       const double zero[3] = {0, 0, 0};
       if (!table[slot].normal) {
-        table[slot].v = c[k].v, table[slot].group = group;
+        table[slot].v = c[k].v;
+        table[slot].group = group;
         fine = push_normal(obj, zero, &table[slot].normal);
         if (!fine) break;
       }
@@ -198,9 +206,15 @@ static bool add_part(vlObj *obj, const vlObjPart *part, const uint32_t *order, c
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
   def.source = (vlSource){obj->path, part->line, 1};
   def.label = *label;
-  def.material = m->material, def.emission = m->emission, def.alpha = m->alpha;
-  def.vertices = n, def.faces = part->triangles;
-  def.positions = arrays[0], def.normals = arrays[1], def.uvs = arrays[2], def.colors = arrays[3];
+  def.material = m->material;
+  def.emission = m->emission;
+  def.alpha = m->alpha;
+  def.vertices = n;
+  def.faces = part->triangles;
+  def.positions = arrays[0];
+  def.normals = arrays[1];
+  def.uvs = arrays[2];
+  def.colors = arrays[3];
   def.indices = indices;
   if (obj->permissive) vl_repair_mesh(obj->context, &obj->repairs, &def); /* out of memory: the scene checks it */
   return vl_scene_adopt_shape(obj->scene, &def).index != 0;

@@ -37,7 +37,8 @@ static Plane find_plane(const vlObj *obj) {
   }
   int k = fabs(n[0]) > fabs(n[1]) ? 0 : 1;
   if (fabs(n[2]) > fabs(n[k])) k = 2;
-  p.x = (k + 1) % 3, p.y = (k + 2) % 3;
+  p.x = (k + 1) % 3;
+  p.y = (k + 2) % 3;
   p.sign = n[k] < 0 ? -1 : 1;
   return p;
 }
@@ -71,10 +72,13 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
   if (n == 4) {
     bool good = turn(&p, 0, 1, 2) > 0 && turn(&p, 0, 2, 3) > 0;
     bool other = turn(&p, 1, 2, 3) > 0 && turn(&p, 1, 3, 0) > 0;
-    if (good || !other)
-      put(obj, 0, 1, 2), put(obj, 0, 2, 3);
-    else
-      put(obj, 1, 2, 3), put(obj, 1, 3, 0);
+    if (good || !other) {
+      put(obj, 0, 1, 2);
+      put(obj, 0, 2, 3);
+    } else {
+      put(obj, 1, 2, 3);
+      put(obj, 1, 3, 0);
+    }
     return true;
   }
   uint32_t left[MOST_EARS];
@@ -88,10 +92,12 @@ bool vl_obj_triangulate(vlObj *obj, uint32_t *triangles) {
     if (is_ear(&p, left, count, i) || stuck >= count) { /* stuck: the polygon crosses itself or has no area */
       put(obj, left[(i + count - 1) % count], left[i], left[(i + 1) % count]);
       for (size_t k = i; k + 1 < count; k++) left[k] = left[k + 1];
-      count--, stuck = 0;
+      count--;
+      stuck = 0;
       if (i >= count) i = 0;
     } else {
-      i = (i + 1) % count, stuck++;
+      i = (i + 1) % count;
+      stuck++;
     }
   }
   put(obj, left[0], left[1], left[2]);

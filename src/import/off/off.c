@@ -103,9 +103,21 @@ static bool read_header(Off *s) {
   while (s->at < s->end && !is_blank(*s->at) && *s->at != '\n' && *s->at != '#') s->at++;
   size_t length = (size_t)(s->at - start);
   vlShortText word = vl_short_text_of(start, length);
-  if (length >= 2 && memcmp(start, "ST", 2) == 0) s->uvs = true, start += 2, length -= 2;
-  if (length >= 1 && *start == 'C') s->colors = true, start++, length--;
-  if (length >= 1 && *start == 'N') s->normals = true, start++, length--;
+  if (length >= 2 && memcmp(start, "ST", 2) == 0) {
+    s->uvs = true;
+    start += 2;
+    length -= 2;
+  }
+  if (length >= 1 && *start == 'C') {
+    s->colors = true;
+    start++;
+    length--;
+  }
+  if (length >= 1 && *start == 'N') {
+    s->normals = true;
+    start++;
+    length--;
+  }
   if (length != 3 || memcmp(start, "OFF", 3) != 0)
     return fail(s, "the file must begin with OFF, COFF, NOFF, CNOFF or STOFF, not", word.text);
   const char *before = s->at;
@@ -154,9 +166,12 @@ static bool add_triangle(Off *s, uint32_t a, uint32_t b, uint32_t c, const float
   if (!VL_RESERVE(s->scene->context, &s->indices, 3) || !VL_RESERVE(s->scene->context, &s->face_colors, 3))
     return fail_memory(s);
   uint32_t *t = s->indices.items + s->indices.count;
-  t[0] = a, t[1] = b, t[2] = c;
+  t[0] = a;
+  t[1] = b;
+  t[2] = c;
   memcpy(s->face_colors.items + s->face_colors.count, color, 3 * sizeof *color);
-  s->indices.count += 3, s->face_colors.count += 3;
+  s->indices.count += 3;
+  s->face_colors.count += 3;
   return true;
 }
 
@@ -210,14 +225,17 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load, 
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(context, path, true, &data, &size, &inside);
   if (r != VL_OK) vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
-  s.at = data, s.end = data + size;
+  s.at = data;
+  s.end = data + size;
   bool ok = r == VL_OK && read(&s);
   vl_free(context, data);
   VL_ARRAY_FREE(context, &s.indices);
   VL_ARRAY_FREE(context, &s.corners);
   VL_ARRAY_FREE(context, &s.face_colors);
   if (ok) return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
-  vl_free(context, s.mesh.positions), vl_free(context, s.mesh.normals), vl_free(context, s.mesh.uvs);
+  vl_free(context, s.mesh.positions);
+  vl_free(context, s.mesh.normals);
+  vl_free(context, s.mesh.uvs);
   vl_free(context, s.mesh.colors);
   return vl_scene_result(scene, error);
 }

@@ -147,15 +147,19 @@ static bool obey(vlImport *import, const vlStatement *s) {
     case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
     case VL_DIR_IMPORT_END: {
       const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-      if (top->kind == 'i') return vl_import_restore(import), true;
+      if (top->kind == 'i') {
+        vl_import_restore(import);
+        return true;
+      }
       return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
                             top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
     }
-    case VL_DIR_ACTIVE_ALL: return import->state.active = 3, true;
-    case VL_DIR_ACTIVE_START: return import->state.active = 1, true;
-    case VL_DIR_ACTIVE_END: return import->state.active = 2, true;
+    case VL_DIR_ACTIVE_ALL: import->state.active = 3; return true;
+    case VL_DIR_ACTIVE_START: import->state.active = 1; return true;
+    case VL_DIR_ACTIVE_END: import->state.active = 2; return true;
     case VL_DIR_REVERSE_ORIENTATION:
-      return import->state.reverse_orientation = !import->state.reverse_orientation, true;
+      import->state.reverse_orientation = !import->state.reverse_orientation;
+      return true;
     case VL_DIR_WORLD_BEGIN: return world_begin(import);
     case VL_DIR_OBJECT_BEGIN: return vl_import_object_begin(import, s);
     case VL_DIR_OBJECT_END: return vl_import_object_end(import, s);

@@ -37,7 +37,8 @@ static bool pose_from_ctm(vlImport *import, vlCameraDef *def) {
   if (!pose_from(import, &ctm[0], def->world_from_camera)) return false;
   if (memcmp(&ctm[0], &ctm[1], sizeof *ctm) == 0) return true;
   def->has_matrix_close = true;
-  def->pose_times[0] = import->times[0], def->pose_times[1] = import->times[1];
+  def->pose_times[0] = import->times[0];
+  def->pose_times[1] = import->times[1];
   return pose_from(import, &ctm[1], def->world_from_camera_close);
 }
 
@@ -176,8 +177,10 @@ static void read_limits(vlDict *dict, vlCameraDef *def) {
   bool given = vl_dict_floats(dict, "longitude", 2, window);
   given = vl_dict_floats(dict, "latitude", 2, window + 2) || given;
   if (!given) return;
-  def->screen_min_x = window[0] * degrees, def->screen_max_x = window[1] * degrees;
-  def->screen_min_y = window[2] * degrees, def->screen_max_y = window[3] * degrees;
+  def->screen_min_x = window[0] * degrees;
+  def->screen_max_x = window[1] * degrees;
+  def->screen_min_y = window[2] * degrees;
+  def->screen_max_y = window[3] * degrees;
 }
 
 /* Reads the parameters of projections and calibrated lenses that their rows do not describe. */

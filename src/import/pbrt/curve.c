@@ -36,7 +36,8 @@ bool vl_import_flush_curves(vlImport *import) {
   memset(&run->widths, 0, sizeof run->widths);
   memset(&run->normals, 0, sizeof run->normals);
   vlGraphicsState now = import->state;
-  import->state.inside = run->inside, import->state.outside = run->outside;
+  import->state.inside = run->inside;
+  import->state.outside = run->outside;
   bool fine = vl_import_add_shape(import, &run->def, &run->link) &&
               vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, run->def.source);
   import->state = now;
@@ -57,11 +58,19 @@ static void bezier_points(const float *p, size_t k, bool spline, uint32_t degree
     double c[4] = {a[0], a[3], a[6], degree == 3 ? a[9] : 0}, q[4];
     memcpy(q, c, sizeof q);
     if (spline && degree == 3) {
-      q[0] = (c[0] + 4 * c[1] + c[2]) / 6, q[1] = (2 * c[1] + c[2]) / 3;
-      q[2] = (c[1] + 2 * c[2]) / 3, q[3] = (c[1] + 4 * c[2] + c[3]) / 6;
+      q[0] = (c[0] + 4 * c[1] + c[2]) / 6;
+      q[1] = (2 * c[1] + c[2]) / 3;
+      q[2] = (c[1] + 2 * c[2]) / 3;
+      q[3] = (c[1] + 4 * c[2] + c[3]) / 6;
     } else if (degree == 2) {
-      if (spline) c[0] = 0.5 * (c[0] + c[1]), c[2] = 0.5 * (c[1] + c[2]);
-      q[0] = c[0], q[1] = (c[0] + 2 * c[1]) / 3, q[2] = (2 * c[1] + c[2]) / 3, q[3] = c[2];
+      if (spline) {
+        c[0] = 0.5 * (c[0] + c[1]);
+        c[2] = 0.5 * (c[1] + c[2]);
+      }
+      q[0] = c[0];
+      q[1] = (c[0] + 2 * c[1]) / 3;
+      q[2] = (2 * c[1] + c[2]) / 3;
+      q[3] = c[2];
     }
     for (int j = 0; j < 4; j++) out[3 * j + i] = (float)q[j];
   }
@@ -177,8 +186,10 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   if (!continues(&import->curves, def, link, &import->state)) {
     if (!vl_import_flush_curves(import)) return false;
     vlCurveRun *run = &import->curves;
-    run->def = *def, run->link = *link;
-    run->inside = import->state.inside, run->outside = import->state.outside;
+    run->def = *def;
+    run->link = *link;
+    run->inside = import->state.inside;
+    run->outside = import->state.outside;
     if (!vl_scene_copy_source(import->scene, &run->def.source)) return false;
     run->open = true;
   }

@@ -164,7 +164,8 @@ double vl_decimal_digits(const char *text, const char *end, int exponent) {
   }
   if (more) {
     multiply_add(&digits, 10, 1);
-    count++, exponent--;
+    count++;
+    exponent--;
   }
   if (count == 0 || count + exponent < -400) return 0.0;
   if (count + exponent > 400) return HUGE_VAL;

@@ -36,10 +36,12 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   for (size_t i = 0; i < params.list.count; i++) {
     vlParam **slot = fine ? VL_PUSH(import->context, &import->attributes[target].list) : NULL;
     params.list.items[i]->optional = true;
-    if (slot)
+    if (slot) {
       *slot = params.list.items[i];
-    else
-      fine = false, vl_param_free(import->context, params.list.items[i]);
+    } else {
+      fine = false;
+      vl_param_free(import->context, params.list.items[i]);
+    }
   }
   VL_ARRAY_FREE(import->context, &params.list);
   import->state.attributes[target] = import->attributes[target].list.count;
@@ -112,10 +114,12 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
   bool fine = true;
   for (size_t i = 0; i < own.list.count; i++) { /* copied after the attributes, since the last one given counts */
     vlParam **slot = fine ? VL_PUSH(import->context, &p->params.list) : NULL;
-    if (slot)
+    if (slot) {
       *slot = own.list.items[i];
-    else
-      fine = false, vl_param_free(import->context, own.list.items[i]);
+    } else {
+      fine = false;
+      vl_param_free(import->context, own.list.items[i]);
+    }
   }
   VL_ARRAY_FREE(import->context, &own.list);
   if (!fine) vl_import_fail_memory(import);

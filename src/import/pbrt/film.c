@@ -51,7 +51,10 @@ static bool read_sensor_name(vlDict *dict, double *white) {
   const char *names[MOST], *plain = vl_sensor_name(0), *name = plain;
   uint32_t count = 0;
   vlImport *import = dict->import;
-  while (count < MOST && vl_sensor_name(count)) names[count] = vl_sensor_name(count), count++;
+  while (count < MOST && vl_sensor_name(count)) {
+    names[count] = vl_sensor_name(count);
+    count++;
+  }
   vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
   if (!vl_dict_string(dict, "sensor", &name) || strcmp(name, plain) == 0) return true;
   *white = 6500.0;

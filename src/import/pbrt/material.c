@@ -96,7 +96,8 @@ static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
     return refuse(r, a ? "\"sigma_s\" is missing beside \"sigma_a\"" : "\"sigma_a\" is missing beside \"sigma_s\"");
   if (mfp && !d->from_reflectance) return refuse(r, "\"reflectance\" is missing beside \"mfp\"");
   if (!named) return true;
-  d->sigma_a = vl_spectrum_input(preset_a), d->sigma_s = vl_spectrum_input(preset_s);
+  d->sigma_a = vl_spectrum_input(preset_a);
+  d->sigma_s = vl_spectrum_input(preset_s);
   if (def->g.value == 0.0f) return true;
   vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->place,
                  "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0", r->dict->what);

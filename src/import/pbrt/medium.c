@@ -39,7 +39,10 @@ static bool read_preset(vlDict *dict, vlMediumDef *def) {
   vlSpectrum absorption, scattering;
   bool given;
   if (!vl_import_scattering_preset(dict, "preset", &absorption, &scattering, &given)) return false;
-  if (given) def->sigma_a = absorption, def->sigma_s = scattering;
+  if (given) {
+    def->sigma_a = absorption;
+    def->sigma_s = scattering;
+  }
   return true;
 }
 
@@ -88,7 +91,8 @@ static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlM
 }
 
 static bool read_rgb_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlMediumDef *def) {
-  (void)row, (void)given;
+  (void)row;
+  (void)given;
   return def->rgb_a || def->rgb_s || missing(dict, "\"rgb sigma_a\" or \"rgb sigma_s\" (a colour for each cell)");
 }
 

@@ -43,13 +43,19 @@ static bool flush(vlImport *import, vlMeshRun *run) {
   if (!run->open) return true;
   run->open = false;
   vlShapeDef *d = &run->def;
-  d->vertices = (uint32_t)(run->positions.count / 3), d->faces = (uint32_t)(run->indices.count / 3);
-  d->positions = run->positions.items, d->indices = run->indices.items;
-  d->normals = d->normals ? run->normals.items : NULL, d->uvs = d->uvs ? run->uvs.items : NULL;
-  memset(&run->positions, 0, sizeof run->positions), memset(&run->normals, 0, sizeof run->normals);
-  memset(&run->uvs, 0, sizeof run->uvs), memset(&run->indices, 0, sizeof run->indices);
+  d->vertices = (uint32_t)(run->positions.count / 3);
+  d->faces = (uint32_t)(run->indices.count / 3);
+  d->positions = run->positions.items;
+  d->indices = run->indices.items;
+  d->normals = d->normals ? run->normals.items : NULL;
+  d->uvs = d->uvs ? run->uvs.items : NULL;
+  memset(&run->positions, 0, sizeof run->positions);
+  memset(&run->normals, 0, sizeof run->normals);
+  memset(&run->uvs, 0, sizeof run->uvs);
+  memset(&run->indices, 0, sizeof run->indices);
   vlGraphicsState now = import->state;
-  import->state.inside = run->inside, import->state.outside = run->outside;
+  import->state.inside = run->inside;
+  import->state.outside = run->outside;
   bool fine = vl_import_add_shape(import, d, &run->link) &&
               vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, d->source);
   import->state = now;
@@ -89,10 +95,12 @@ static void move_normals(const vlMat4 *m, const vlMat4 *inverse, bool mirrored, 
 
 static bool open_run(vlImport *import, vlMeshRun *run, const vlShapeDef *def, const vlShapeLink *link) {
   if (!flush(import, run)) return false;
-  run->def = *def, run->link = *link;
+  run->def = *def;
+  run->link = *link;
   vlMat4 unit = vl_mat4_identity();
   memcpy(run->def.group_from_shape, unit.m, sizeof run->def.group_from_shape);
-  run->inside = import->state.inside, run->outside = import->state.outside;
+  run->inside = import->state.inside;
+  run->outside = import->state.outside;
   run->open = vl_scene_copy_source(import->scene, &run->def.source);
   return run->open;
 }

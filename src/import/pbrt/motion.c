@@ -24,7 +24,8 @@ bool vl_import_times(vlImport *import, const vlStatement *s) {
   if (!isfinite(t[0]) || !isfinite(t[1]) || !(t[0] < t[1]))
     return vl_import_fail(import, VL_ERROR_SCENE, s->place, "TransformTimes: the end (%g) must be after the start (%g)",
                           t[1], t[0]);
-  import->times[0] = t[0], import->times[1] = t[1];
+  import->times[0] = t[0];
+  import->times[1] = t[1];
   return true;
 }
 

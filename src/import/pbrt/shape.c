@@ -69,8 +69,10 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
   vlParam *p = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3);
   if (!p) {
     if (import->scene->error.code != VL_OK) return false;
-    vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER), vl_dict_find(dict, "uv", 1u << VL_PARAM_POINT2);
-    vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL), vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
+    vl_dict_find(dict, "indices", 1u << VL_PARAM_INTEGER);
+    vl_dict_find(dict, "uv", 1u << VL_PARAM_POINT2);
+    vl_dict_find(dict, "N", 1u << VL_PARAM_NORMAL);
+    vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
     if (per == 3) vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
     if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
     return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"point3 P\" is missing", dict->what);

@@ -33,10 +33,14 @@ static bool flush(vlImport *import, vlSphereRun *run) {
   float *radii = vl_realloc_array(import->context, run->radii.items, n, sizeof *radii);
   if (radii) run->radii.items = radii;
   if (!centers || !radii) return vl_import_fail_memory(import);
-  d->faces = (uint32_t)n, d->centers = centers, d->radii = radii;
-  memset(&run->centers, 0, sizeof run->centers), memset(&run->radii, 0, sizeof run->radii);
+  d->faces = (uint32_t)n;
+  d->centers = centers;
+  d->radii = radii;
+  memset(&run->centers, 0, sizeof run->centers);
+  memset(&run->radii, 0, sizeof run->radii);
   vlGraphicsState now = import->state;
-  import->state.inside = run->inside, import->state.outside = run->outside;
+  import->state.inside = run->inside;
+  import->state.outside = run->outside;
   bool fine = vl_import_add_shape(import, d, &run->link) &&
               vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, d->source);
   import->state = now;
@@ -61,7 +65,10 @@ static bool take_place(vlShapeDef *def, double center[3], float *radius) {
   *radius = def->radius;
   bool even =
       s > 0 && m[5] == s && m[10] == s && m[1] == 0 && m[2] == 0 && m[4] == 0 && m[6] == 0 && m[8] == 0 && m[9] == 0;
-  if (even) m[0] = m[5] = m[10] = 1, *radius = (float)(s * (double)def->radius);
+  if (even) {
+    m[0] = m[5] = m[10] = 1;
+    *radius = (float)(s * (double)def->radius);
+  }
   m[3] = m[7] = m[11] = 0;
   for (int i = 0; i < 16; i++) m[i] += 0.0; /* no negative zeros: states are compared by bits */
   vlMat4 inverse;
@@ -72,8 +79,10 @@ static bool take_place(vlShapeDef *def, double center[3], float *radius) {
 
 static bool open_run(vlImport *import, vlSphereRun *run, const vlShapeDef *def, const vlShapeLink *link) {
   if (!flush(import, run)) return false;
-  run->def = *def, run->link = *link;
-  run->inside = import->state.inside, run->outside = import->state.outside;
+  run->def = *def;
+  run->link = *link;
+  run->inside = import->state.inside;
+  run->outside = import->state.outside;
   run->open = vl_scene_copy_source(import->scene, &run->def.source);
   return run->open;
 }

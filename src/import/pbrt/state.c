@@ -66,7 +66,8 @@ bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]
   const char *kept = vl_import_keep(import, name);
   vlTransforms *slot = kept ? VL_PUSH(import->context, &import->matrices) : NULL;
   if (!slot) return vl_import_fail_memory(import);
-  slot->at[0] = m[0], slot->at[1] = m[1];
+  slot->at[0] = m[0];
+  slot->at[1] = m[1];
   if (vl_names_add(import->context, &import->coordinate_systems, kept, (uint32_t)import->matrices.count - 1))
     return true;
   return vl_import_fail_memory(import);

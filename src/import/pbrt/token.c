@@ -7,7 +7,10 @@
 #include "import/pbrt/decimal.h"
 
 void vl_tokenizer_start(vlTokenizer *t, char *data, size_t size) {
-  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) data += 3, size -= 3;
+  if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
+    data += 3;
+    size -= 3;
+  }
   *t = (vlTokenizer){.at = data, .end = data + size, .line_start = data, .line = 1};
 }
 
@@ -137,18 +140,24 @@ bool vl_number_scan(const char **text, const char *end, double *value) {
   bool exact = true, any = false;
   for (; p < end && is_digit(*p); p++) {
     any = true;
-    if (digits < 18)
-      mantissa = mantissa * 10 + (uint64_t)(*p - '0'), digits += mantissa != 0;
-    else
-      exact = exact && *p == '0', exponent += exponent < 100000;
+    if (digits < 18) {
+      mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+      digits += mantissa != 0;
+    } else {
+      exact = exact && *p == '0';
+      exponent += exponent < 100000;
+    }
   }
   if (p < end && *p == '.') {
     for (p++; p < end && is_digit(*p); p++) {
       any = true;
-      if (digits < 18)
-        mantissa = mantissa * 10 + (uint64_t)(*p - '0'), digits += mantissa != 0, exponent -= exponent > -100000;
-      else
+      if (digits < 18) {
+        mantissa = mantissa * 10 + (uint64_t)(*p - '0');
+        digits += mantissa != 0;
+        exponent -= exponent > -100000;
+      } else {
         exact = exact && *p == '0';
+      }
     }
   }
   if (!any) return false;

@@ -104,7 +104,10 @@ bool vl_ply_read_length(vlPlyReader *r, const vlPlyProperty *p, uint64_t *length
 
 static bool skip_rows(vlPlyReader *r, const vlPlyElement *e) {
   double ignored;
-  if (r->format != VL_PLY_ASCII && !e->has_list) return r->at += e->count * e->row_size, true;
+  if (r->format != VL_PLY_ASCII && !e->has_list) {
+    r->at += e->count * e->row_size;
+    return true;
+  }
   if (e->property_count == 0) return true;
   for (uint64_t i = 0; i < e->count; i++)
     for (uint32_t j = 0; j < e->property_count; j++) {

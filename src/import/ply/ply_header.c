@@ -62,7 +62,10 @@ static bool find_type(const char *name, vlPlyType *type) {
       {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
   for (int i = 0; i < 2; i++)
     for (int t = 0; t < VL_PLY_TYPES; t++)
-      if (strcmp(name, names[i][t]) == 0) return *type = (vlPlyType)t, true;
+      if (strcmp(name, names[i][t]) == 0) {
+        *type = (vlPlyType)t;
+        return true;
+      }
   return false;
 }
 
@@ -173,8 +176,10 @@ bool vl_ply_read_header(vlPlyReader *r) {
   Words w;
   bool has_format = false;
   r->line = 0;
-  if (r->end - r->at < 4 || memcmp(r->at, "ply", 3) != 0 || (r->at[3] != '\n' && r->at[3] != '\r'))
-    return r->line = 1, vl_ply_fail(r, "the file does not begin with \"ply\"");
+  if (r->end - r->at < 4 || memcmp(r->at, "ply", 3) != 0 || (r->at[3] != '\n' && r->at[3] != '\r')) {
+    r->line = 1;
+    return vl_ply_fail(r, "the file does not begin with \"ply\"");
+  }
   if (!next_line(r, &w)) return false;
   for (;;) {
     if (!next_line(r, &w)) return false;

@@ -128,7 +128,9 @@ static bool add_triangle(vlPlyReader *r, uint32_t a, uint32_t b, uint32_t c) {
   if (m->triangles == 0x3fffffff) return vl_ply_fail(r, "too many faces");
   if (!grow(r, &m->triangle_indices, &r->triangle_capacity, 3 * ((size_t)m->triangles + 1))) return false;
   uint32_t *t = m->triangle_indices + 3 * (size_t)m->triangles++;
-  t[0] = a, t[1] = b, t[2] = c;
+  t[0] = a;
+  t[1] = b;
+  t[2] = c;
   return true;
 }
 
@@ -139,7 +141,10 @@ static bool add_face(vlPlyReader *r, const uint32_t *v, uint64_t n) {
     if (m->quads == 0x3fffffff) return vl_ply_fail(r, "too many faces");
     if (!grow(r, &m->quad_indices, &r->quad_capacity, 4 * ((size_t)m->quads + 1))) return false;
     uint32_t *q = m->quad_indices + 4 * (size_t)m->quads++;
-    q[0] = v[0], q[1] = v[1], q[2] = v[3], q[3] = v[2]; /* order around the face to p00 p10 p01 p11 */
+    q[0] = v[0];
+    q[1] = v[1];
+    q[2] = v[3];
+    q[3] = v[2]; /* order around the face to p00 p10 p01 p11 */
     return true;
   }
   for (uint64_t i = 2; i < n; i++)
@@ -154,7 +159,8 @@ static bool add_colors(vlPlyReader *r, uint32_t first, const float color[3]) {
     size_t wanted = (size_t)m->triangles + m->triangles / 2 + 1024;
     float *fresh = vl_realloc_array(r->context, m->face_colors, wanted, 3 * sizeof *fresh);
     if (!fresh) return vl_ply_fail_memory(r);
-    m->face_colors = fresh, r->color_capacity = wanted;
+    m->face_colors = fresh;
+    r->color_capacity = wanted;
   }
   for (size_t i = first; i < m->triangles; i++) memcpy(m->face_colors + 3 * i, color, 3 * sizeof *color);
   return true;
@@ -267,7 +273,9 @@ static bool read_strip(vlPlyReader *r, const vlPlyProperty *p) {
     uint32_t v = (uint32_t)value;
     if (run >= 2 && !(run & 1 ? add_triangle(r, last[1], last[0], v) : add_triangle(r, last[0], last[1], v)))
       return false;
-    last[0] = last[1], last[1] = v, run++;
+    last[0] = last[1];
+    last[1] = v;
+    run++;
   }
   return true;
 }

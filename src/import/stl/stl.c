@@ -121,7 +121,8 @@ vlResult vl_import_stl(vlScene *scene, const char *path, const vlLoadDef *load, 
   vl_import_plain_settings(scene);
   vlResult r = vl_file_read_given(scene->context, path, true, &data, &size, &inside);
   if (r != VL_OK) vl_scene_fail(scene, r, (vlSource){.file = path}, "%s", inside.message);
-  s.at = data, s.end = data + size;
+  s.at = data;
+  s.end = data + size;
   bool ok = r == VL_OK && read(&s);
   vl_free(scene->context, data);
   size_t vertices = s.positions.count / 3;

@@ -65,7 +65,10 @@ bool vl_old_block(vlOldFile *file, vlOldStatement *s) {
   /* an outer block of the same kind sets the attribute, too */
   vlOldBlock *outer = file->blocks.count ? &file->blocks.items[file->blocks.count - 1] : NULL;
   for (int i = 0; i < SETTERS && outer; i++)
-    if (block.set[i].end > block.set[i].start) outer->set[i] = block.set[i], outer->line[i] = block.line[i];
+    if (block.set[i].end > block.set[i].start) {
+      outer->set[i] = block.set[i];
+      outer->line[i] = block.line[i];
+    }
   return repeat(file, s, &block);
 }
 

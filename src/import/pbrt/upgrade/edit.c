@@ -241,11 +241,14 @@ char *vl_old_render(vlOldFile *file, vlOldSpan span) {
   for (size_t i = 0; i < file->edits.count; i++) {
     const vlOldEdit *e = &file->edits.items[i];
     if (e->span.start < at || e->span.end > span.end) continue; /* outside, or inside of a larger edit */
-    memcpy(to, file->text + at, e->span.start - at), to += e->span.start - at;
-    memcpy(to, e->text, strlen(e->text)), to += strlen(e->text);
+    memcpy(to, file->text + at, e->span.start - at);
+    to += e->span.start - at;
+    memcpy(to, e->text, strlen(e->text));
+    to += strlen(e->text);
     at = e->span.end;
   }
-  memcpy(to, file->text + at, span.end - at), to += span.end - at;
+  memcpy(to, file->text + at, span.end - at);
+  to += span.end - at;
   *to = 0;
   return out;
 }

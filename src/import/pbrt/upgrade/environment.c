@@ -59,7 +59,10 @@ static void fill_row(void *user, uint32_t y, uint32_t worker) {
 /* Three channels; those of an image of one are equal. */
 static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from, float **pixels) {
   uint32_t channel[4], count = vl_image_color(from, channel);
-  if (!count) return u->result = vl_fail(&u->error, VL_ERROR_SCENE, "%s: the image has no colour", map->from), false;
+  if (!count) {
+    u->result = vl_fail(&u->error, VL_ERROR_SCENE, "%s: the image has no colour", map->from);
+    return false;
+  }
   if (count < 3) channel[1] = channel[2] = channel[0];
   return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(u);
 }

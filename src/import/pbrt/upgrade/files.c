@@ -162,19 +162,31 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
     text = NULL;
   }
   const vlOldInclude *known = find_text(u, path, text);
-  if (known) return vl_free(u->context, text), known;
+  if (known) {
+    vl_free(u->context, text);
+    return known;
+  }
   if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name)) return NULL;
-  if (text && (!new_name(u, s->name[0], path, name, sizeof name) || !make_unique(u, name, sizeof name)))
-    return vl_free(u->context, text), vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long"), NULL;
+  if (text && (!new_name(u, s->name[0], path, name, sizeof name) || !make_unique(u, name, sizeof name))) {
+    vl_free(u->context, text);
+    vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
+    return NULL;
+  }
   if (text && !keep_output(u, name, text)) return NULL;
   vlOldInclude *n = VL_PUSH(u->context, &u->includes);
-  if (!n) return vl_old_fail_memory(u), NULL;
+  if (!n) {
+    vl_old_fail_memory(u);
+    return NULL;
+  }
   *n = (vlOldInclude){.path = vl_strdup(u->context, path),
                       .name = vl_strdup(u->context, name),
                       .text = text,
                       .makes = u->names.count > made,
                       .refers = u->referred > referred};
-  if (!n->path || !n->name) return vl_old_fail_memory(u), NULL;
+  if (!n->path || !n->name) {
+    vl_old_fail_memory(u);
+    return NULL;
+  }
   return n;
 }
 

@@ -85,7 +85,8 @@ static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, doubl
   } else if (sampled && !p->strings && p->count && p->count % 2 == 0) {
     fine = read_pairs(file, p, &wavelengths, &values);
     spectrum.kind = VL_SPECTRUM_SAMPLED;
-    spectrum.wavelengths = wavelengths, spectrum.values = values;
+    spectrum.wavelengths = wavelengths;
+    spectrum.values = values;
     spectrum.count = (uint32_t)(p->count / 2);
   } else {
     return true;

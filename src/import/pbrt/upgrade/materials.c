@@ -172,7 +172,10 @@ static bool tell_path(vlOldFile *file, const vlOldStatement *s) {
 static bool subsurface_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *name = vl_old_find(s, "name"), *a = vl_old_find(s, "sigma_a"), *b = vl_old_find(s, "sigma_s");
   bool named = name && name->strings && name->text[0][0];
-  if (named) vl_old_drop(s, a), vl_old_drop(s, b);
+  if (named) {
+    vl_old_drop(s, a);
+    vl_old_drop(s, b);
+  }
   tell_path(file, s);
   if (named || !a == !b) return true;
   return vl_old_add(file, s, "%s", a ? "\"rgb sigma_s\" [ 2.55 3.21 3.77 ]" : "\"rgb sigma_a\" [ .0011 .0024 .014 ]");

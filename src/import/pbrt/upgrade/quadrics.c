@@ -34,7 +34,9 @@ typedef struct Grid {
 static void point(const Grid *g, uint32_t i, uint32_t j, double p[3]) {
   double u = (double)i / (g->nu - 1), v = (double)j / (g->nv - 1), angle = u * g->phi;
   if (g->kind == 3) {
-    p[0] = u, p[1] = v, p[2] = g->z_values[(size_t)j * g->nu + i];
+    p[0] = u;
+    p[1] = v;
+    p[2] = g->z_values[(size_t)j * g->nu + i];
     return;
   }
   double c = vl_precise_cos(angle), s = vl_precise_sin(angle), x = 0, y = 0;
@@ -42,10 +44,12 @@ static void point(const Grid *g, uint32_t i, uint32_t j, double p[3]) {
   if (g->kind == 0) x = g->radius * (1 - v);
   if (g->kind == 1) x = g->radius * sqrt(p[2] / g->z[1]);
   if (g->kind == 2) {
-    x = g->p1[0] + v * (g->p2[0] - g->p1[0]), y = g->p1[1] + v * (g->p2[1] - g->p1[1]);
+    x = g->p1[0] + v * (g->p2[0] - g->p1[0]);
+    y = g->p1[1] + v * (g->p2[1] - g->p1[1]);
     p[2] = g->p1[2] + v * (g->p2[2] - g->p1[2]);
   }
-  p[0] = x * c - y * s, p[1] = x * s + y * c;
+  p[0] = x * c - y * s;
+  p[1] = x * s + y * c;
 }
 
 static bool write_grid(vlContext *context, const Grid *g, Text *text) {
@@ -76,7 +80,8 @@ static bool read_heights(vlOldFile *file, vlOldStatement *s, Grid *g) {
   double nu = vl_old_number(s, "nu", 0), nv = vl_old_number(s, "nv", 0);
   if (!p || !(nu >= 2) || !(nv >= 2) || nu * nv != (double)p->count || p->count > MOST_HEIGHTS)
     return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "heightfield: \"Pz\" must hold nu * nv numbers");
-  g->nu = (uint32_t)nu, g->nv = (uint32_t)nv;
+  g->nu = (uint32_t)nu;
+  g->nv = (uint32_t)nv;
   g->z_values = vl_alloc_array(file->u->context, p->count, sizeof *g->z_values);
   if (!g->z_values) return vl_old_fail_memory(file->u);
   const char *at = file->text + p->value.start, *end = file->text + p->value.end;
@@ -106,7 +111,10 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   g.z[1] = g.kind == 1 ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
   read_point(s, "p1", g.p1);
   read_point(s, "p2", g.p2);
-  if (g.kind == 3 && !read_heights(file, s, &g)) return vl_free(context, g.z_values), false;
+  if (g.kind == 3 && !read_heights(file, s, &g)) {
+    vl_free(context, g.z_values);
+    return false;
+  }
   Text text = {0};
   bool fine = write_grid(context, &g, &text) || vl_old_fail_memory(file->u);
   vl_free(context, g.z_values);

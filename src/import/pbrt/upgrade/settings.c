@@ -33,7 +33,10 @@ static bool half_fov(vlOldFile *file, vlOldStatement *s) {
   char text[32];
   (void)file;
   if (!p || p->count < 1) return true;
-  if (vl_old_find(s, "fov")) return vl_old_drop(s, vl_old_find(s, "fov")), true;
+  if (vl_old_find(s, "fov")) {
+    vl_old_drop(s, vl_old_find(s, "fov"));
+    return true;
+  }
   p->new_name = "fov";
   snprintf(p->new_value, sizeof p->new_value, "%s", vl_old_text(2 * p->number[0], text));
   return true;

@@ -93,14 +93,16 @@ static bool scale_rule(vlOldFile *file, vlOldStatement *s) {
   }
   if (!one_number(b, &value) && one_number(a, &value)) {
     vlOldParam *t = a;
-    a = b, b = t;
+    a = b;
+    b = t;
   }
   if (b && one_number(b, &value)) {
     set_scale(file, b);
   } else if (b && vl_old_is_texture(b)) {
     if (a && vl_old_is_texture(a) && is_noise(file->u, a->text[0])) {
       vlOldParam *t = a;
-      a = b, b = t;
+      a = b;
+      b = t;
     }
     const char *copy = vl_old_float_copy(file, s, b->text[0]);
     if (file->u->result != VL_OK) return false;
@@ -221,7 +223,10 @@ const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *te
   char name[300];
   snprintf(name, sizeof name, "%.200s-float", texture);
   t->copy = vl_strdup(u->context, name);
-  if (!t->copy) return vl_old_fail_memory(u), NULL;
+  if (!t->copy) {
+    vl_old_fail_memory(u);
+    return NULL;
+  }
   return vl_old_before(file, s, "Texture \"%s\" \"float\" %s", name, t->text) ? t->copy : NULL;
 }
 
@@ -231,7 +236,10 @@ static bool keep(vlOldFile *file, const vlOldStatement *s) {
   if (strcmp(s->name[2], "imagemap") != 0 || !is_spectrum(s)) return true;
   char *text = vl_old_render(file, (vlOldSpan){s->names[2].start, s->whole.end});
   vlOldTexture *t = text ? VL_PUSH(u->context, &u->textures) : NULL;
-  if (!t) return vl_free(u->context, text), vl_old_fail_memory(u);
+  if (!t) {
+    vl_free(u->context, text);
+    return vl_old_fail_memory(u);
+  }
   *t = (vlOldTexture){.name = vl_strdup(u->context, s->name[0]), .text = text};
   return t->name || vl_old_fail_memory(u);
 }

@@ -139,7 +139,10 @@ static bool write_text(vlUpgrade *u, const char *path, const char *text) {
     vl_file_write(&writer, text, strlen(text));
     r = vl_file_commit(&writer, &u->error);
   }
-  if (r != VL_OK) return u->result = r, false;
+  if (r != VL_OK) {
+    u->result = r;
+    return false;
+  }
   vlError place = {0};
   vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
   if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "a pbrt-v4 file");

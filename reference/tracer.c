@@ -23,7 +23,7 @@ typedef struct path {
  * as the curve is thick. */
 static ray ray_from(const world *w, const shade_record *at, vector direction, double time) {
   double side = dot(direction, at->normal) < 0 ? -1 : 1;
-  vector origin = add(at->point, scale(side * 5 * at->thickness, at->normal));
+  vector origin = add(at->point, scale(side * at->thickness, at->normal));
   return (ray){origin, direction, surface_distance(w, origin), (double)INFINITY, time};
 }
 
@@ -65,6 +65,10 @@ static void add_direct_light(const world *w, path *p, const bsdf *b, const shade
   spectrum value = times(asked.radiance, bsdf_value(b, negate(p->r.direction), asked.direction, s, &density));
   if (largest(value) == 0) return;
   ray shadow = ray_from(w, at, asked.direction, p->r.time);
+  if (at->thickness > 0 && isfinite(asked.distance)) { /* to the same place of the light, from where the ray starts */
+    aim_at(add(at->point, scale(asked.distance, asked.direction)), shadow.origin, &asked);
+    shadow.direction = asked.direction;
+  }
   const vlMediumDef *inside = medium_beyond(w, at, asked.direction, p->inside);
   value = times(value, visibility(w, shadow, asked.distance, inside, s, lambda));
   double share = asked.single ? 1 : share_of(asked.density, density);

@@ -13,7 +13,8 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
     case VL_SHAPE_SPHERE:
     case VL_SHAPE_DISK:
     case VL_SHAPE_CYLINDER:
-    case VL_SHAPE_BILINEAR: return true;
+    case VL_SHAPE_BILINEAR:
+    case VL_SHAPE_CURVES: return true;
     default: return refuse_kind(error, def->source, "shapes", (uint32_t)def->kind);
   }
 }
@@ -32,7 +33,8 @@ static bool check_material(const vlMaterialDef *def, vlError *error) {
     case VL_MATERIAL_DIELECTRIC:
     case VL_MATERIAL_MIX:
     case VL_MATERIAL_INTERFACE:
-    case VL_MATERIAL_COATED_DIFFUSE: return true;
+    case VL_MATERIAL_COATED_DIFFUSE:
+    case VL_MATERIAL_HAIR: return true;
     default: return refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
   }
 }

@@ -2,7 +2,7 @@
  * is scattered by the base, and is reflected between base and coat until it leaves. The coat absorbs; it does not
  * scatter. Walks give values with noise; directions are drawn from a simple density, so that density and value may be
  * asked for any direction. */
-#include "coated.h"
+#include "bsdfs.h"
 
 #include "microfacet.h"
 

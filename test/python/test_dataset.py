@@ -384,6 +384,48 @@ def yaml_recipes_and_shards():
 
 
 @case
+def writers_know_the_names_of_their_files():
+    recipe = dataset.Recipe(seed=3, frames=3, resolution=(32, 24), spp=1, models=[
+        dataset.Model(name=name, positions=MESHES[name][0], indices=MESHES[name][1], scale=SCALES[name], count=(0, 2)) for name in MESHES],
+        cameras=[dataset.Around(distance=(1, 2), name="a"), dataset.Around(distance=(1, 2), name="b")])
+    folder = work("names")
+    dataset.generate(recipe, folder, writers=sorted(dataset.generate.__globals__["WRITERS"]))
+    stage = dataset.Stage(recipe)
+    for writer in dataset.make_writers(stage, folder, ["bop", "coco", "exr", "nerfstudio"]):
+        known = set(writer.tables(2))
+        for frame in range(3):
+            for scene, view in enumerate("ab"):
+                known.update(writer.names(frame, view, scene))
+        written = {os.path.relpath(path, writer.folder) for path in glob.glob(os.path.join(writer.folder, "**", "*.*"), recursive=True)}
+        assert len(written) >= 12 and written <= known, (writer.folder, written - known)
+
+
+@case
+def outputs_are_checked_before_anything_is_written():
+    """An input that the last file of all would replace."""
+    write_obj(work("tile.obj"), MESHES["block"])
+    for writer, name in (("coco", "images/000002_camera0.png"), ("bop", "train_pbr/000000/mask_visib/000002_000000.png"),
+                         ("exr", "000002_camera0.exr"), ("nerfstudio", "depth/000002_camera0.png")):
+        folder = work("early_" + writer)
+        texture = os.path.join(folder, writer, name)
+        os.makedirs(os.path.dirname(texture))
+        velo.Image(numpy.ones((2, 2, 3), "float32")).write(texture)
+        before = open(texture, "rb").read()
+        for rule in ({"ground": {"materials": {"textures": [texture]}}}, {"environment": {"kind": "studio", "files": [texture]}}):
+            with open(work("early.json"), "w") as file:
+                json.dump({"models": ["tile.obj"], "frames": 3, "spp": 1, "resolution": [32, 24],
+                           "cameras": [{"kind": "around", "distance": [1, 2], "name": "camera0"}], **rule}, file)
+            done = run(work("early.json"), "-o", folder, "--writers", writer)
+            assert done.returncode == 2 and os.path.basename(name) in done.stderr and "overwritten" in done.stderr, (writer, done.stderr)
+            assert "frame 0" not in done.stdout, done.stdout
+            files = [path for path in glob.glob(os.path.join(folder, "**", "*.*"), recursive=True)]
+            assert files == [texture] and open(texture, "rb").read() == before, files
+        # frames that do not write it are made
+        done = run(work("early.json"), "-o", folder, "--writers", writer, "--frames", "0")
+        assert done.returncode == 0, done.stderr
+
+
+@case
 def no_file_that_was_read_is_overwritten():
     folder = work("inputs")
     os.makedirs(os.path.join(folder, "coco"))

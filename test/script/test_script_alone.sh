@@ -27,6 +27,15 @@ expect_code 4 "a missing scene is velo's 4" "$render" none.pbrt
 expect_code 2 "a wrong option is velo's 2" "$render" small.pbrt --no-such-option
 expect_code 0 "help passes" "$render" --help
 
+# All that is built from is noticed: sources, the pages and the lecture in the program, the Python package.
+noticed() { # FILE [TARGET]
+  touch "$VELO_SOURCE_DIR/$1"
+  run "$VELO_SOURCE_DIR/script/build" release ${2:+"$2"}
+  if [ "$code" = 0 ] && [[ $err == *"building release"* ]]; then pass "a change of $1 is built"; else fail "a change of $1 is built"; show "$1"; fi
+}
+for file in web/README.md docs/lezione.md scenes/lecture/pinhole.pbrt; do noticed $file velo_app; done
+noticed python/velo/dataset/files.py
+
 # What stands before velo costs less than 0.3 s once all is built (median of five).
 times=
 for _ in 1 2 3 4 5; do

@@ -5,7 +5,7 @@ pixel's centre at (0, 0)). depth * depth_scale is the depth along the view axis 
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Iterator
 
 import numpy
 
@@ -24,12 +24,32 @@ class BopWriter(Writer):
     def __init__(self, stage: Stage, folder: str, depth_scale: float = 0.1) -> None:
         super().__init__(stage, os.path.join(folder, "bop"))
         self.depth_scale = depth_scale
+
+    def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
+        folder, name = os.path.join("train_pbr", f"{scene:06d}"), f"{frame:06d}"
+        yield os.path.join(folder, "rgb", f"{name}.png")
+        yield os.path.join(folder, "depth", f"{name}.png")
+        for number in range(self.stage.most_objects):
+            yield os.path.join(folder, "mask", f"{name}_{number:06d}.png")
+            yield os.path.join(folder, "mask_visib", f"{name}_{number:06d}.png")
+        yield self.part_name(frame, view)
+
+    def tables(self, scenes: int) -> Iterator[str]:
+        for number in range(len(self.stage.boxes)):
+            yield os.path.join("models", f"obj_{number + 1:06d}.ply")
+        yield os.path.join("models", "models_info.json")
+        for scene in range(scenes):
+            for name in ("scene_camera", "scene_gt", "scene_gt_info"):
+                yield os.path.join("train_pbr", f"{scene:06d}", f"{name}.json")
+        yield "camera.json"
+
+    def begin(self) -> None:
         info = {}
-        for number, (low, high) in enumerate(stage.boxes):
+        for number, (low, high) in enumerate(self.stage.boxes):
             size = [(b - a) * MM for a, b in zip(low, high)]
-            points, faces = triangles(stage.model(number), stage.recipe.models[number].scale * MM)
+            points, faces = triangles(self.stage.model(number), self.stage.recipe.models[number].scale * MM)
             self.write_bytes(os.path.join(self.folder, "models", f"obj_{number + 1:06d}.ply"), ply(points, faces))
-            info[str(number + 1)] = {"name": stage.names[number],
+            info[str(number + 1)] = {"name": self.stage.names[number],
                                      "diameter": diameter(points) or sum(s * s for s in size) ** 0.5,
                                      **{f"min_{axis}": value * MM for axis, value in zip("xyz", low)},
                                      **{f"size_{axis}": value for axis, value in zip("xyz", size)}}

@@ -5,7 +5,7 @@ are in pixels whose first has its centre at (0.5, 0.5); v is 2: visible, 1: hidd
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Iterator
 
 import numpy
 
@@ -76,6 +76,13 @@ class CocoWriter(Writer):
     def __init__(self, stage: Stage, folder: str, rle: bool = False) -> None:
         super().__init__(stage, os.path.join(folder, "coco"))
         self.rle = rle
+
+    def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
+        yield os.path.join("images", f"{frame:06d}_{view}.png")
+        yield self.part_name(frame, view)
+
+    def tables(self, scenes: int) -> Iterator[str]:
+        yield "annotations.json"
 
     def write(self, frame: Frame, scene: int) -> None:
         name = f"{frame.frame:06d}_{frame.view}.png"

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from typing import Iterator
 
 from velo.dataset.stage import Frame, Stage
 from velo.dataset.writer import Writer, box_of
@@ -12,6 +13,13 @@ class ExrWriter(Writer):
 
     def __init__(self, stage: Stage, folder: str) -> None:
         super().__init__(stage, os.path.join(folder, "exr"))
+
+    def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
+        yield f"{frame:06d}_{view}.exr"
+        yield f"{frame:06d}_{view}.json"
+
+    def tables(self, scenes: int) -> Iterator[str]:
+        yield from ()
 
     def write(self, frame: Frame, scene: int) -> None:
         os.makedirs(self.folder, exist_ok=True)

@@ -10,6 +10,7 @@ from velo._context import protecting_context
 from velo._errors import UsageError, unknown, wrong_value
 from velo.dataset.bop import BopWriter
 from velo.dataset.check import checked
+from velo.dataset.cameras import View
 from velo.dataset.coco import CocoWriter
 from velo.dataset.exr import ExrWriter
 from velo.dataset.nerfstudio import NerfstudioWriter
@@ -40,15 +41,15 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
 
     frames: numbers from 0; default all of the recipe. Shards on several machines make different frames of one folder; the
     tables over all frames are written anew by each, from what is there. A file that was read for the dataset (the recipe,
-    models, cameras, textures) is not overwritten. progress: called with each finished frame."""
+    models, cameras, textures) is not overwritten: one that would be is found when the first frame is loaded, before anything is
+    rendered or written. progress: called with each finished frame."""
     if not isinstance(folder, (str, os.PathLike)) or not os.fspath(folder):
         raise wrong_value("folder", "a path: a str or an os.PathLike", folder)
     _check.callback(progress, "progress")
     recipe = checked(recipe)
     context = protecting_context() if context is None else context
-    if recipe.path:
-        context.note_input(recipe.path)
     stage = Stage(recipe, context=context)
+    stage.note_inputs()
     last = stage.recipe.frames - 1
     numbers = range(last + 1) if frames is None else frames
     if not isinstance(numbers, range):
@@ -57,19 +58,29 @@ def generate(recipe: Recipe, folder: Union[str, "os.PathLike[str]"], *, writers:
         raise wrong_value("frames", f"numbers from 0 to {last}", numbers)
     made = make_writers(stage, os.fspath(folder), writers)
 
+    def begin(views: Sequence[View]) -> None:
+        for writer in made:
+            writer.check(numbers, [view.name for view in views])
+        for writer in made:
+            writer.begin()
+
     def write(images: list[Frame]) -> None:
         for scene, frame in enumerate(images):
             for writer in made:
                 writer.write(frame, scene)
 
+    begun = False
     # A frame is written while the next one renders.
     with ThreadPoolExecutor(max_workers=1) as pool:
         pending: Optional[tuple[int, Future[None]]] = None
         for number in numbers:
-            images = stage.render(number)
+            images = stage.render(number, None if begun else lambda plan: begin(plan.views))
+            begun = True
             _finish(pending, progress)
             pending = number, pool.submit(write, images)
         _finish(pending, progress)
+    if not begun:
+        begin(stage.plan(0).views)
     for writer in made:
         writer.finish()
 

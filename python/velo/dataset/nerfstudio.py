@@ -4,7 +4,7 @@ Poses are world from camera with x right, y up, z back. Depths are 16-bit PNGs i
 from __future__ import annotations
 
 import os
-from typing import Any
+from typing import Any, Iterator
 
 import numpy
 
@@ -36,6 +36,14 @@ class NerfstudioWriter(Writer):
 
     def __init__(self, stage: Stage, folder: str) -> None:
         super().__init__(stage, os.path.join(folder, "nerfstudio"))
+
+    def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
+        yield os.path.join("images", f"{frame:06d}_{view}.png")
+        yield os.path.join("depth", f"{frame:06d}_{view}.png")
+        yield self.part_name(frame, view)
+
+    def tables(self, scenes: int) -> Iterator[str]:
+        yield "transforms.json"
 
     def write(self, frame: Frame, scene: int) -> None:
         name = f"{frame.frame:06d}_{frame.view}.png"

@@ -5,7 +5,7 @@ import logging
 import math
 import os
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Optional
+from typing import Any, Callable, NamedTuple, Optional
 
 import numpy
 
@@ -124,6 +124,22 @@ class Stage:
         #: bounding boxes in metres, in the models' own spaces
         self.boxes = [([value * model.scale for value in solo.low], [value * model.scale for value in solo.high])
                       for model, solo in zip(recipe.models, self._solo)]
+
+    @property
+    def most_objects(self) -> int:
+        """The largest number of objects in a frame."""
+        if isinstance(self.recipe.placing, Poses):
+            return max(len(frame) for frame in self.recipe.placing.frames)
+        return sum(count if isinstance(count, int) else int(count[1]) for count in (model.count for model in self.recipe.models))
+
+    def note_inputs(self) -> None:
+        """Tells the context of the recipe's files, also of those that only later frames read."""
+        recipe = self.recipe
+        looks = [rule.materials for rule in (recipe.ground, recipe.distractors) if rule]
+        files = [name for rule in looks for name in rule.textures] + list(recipe.environment.files if recipe.environment else ())
+        for path in [recipe.path] + [os.path.join(recipe.folder, name) for name in files]:
+            if path and os.path.exists(path):
+                self.context.note_input(path)
 
     def _load(self, model: Model) -> _Loaded:
         scene = velo.Scene(context=self.context)
@@ -268,12 +284,14 @@ class Stage:
                  (0, 6, 4), (1, 5, 7), (1, 7, 3)]
         scene.add_mesh(corners, faces, transform=item["pose"], material=material, name="distractor")
 
-    def render(self, frame: int) -> list[Frame]:
-        """The images of a frame, one for each camera."""
+    def render(self, frame: int, ready: Optional[Callable[[Plan], None]] = None) -> list[Frame]:
+        """The images of a frame, one for each camera. ready: called when all is loaded, before the first image."""
         plan = self.plan(frame)
         with self.scene(plan) as scene:
             # Meshes and images are those of the last frame's world. The bits do not depend on it.
             self._world = scene.world(previous=self._world, **self._build)
+            if ready:
+                ready(plan)
             return [self._render_view(scene, plan, view) for view in plan.views]
 
     def _render_view(self, scene: Any, plan: Plan, view: View) -> Frame:

@@ -5,12 +5,29 @@ from __future__ import annotations
 import glob
 import json
 import os
-from typing import Any, Iterator, Sequence
+from typing import Any, Iterable, Iterator, Sequence
 
 import numpy
 
 from velo.dataset.files import read_json, write_bytes
 from velo.dataset.stage import Frame, Stage
+
+
+class Folders:
+    """The names of what is in the folders below one; each is read once."""
+
+    def __init__(self, base: str) -> None:
+        self._base = base
+        self._names: dict[str, frozenset[str]] = {}
+
+    def names(self, folder: str) -> frozenset[str]:
+        """Of a folder, relative to the base. None where there is no such folder."""
+        if folder not in self._names:
+            try:
+                self._names[folder] = frozenset(os.listdir(os.path.join(self._base, folder)))
+            except OSError:
+                self._names[folder] = frozenset()
+        return self._names[folder]
 
 
 class Writer:
@@ -20,12 +37,40 @@ class Writer:
         self.stage = stage
         self.folder = folder
 
+    def names(self, frame: int, view: str, scene: int) -> Iterator[str]:
+        """The files that write() may write for a frame, relative to the folder; view, scene: the camera's name and number."""
+        raise NotImplementedError
+
+    def tables(self, scenes: int) -> Iterator[str]:
+        """The files that begin() and finish() may write; scenes: the number of cameras."""
+        raise NotImplementedError
+
+    def begin(self) -> None:
+        """Writes what is about the models, before the first frame."""
+
     def write(self, frame: Frame, scene: int) -> None:
         """Writes the files of a frame. scene: the camera's number, from 0."""
         raise NotImplementedError
 
     def finish(self) -> None:
         """Writes what is about all frames."""
+
+    def check(self, frames: Iterable[int], views: Sequence[str]) -> None:
+        """Raises the velo.UsageError of the first file that would replace one which the context has read."""
+        folders = Folders(self.folder)
+        if not folders.names(""):
+            return
+        for name in self.tables(len(views)):
+            self._check_name(folders, name)
+        for frame in frames:
+            for scene, view in enumerate(views):
+                for name in self.names(frame, view, scene):
+                    self._check_name(folders, name)
+
+    def _check_name(self, folders: Folders, name: str) -> None:
+        folder, last = os.path.split(name)
+        if last in folders.names(folder):
+            self.stage.context.check_output(os.path.join(self.folder, name))
 
     def write_bytes(self, path: str, data: bytes) -> None:
         """Writes a file whole or not at all, and the folders above it; never over a file that the context has read."""
@@ -35,9 +80,14 @@ class Writer:
         """Writes JSON in the same way. Numbers have as many digits as it takes to read the same bits."""
         self.write_bytes(path, (json.dumps(data, allow_nan=False) + "\n").encode())
 
+    @staticmethod
+    def part_name(frame: int, view: str) -> str:
+        """The file of part(), relative to the folder."""
+        return os.path.join("parts", f"{frame:06d}_{view}.json")
+
     def part(self, frame: Frame, data: Any) -> None:
         """Keeps a frame's annotations for finish."""
-        self.write_json(os.path.join(self.folder, "parts", f"{frame.frame:06d}_{frame.view}.json"), [frame.frame, data])
+        self.write_json(os.path.join(self.folder, self.part_name(frame.frame, frame.view)), [frame.frame, data])
 
     def parts(self) -> Iterator[tuple[int, Any]]:
         """The annotations of all frames, in order: number of the frame, data."""

@@ -116,7 +116,8 @@ bool vl_adaptive_next(vlAdaptive *a, uint32_t total, uint32_t *first, uint32_t *
     if (!is_done(a, i) && spp > least && spp < end) end = spp;
   }
   if (a->noise > 0 && next_comparison(least) < end) end = next_comparison(least);
-  *first = least, *count = end - least;
+  *first = least;
+  *count = end - least;
   return a->in_pass > 0;
 }
 

@@ -19,8 +19,11 @@ static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, flo
   vl_camera_compile(camera, &c);
   double fx = floor(x), fy = floor(y);
   for (int i = 0; i < VL_LANES; i++) {
-    px[i] = (int32_t)fx, py[i] = (int32_t)fy;
-    rows[0][i] = (float)(x - fx), rows[1][i] = (float)(y - fy), rows[2][i] = 0.5f;
+    px[i] = (int32_t)fx;
+    py[i] = (int32_t)fy;
+    rows[0][i] = (float)(x - fx);
+    rows[1][i] = (float)(y - fy);
+    rows[2][i] = 0.5f;
   }
   vlCameraSamples samples = {rows[0], rows[1], px, py, rows[2], rows[2], rows[2]};
   vlCameraRays rays = {.ox = rows[3],
@@ -33,7 +36,8 @@ static void find_ends(const vlCamera *camera, vlIsa isa, double x, double y, flo
                        .t_max = rows[10],
                        .time = rows[11]};
   vl_camera_kernels(isa)->rays(&c, 1, &samples, &rays);
-  *t_min = rows[9][0], *t_max = rows[10][0];
+  *t_min = rows[9][0];
+  *t_max = rows[10][0];
 }
 
 static vlResult look(const vlWorld *world, const vlCamera *camera, double x, double y, double point[3],
@@ -51,7 +55,10 @@ static vlResult look(const vlWorld *world, const vlCamera *camera, double x, dou
     vlGroundTruthDef def = {.isa = isa};
     vl_ground_truth_plan_albedo(world, VL_SPACE_SRGB, &def);
     batch->n = 1;
-    for (int i = 0; i < 3; i++) batch->o[i][0] = o[i], batch->d[i][0] = d[i];
+    for (int i = 0; i < 3; i++) {
+      batch->o[i][0] = o[i];
+      batch->d[i][0] = d[i];
+    }
     find_ends(&pinhole, isa, x, y, &batch->t_min[0], &batch->t_max[0]);
     unsigned state = vl_accel_enter();
     vl_ground_truth_kernels(isa)->trace(world, &def, scratch, batch);

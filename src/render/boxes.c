@@ -42,8 +42,10 @@ static void raise(atomic_uint *value, uint32_t to) {
 
 static void note(Extent *e, uint32_t x, uint32_t y) {
   atomic_fetch_add_explicit(&e->count, 1, memory_order_relaxed);
-  raise(&e->low[0], ~x), raise(&e->low[1], ~y);
-  raise(&e->high[0], x), raise(&e->high[1], y);
+  raise(&e->low[0], ~x);
+  raise(&e->low[1], ~y);
+  raise(&e->high[0], x);
+  raise(&e->high[1], y);
 }
 
 static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane, const vlGroundTruthLayers *layers,
@@ -51,7 +53,10 @@ static void note_pixel(Pass *p, const vlGroundTruthBatch *b, uint32_t lane, cons
   uint32_t first[2] = {b->object[lane], b->instance[lane]};
   for (int k = 0; k < 2; k++) {
     if (!p->counts[k]) continue;
-    if (first[k]) note(&p->counts[k][first[k] - 1].seen, x, y), note(&p->counts[k][first[k] - 1].all, x, y);
+    if (first[k]) {
+      note(&p->counts[k][first[k] - 1].seen, x, y);
+      note(&p->counts[k][first[k] - 1].all, x, y);
+    }
     const uint32_t *ids = k ? layers->instance : layers->object;
     for (uint32_t i = 0; i < layers->count; i++) {
       bool again = ids[i] == 0 || ids[i] == first[k];
@@ -71,8 +76,13 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     double o[3], d[3];
     if (!vl_channel_pixel(c, tile, k, &x, &y) || !vl_camera_unproject(&c->camera, x + 0.5, y + 0.5, o, d)) continue;
-    for (int i = 0; i < 3; i++) b->o[i][n] = o[i], b->d[i][n] = d[i];
-    w->x[n] = x, w->y[n] = y, w->lane_x[n] = w->lane_y[n] = 0.5f;
+    for (int i = 0; i < 3; i++) {
+      b->o[i][n] = o[i];
+      b->d[i][n] = d[i];
+    }
+    w->x[n] = x;
+    w->y[n] = y;
+    w->lane_x[n] = w->lane_y[n] = 0.5f;
     n++;
   }
   b->n = n;
@@ -93,7 +103,10 @@ static void count_tile(void *user, uint32_t tile, uint32_t worker) {
 
 static void put_extent(Extent *e, uint64_t *count, uint32_t box[4]) {
   *count = atomic_load(&e->count);
-  for (int k = 0; k < 2 && *count; k++) box[k] = ~atomic_load(&e->low[k]), box[2 + k] = atomic_load(&e->high[k]) + 1;
+  for (int k = 0; k < 2 && *count; k++) {
+    box[k] = ~atomic_load(&e->low[k]);
+    box[2 + k] = atomic_load(&e->high[k]) + 1;
+  }
 }
 
 /* A task of vl_parallel_for: the ids of the objects come first, then those of the instances. */
@@ -186,8 +199,10 @@ vlResult vl_world_boxes(const vlWorld *world, const vlCamera *camera, const vlBo
   memcpy(p->def.crop, crop, sizeof p->def.crop);
   p->def.channels = VL_CHANNEL_ID_OBJECT;
   p->def.time = def->time;
-  p->boxes[0] = objects, p->boxes[1] = instances;
-  p->ids[0] = vl_world_id_count(world, VL_ID_OBJECT), p->ids[1] = vl_world_id_count(world, VL_ID_INSTANCE);
+  p->boxes[0] = objects;
+  p->boxes[1] = instances;
+  p->ids[0] = vl_world_id_count(world, VL_ID_OBJECT);
+  p->ids[1] = vl_world_id_count(world, VL_ID_INSTANCE);
   c->world = world;
   c->def = &p->def;
   vlStop stop;

@@ -37,14 +37,20 @@ void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView 
   if (c.when.moves && fabs(axes_length(camera->world_from_camera_close) - s) > 1e-5 * s) view->sees = false;
   if (!view->sees) return;
   view->position = (vlVec3){(float)m[3], (float)m[7], (float)m[11]};
-  view->right = axis(m, 0, s), view->down = axis(m, 1, s), view->ahead = axis(m, 2, s);
-  view->fx = (float)camera->fx, view->fy = (float)camera->fy, view->cx = (float)camera->cx,
+  view->right = axis(m, 0, s);
+  view->down = axis(m, 1, s);
+  view->ahead = axis(m, 2, s);
+  view->fx = (float)camera->fx;
+  view->fy = (float)camera->fy;
+  view->cx = (float)camera->cx;
   view->cy = (float)camera->cy;
-  view->lens_radius = (float)(camera->lens_radius * s), view->focus = (float)(camera->focus_distance * s);
-  view->near_plane = (float)(camera->near_plane * s), view->far_plane = (float)(camera->far_plane * s);
-  view->low_x = (float)film->crop[0] - film->filter.radius_x,
+  view->lens_radius = (float)(camera->lens_radius * s);
+  view->focus = (float)(camera->focus_distance * s);
+  view->near_plane = (float)(camera->near_plane * s);
+  view->far_plane = (float)(camera->far_plane * s);
+  view->low_x = (float)film->crop[0] - film->filter.radius_x;
   view->high_x = (float)film->crop[2] + film->filter.radius_x;
-  view->low_y = (float)film->crop[1] - film->filter.radius_y,
+  view->low_y = (float)film->crop[1] - film->filter.radius_y;
   view->high_y = (float)film->crop[3] + film->filter.radius_y;
 }
 
@@ -77,7 +83,10 @@ vlResult vl_first_radius(const vlWorld *world, const vlCamera *camera, const vlT
     for (int i = 0; i < SIDE * SIDE; i++) {
       double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width, y = (i / SIDE + 0.5) / SIDE * camera->height;
       if (!vl_camera_unproject(&pinhole, x, y, o, d)) continue;
-      for (int k = 0; k < 3; k++) batch->o[k][batch->n] = o[k], batch->d[k][batch->n] = d[k];
+      for (int k = 0; k < 3; k++) {
+        batch->o[k][batch->n] = o[k];
+        batch->d[k][batch->n] = d[k];
+      }
       batch->t_max[batch->n++] = VL_INFINITY;
     }
     unsigned state = vl_accel_enter();

@@ -33,7 +33,8 @@ static bool make_region(const vlChannelPass *p, uint32_t tile, Region *g) {
   vl_channel_corner(p, tile, &x, &y);
   *g = (Region){.x0 = x > crop[0] ? x : crop[0], .y0 = y > crop[1] ? y : crop[1]};
   if (g->x0 >= crop[2] || g->y0 >= crop[3]) return false;
-  g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0, g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
+  g->width = least(x + VL_CHANNEL_TILE, crop[2]) - g->x0;
+  g->height = least(y + VL_CHANNEL_TILE, crop[3]) - g->y0;
   for (int k = 0; k < 2 && p->shares; k++) g->border[k] = p->reconstruction.border[k];
   g->stride = g->width + 2 * g->border[0];
   g->count = g->stride * (g->height + 2 * g->border[1]);
@@ -54,8 +55,12 @@ static void make_rays(vlChannelWorker *w, const vlFilmRays *rays, const Region *
   vlGroundTruthBatch *b = w->batch;
   b->n = n;
   for (uint32_t i = 0; i < n; i++) {
-    b->o[0][i] = r.rays.ox[i], b->o[1][i] = r.rays.oy[i], b->o[2][i] = r.rays.oz[i];
-    b->d[0][i] = r.rays.dx[i], b->d[1][i] = r.rays.dy[i], b->d[2][i] = r.rays.dz[i];
+    b->o[0][i] = r.rays.ox[i];
+    b->o[1][i] = r.rays.oy[i];
+    b->o[2][i] = r.rays.oz[i];
+    b->d[0][i] = r.rays.dx[i];
+    b->d[1][i] = r.rays.dy[i];
+    b->d[2][i] = r.rays.dz[i];
   }
   memcpy(b->t_min, r.rays.t_min, n * sizeof(float));
   memcpy(b->t_max, r.rays.t_max, n * sizeof(float));
@@ -72,7 +77,10 @@ static void keep(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, uint32_
     vl_shared_taps(&p->reconstruction, p->image.filter_kernels, 1, n, r.film_y, g->y[0] + at, VL_FEATURE_GRID);
   }
   for (uint32_t i = 0; i < n; i++, at++) {
-    if (!p->shares) g->x[0][at] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f, g->y[0][at] = 1.0f;
+    if (!p->shares) {
+      g->x[0][at] = r.weight[i] > 0.0f ? r.weight[i] : 0.0f;
+      g->y[0][at] = 1.0f;
+    }
     bool hit = b->object[i] != 0;
     for (int k = 0; k < 3; k++) {
       g->value[ALBEDO + k][at] = hit ? b->albedo[k][i] : 0.0f;

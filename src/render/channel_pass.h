@@ -125,7 +125,8 @@ static inline void vl_channel_corner(const vlChannelPass *p, uint32_t tile, uint
 /* Coordinates of pixel k of a tile; false: outside the crop window. */
 static inline bool vl_channel_pixel(const vlChannelPass *p, uint32_t tile, uint32_t k, uint32_t *x, uint32_t *y) {
   vl_channel_corner(p, tile, x, y);
-  *x += k % VL_CHANNEL_TILE, *y += k / VL_CHANNEL_TILE;
+  *x += k % VL_CHANNEL_TILE;
+  *y += k / VL_CHANNEL_TILE;
   const uint32_t *crop = p->def->crop;
   return *x >= crop[0] && *y >= crop[1] && *x < crop[2] && *y < crop[3];
 }

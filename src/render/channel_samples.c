@@ -65,13 +65,20 @@ static void add_choice(const vlChannelPass *p, vlChannelWorker *w, Count *c, con
   float off = (hit->x - 0.5f) * (hit->x - 0.5f) + (hit->y - 0.5f) * (hit->y - 0.5f);
   if (p->def->mode == VL_CHANNEL_MODE_NEAREST) {
     if (!(hit->z < c->nearest) && !(hit->z == c->nearest && off < c->off)) return;
-    c->nearest = hit->z, c->off = off, c->x = hit->x, c->y = hit->y;
+    c->nearest = hit->z;
+    c->off = off;
+    c->x = hit->x;
+    c->y = hit->y;
     return;
   }
   vlTallyEntry *e = tally_find(&w->tallies[0], (uint64_t)hit->ids[2] << 32 | hit->ids[0]);
   if (!e) return;
   e->weight += weight;
-  if (off < e->off) e->off = off, e->x = hit->x, e->y = hit->y;
+  if (off < e->off) {
+    e->off = off;
+    e->x = hit->x;
+    e->y = hit->y;
+  }
 }
 
 static void add_matte(const vlChannelPass *p, vlChannelWorker *w, const vlSampleHit *hit, int64_t weight) {
@@ -123,10 +130,14 @@ static void end_pixel(const vlChannelPass *p, vlChannelWorker *w, const Count *c
     return;
   }
   uint32_t k = y % VL_CHANNEL_TILE * VL_CHANNEL_TILE + x % VL_CHANNEL_TILE;
-  w->film_x[k] = c->x, w->film_y[k] = c->y;
+  w->film_x[k] = c->x;
+  w->film_y[k] = c->y;
   if (p->def->mode != VL_CHANNEL_MODE_COVERAGE) return;
   const vlTallyEntry *e = tally_best(&w->tallies[0]);
-  if (e) w->film_x[k] = e->x, w->film_y[k] = e->y;
+  if (e) {
+    w->film_x[k] = e->x;
+    w->film_y[k] = e->y;
+  }
 }
 
 /* Traces the first n of the worker's rows. */
@@ -188,7 +199,9 @@ static void count_own(const vlChannelPass *p, vlChannelWorker *w, Count *c, uint
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     for (uint32_t s = 0; s < c->spp; s++) {
-      rows.px[n] = (int32_t)x, rows.py[n] = (int32_t)y, rows.index[n] = p->first_sample + s;
+      rows.px[n] = (int32_t)x;
+      rows.py[n] = (int32_t)y;
+      rows.index[n] = p->first_sample + s;
       if (++n < VL_BATCH) continue;
       flush(p, w, c, n);
       n = 0;
@@ -232,7 +245,8 @@ static void add_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, con
       for (int32_t u = -bx; u <= bx; u++) {
         vlSampleHit hit = hits[(y + (uint32_t)(v + by)) * q->width + x + (uint32_t)(u + bx)];
         float weight = vl_shared_weight(&p->reconstruction, hit.x, hit.y, -u, -v);
-        hit.x += (float)u, hit.y += (float)v;
+        hit.x += (float)u;
+        hit.y += (float)v;
         if (weight > 0.0f) add(p, w, c, &hit, weight);
       }
 }
@@ -260,13 +274,15 @@ static void count_shared(const vlChannelPass *p, vlChannelWorker *w, Count *c, u
   vl_channel_corner(p, tile, &x0, &y0);
   Square q = {.side = VL_CHANNEL_TILE};
   for (;; q.side /= 2) {
-    q.width = q.side + 2 * border[0], q.height = q.side + 2 * border[1];
+    q.width = q.side + 2 * border[0];
+    q.height = q.side + 2 * border[1];
     if (q.side == 1 || (uint64_t)q.width * q.height * c->spp <= VL_SHARED_HITS) break;
   }
   for (uint32_t y = y0; y < y0 + VL_CHANNEL_TILE; y += q.side)
     for (uint32_t x = x0; x < x0 + VL_CHANNEL_TILE; x += q.side) {
       if (x + q.side <= crop[0] || y + q.side <= crop[1] || x >= crop[2] || y >= crop[3]) continue;
-      q.x0 = (int32_t)x, q.y0 = (int32_t)y;
+      q.x0 = (int32_t)x;
+      q.y0 = (int32_t)y;
       count_square(p, w, c, &q);
     }
 }

@@ -330,7 +330,9 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   if (can_race(world, camera, film, &can) != VL_OK) return vl_fail_memory(error);
   if (!can || !choose_size(&race, film)) return VL_OK;
   vlFilmDef whole = *film;
-  whole.crop[0] = whole.crop[1] = 0, whole.crop[2] = film->width, whole.crop[3] = film->height;
+  whole.crop[0] = whole.crop[1] = 0;
+  whole.crop[2] = film->width;
+  whole.crop[3] = film->height;
   race.film = vl_coarse_film_def(&whole, race.factor);
   race.pixels = (size_t)race.film.width * race.film.height;
   race.def.first_sample = race.def.sequence = 0;

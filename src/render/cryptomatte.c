@@ -159,7 +159,10 @@ static size_t write_manifest(const vlWorld *world, const vlCryptomatte *c, char 
     if (to) memcpy(to + n, entry, k);
     n += k;
   }
-  if (to) to[n] = '}', to[n + 1] = 0;
+  if (to) {
+    to[n] = '}';
+    to[n + 1] = 0;
+  }
   return n + 1;
 }
 

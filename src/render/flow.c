@@ -58,7 +58,10 @@ static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to,
   for (int k = 0; k < 3; k++) d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
   double length = length3(d);
   if (!(length > 0)) return false;
-  for (int k = 0; k < 3; k++) to->o[k][to->n] = o[k], to->d[k][to->n] = d[k] / length;
+  for (int k = 0; k < 3; k++) {
+    to->o[k][to->n] = o[k];
+    to->d[k][to->n] = d[k] / length;
+  }
   *end = t->sky ? (double)INFINITY : length;
   return true;
 }
@@ -72,7 +75,10 @@ static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t 
               other->primitive[i] == b->primitive[lane];
   if (same && p->world->shapes.items[b->object[lane] - 1].kind == VL_SHAPE_TRIANGLES) return false;
   double o[3], cosine = 0;
-  for (int k = 0; k < 3; k++) o[k] = other->o[k][i], cosine += t->normal[k] * other->d[k][i];
+  for (int k = 0; k < 3; k++) {
+    o[k] = other->o[k][i];
+    cosine += t->normal[k] * other->d[k][i];
+  }
   double size = end + length3(o) + length3(t->point);
   return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
 }
@@ -118,8 +124,10 @@ static void flow_chunk(const vlChannelPass *p, vlChannelWorker *w, int which, ui
   if (other->n == 0) return;
   for (uint32_t i = 0; i < other->n; i++) {
     double left = floor(targets[i].pixel[0]), top = floor(targets[i].pixel[1]);
-    x[i] = (uint32_t)(int32_t)left, y[i] = (uint32_t)(int32_t)top;
-    film_x[i] = (float)(targets[i].pixel[0] - left), film_y[i] = (float)(targets[i].pixel[1] - top);
+    x[i] = (uint32_t)(int32_t)left;
+    y[i] = (uint32_t)(int32_t)top;
+    film_x[i] = (float)(targets[i].pixel[0] - left);
+    film_y[i] = (float)(targets[i].pixel[1] - top);
   }
   vlChannelEnds cut = {&p->other_compiled[which], x, y, film_x, film_y};
   vl_channel_ends(p, w, other->n, &cut, other->t_min, other->t_max);

@@ -23,14 +23,23 @@ static uint32_t make_rays(const vlCamera *camera, float (*row)[VL_ROW_SIZE], int
   for (uint32_t i = 0; i < SIDE * SIDE; i++) {
     double o[3], d[3], x = (i % SIDE + 0.5) / SIDE * camera->width, y = (i / SIDE + 0.5) / SIDE * camera->height;
     if (!vl_camera_unproject(&pinhole, x, y, o, d)) continue;
-    for (int k = 0; k < 3; k++) row[k][n] = (float)o[k], row[3 + k][n] = (float)d[k];
-    row[6][n] = 0.0f, row[7][n] = VL_INFINITY, row[8][n] = 0.5f;
-    px[n] = (int32_t)(i % SIDE), py[n] = (int32_t)(i / SIDE), index[n] = 0;
+    for (int k = 0; k < 3; k++) {
+      row[k][n] = (float)o[k];
+      row[3 + k][n] = (float)d[k];
+    }
+    row[6][n] = 0.0f;
+    row[7][n] = VL_INFINITY;
+    row[8][n] = 0.5f;
+    px[n] = (int32_t)(i % SIDE);
+    py[n] = (int32_t)(i / SIDE);
+    index[n] = 0;
     n++;
   }
   for (uint32_t i = n; n > 0 && i < VL_PAD(n); i++) {
     for (int k = 0; k < 9; k++) row[k][i] = row[k][n - 1];
-    px[i] = px[n - 1], py[i] = py[n - 1], index[i] = index[n - 1];
+    px[i] = px[n - 1];
+    py[i] = py[n - 1];
+    index[i] = index[n - 1];
   }
   return n;
 }

@@ -47,7 +47,9 @@ static void flush(Points *p) {
 /* Adds a point in the space of the shape's group. */
 static void add(Points *p, double x, double y, double z) {
   double *own = p->own + 3 * p->count, *world = p->world + 3 * p->count;
-  own[0] = x, own[1] = y, own[2] = z;
+  own[0] = x;
+  own[1] = y;
+  own[2] = z;
   for (int i = 0; i < 3; i++)
     world[i] = p->place ? (double)p->place[4 * i] * x + (double)p->place[4 * i + 1] * y +
                               (double)p->place[4 * i + 2] * z + (double)p->place[4 * i + 3]
@@ -123,8 +125,14 @@ uint64_t vl_box_points(const vlWorldShape *s) {
 }
 
 static Points begin(const vlCamera *camera, vlIdBox *box, const float *place) {
-  for (int k = 0; k < 3; k++) box->low[k] = INFINITY, box->high[k] = -INFINITY;
-  for (int k = 0; k < 2; k++) box->outline[k] = INFINITY, box->outline[2 + k] = -INFINITY;
+  for (int k = 0; k < 3; k++) {
+    box->low[k] = INFINITY;
+    box->high[k] = -INFINITY;
+  }
+  for (int k = 0; k < 2; k++) {
+    box->outline[k] = INFINITY;
+    box->outline[2 + k] = -INFINITY;
+  }
   for (int i = 0; i < 16; i++) box->world_from_box[i] = i % 5 == 0;
   for (int i = 0; i < 12 && place; i++) box->world_from_box[i] = (double)place[i];
   return (Points){.camera = camera, .place = place, .box = box, .whole = true};
@@ -136,13 +144,17 @@ static void end(Points *p) {
   b->has_space = b->low[0] <= b->high[0];
   b->has_outline = p->outline && p->whole && b->outline[0] <= b->outline[2];
   if (!b->has_outline) memset(b->outline, 0, sizeof b->outline);
-  if (!b->has_space) memset(b->low, 0, sizeof b->low), memset(b->high, 0, sizeof b->high);
+  if (!b->has_space) {
+    memset(b->low, 0, sizeof b->low);
+    memset(b->high, 0, sizeof b->high);
+  }
 }
 
 void vl_box_of_object(const vlWorld *world, const vlCamera *camera, float time, uint32_t id, bool grouped,
                       vlIdBox *box) {
   Points p = begin(camera, box, NULL);
-  p.space = true, p.outline = !grouped;
+  p.space = true;
+  p.outline = !grouped;
   box->grouped = grouped;
   add_shape(&p, &world->shapes.items[id - 1], time);
   end(&p);
@@ -160,6 +172,9 @@ void vl_box_of_instance(const vlWorld *world, const vlCamera *camera, float time
         (double)(c & 4 ? group->low : group->high)[2]);
   for (uint32_t i = 0; i < group->count && !corners; i++) add_shape(&p, &world->shapes.items[group->shapes[i]], time);
   flush(&p);
-  for (int k = 0; k < 3; k++) box->low[k] = (double)group->low[k], box->high[k] = (double)group->high[k];
+  for (int k = 0; k < 3; k++) {
+    box->low[k] = (double)group->low[k];
+    box->high[k] = (double)group->high[k];
+  }
   end(&p);
 }

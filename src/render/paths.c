@@ -113,10 +113,16 @@ static void fill_path(const Call *c, uint32_t i, vlPath *path) {
   vlFilmRayRows rows = vl_film_ray_rows(c->worker.rows);
   const vlCameraRays *ray = &rows.rays;
   path->sample = rows.index[i];
-  path->x = rows.px[i], path->y = rows.py[i];
-  path->film[0] = (float)path->x + rows.film_x[i], path->film[1] = (float)path->y + rows.film_y[i];
-  path->origin[0] = ray->ox[i], path->origin[1] = ray->oy[i], path->origin[2] = ray->oz[i];
-  path->direction[0] = ray->dx[i], path->direction[1] = ray->dy[i], path->direction[2] = ray->dz[i];
+  path->x = rows.px[i];
+  path->y = rows.py[i];
+  path->film[0] = (float)path->x + rows.film_x[i];
+  path->film[1] = (float)path->y + rows.film_y[i];
+  path->origin[0] = ray->ox[i];
+  path->origin[1] = ray->oy[i];
+  path->origin[2] = ray->oz[i];
+  path->direction[0] = ray->dx[i];
+  path->direction[1] = ray->dy[i];
+  path->direction[2] = ray->dz[i];
   path->time = ray->time[i];
   path->filter_weight = weight_of(c, i);
   path->camera_weight = vl_camera_weighted(&r->film_rays.camera) ? ray->weight[i] : 1.0f;
@@ -143,10 +149,12 @@ static void expose(const Call *c, const vlPath *path, vlPathContribution *list) 
     vlExposure e = {.n = n, .exposure = c->run.exposure_time};
     for (uint32_t k = 0; k < 4; k++) {
       e.radiance[k] = in[k];
-      e.lambda[k] = c->run.rgb_mode ? NULL : in[4 + k], e.inv_pdf[k] = c->run.rgb_mode ? NULL : in[8 + k];
+      e.lambda[k] = c->run.rgb_mode ? NULL : in[4 + k];
+      e.inv_pdf[k] = c->run.rgb_mode ? NULL : in[8 + k];
       for (uint32_t i = 0; i < BLOCK; i++) {
         if (i < n) in[k][i] = list[first + i].radiance[k] * path->camera_weight;
-        in[4 + k][i] = path->lambda[k], in[8 + k][i] = path->inv_pdf[k];
+        in[4 + k][i] = path->lambda[k];
+        in[8 + k][i] = path->inv_pdf[k];
       }
     }
     vl_film_expose(c->unlimited, c->run.trace.isa, &e, out[0], out[1], out[2]);
@@ -248,8 +256,10 @@ static vlResult pack(const Call *c, uint32_t samples, vlPixelPaths **result, vlE
   if (c->vertex_count) memcpy(v, c->vertices, c->vertex_count * sizeof *v);
   if (c->contribution_count) memcpy(l, c->contributions, c->contribution_count * sizeof *l);
   for (uint32_t i = 0; i < count; i++) {
-    p[i].vertices = v, p[i].contributions = l;
-    v += p[i].vertex_count, l += p[i].contribution_count;
+    p[i].vertices = v;
+    p[i].contributions = l;
+    v += p[i].vertex_count;
+    l += p[i].contribution_count;
   }
   *block = (Block){
       .context = c->context,
@@ -282,7 +292,10 @@ static vlResult check(const vlFilmDef *film, const vlRenderDef *def, uint32_t x,
 static vlResult make_films(Call *c, const vlFilmDef *film, vlError *error) {
   vlFilmDef pixel = *film;
   pixel.errors = false;
-  pixel.crop[0] = c->x, pixel.crop[1] = c->y, pixel.crop[2] = c->x + 1, pixel.crop[3] = c->y + 1;
+  pixel.crop[0] = c->x;
+  pixel.crop[1] = c->y;
+  pixel.crop[2] = c->x + 1;
+  pixel.crop[3] = c->y + 1;
   vlResult result = vl_film_create(c->context, &pixel, &c->film);
   pixel.max_component = INFINITY;
   if (result == VL_OK) result = vl_film_create(c->context, &pixel, &c->unlimited);
@@ -295,13 +308,17 @@ vlResult vl_trace_paths(const vlWorld *world, const vlCamera *camera, const vlFi
   if (paths) *paths = NULL;
   if (!world || !camera || !film || !paths) return vl_fail(error, VL_ERROR_ARGUMENT, "paths: an argument is null");
   vlRenderDef own = def ? *def : vl_default_render_def();
-  own.first_sample = 0, own.noise = 0, own.time_limit = 0, own.progress = NULL;
+  own.first_sample = 0;
+  own.noise = 0;
+  own.time_limit = 0;
+  own.progress = NULL;
   vlResult result = check(film, &own, x, y, count, error);
   if (result != VL_OK) return result;
   Call c;
   memset(&c, 0, sizeof c);
   c.context = world->context;
-  c.x = x, c.y = y;
+  c.x = x;
+  c.y = y;
   c.run.world = world;
   c.run.def = &own;
   vlCamera focused = *camera;

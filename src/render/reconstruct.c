@@ -41,7 +41,8 @@ static double correlation_along(const vlFilterCurve *f, uint32_t border) {
     for (int32_t i = -(reach + 1) * STEPS; i < (reach + 1) * STEPS; i++) {
       float x = ((float)i + 0.5f) / STEPS;
       double at = (double)vl_filter_curve_at(f, x);
-      product += at * (double)vl_filter_curve_at(f, x + (float)d), square += at * at;
+      product += at * (double)vl_filter_curve_at(f, x + (float)d);
+      square += at * at;
     }
     all += product / square * (product / square);
   }

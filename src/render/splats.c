@@ -93,8 +93,10 @@ void vl_splats_clear(vlSplats *s) {
 vlResult vl_splats_make(vlContext *context, const vlFilm *film, vlSplats *s) {
   const uint32_t *crop = vl_film_def(film)->crop;
   memset(s, 0, sizeof *s);
-  s->x0 = crop[0], s->y0 = crop[1];
-  s->width = crop[2] - crop[0], s->height = crop[3] - crop[1];
+  s->x0 = crop[0];
+  s->y0 = crop[1];
+  s->width = crop[2] - crop[0];
+  s->height = crop[3] - crop[1];
   s->filter = vl_film_filter(film);
   s->pixels = vl_alloc_zero(context, (size_t)s->width * s->height, sizeof *s->pixels);
   return s->pixels ? VL_OK : VL_ERROR_MEMORY;

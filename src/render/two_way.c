@@ -98,7 +98,8 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, float 
   for (int c = 0; c < 4; c++) {
     for (uint32_t i = n; n && i < VL_PAD(n); i++) {
       value[c][i] = 0.0f;
-      lambda[c][i] = lambda[c][n - 1], inv_pdf[c][i] = inv_pdf[c][n - 1];
+      lambda[c][i] = lambda[c][n - 1];
+      inv_pdf[c][i] = inv_pdf[c][n - 1];
     }
     expose.radiance[c] = value[c];
     expose.lambda[c] = rgb ? NULL : lambda[c];
@@ -259,7 +260,8 @@ static void light_block(void *user, uint32_t block, uint32_t worker) {
   if (vl_stop_check(run->stop)) return;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t path = first + (i < n ? i : n - 1), pixel = path % run->pixels;
-    w->px[i] = (int32_t)(pixel % width), w->py[i] = (int32_t)(pixel / width);
+    w->px[i] = (int32_t)(pixel % width);
+    w->py[i] = (int32_t)(pixel / width);
     w->index[i] = run->index * run->rounds + path / run->pixels;
   }
   vlLightBatch batch = {.n = n,
@@ -417,7 +419,10 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   *made = run;
   if (!run) return vl_fail_memory(error);
   const vlFilmDef *f = vl_film_def(film);
-  run->context = context, run->world = world, run->film = film, run->film_def = f;
+  run->context = context;
+  run->world = world;
+  run->film = film;
+  run->film_def = f;
   run->trace = *trace;
   run->trace.two_way = &run->way;
   run->kernels = vl_trace_kernels(trace->isa);

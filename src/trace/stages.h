@@ -116,8 +116,12 @@ typedef struct vlShadowRays {
 
 /* Moves the way and the radiance of shadow ray i to place k. */
 static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
-  q->ox[k] = q->ox[i], q->oy[k] = q->oy[i], q->oz[k] = q->oz[i];
-  q->dx[k] = q->dx[i], q->dy[k] = q->dy[i], q->dz[k] = q->dz[i];
+  q->ox[k] = q->ox[i];
+  q->oy[k] = q->oy[i];
+  q->oz[k] = q->oz[i];
+  q->dx[k] = q->dx[i];
+  q->dy[k] = q->dy[i];
+  q->dz[k] = q->dz[i];
   q->t_max[k] = q->t_max[i];
   for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
 }
@@ -382,14 +386,28 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
 
 /* Copies element i of a to element k of b. */
 static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32_t k) {
-  b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
-  b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
-  for (int c = 0; c < 4; c++) b->beta[c][k] = a->beta[c][i], b->lambda[c][k] = a->lambda[c][i];
+  b->ox[k] = a->ox[i];
+  b->oy[k] = a->oy[i];
+  b->oz[k] = a->oz[i];
+  b->dx[k] = a->dx[i];
+  b->dy[k] = a->dy[i];
+  b->dz[k] = a->dz[i];
+  for (int c = 0; c < 4; c++) {
+    b->beta[c][k] = a->beta[c][i];
+    b->lambda[c][k] = a->lambda[c][i];
+  }
   b->pdf[k] = a->pdf[i];
-  b->from_nx[k] = a->from_nx[i], b->from_ny[k] = a->from_ny[i], b->from_nz[k] = a->from_nz[i];
-  b->eta_scale[k] = a->eta_scale[i], b->cone[k] = a->cone[i], b->spread[k] = a->spread[i];
+  b->from_nx[k] = a->from_nx[i];
+  b->from_ny[k] = a->from_ny[i];
+  b->from_nz[k] = a->from_nz[i];
+  b->eta_scale[k] = a->eta_scale[i];
+  b->cone[k] = a->cone[i];
+  b->spread[k] = a->spread[i];
   b->specular[k] = a->specular[i];
-  b->px[k] = a->px[i], b->py[k] = a->py[i], b->index[k] = a->index[i], b->lane[k] = a->lane[i];
+  b->px[k] = a->px[i];
+  b->py[k] = a->py[i];
+  b->index[k] = a->index[i];
+  b->lane[k] = a->lane[i];
 }
 
 /* ---- small common pieces ----------------------------------------------------------------------------------------- */
@@ -415,7 +433,8 @@ static inline vlFootprint vl_footprint_of(vlVec3 d, vlVec3 g, float width) {
                                 __builtin_sqrtf(l2)
                           : 0.0f;
   vlFrame any = vl_frame_from_z(g);
-  a.x = inv > 0.0f ? a.x * inv : any.x.x, a.y = inv > 0.0f ? a.y * inv : any.x.y,
+  a.x = inv > 0.0f ? a.x * inv : any.x.x;
+  a.y = inv > 0.0f ? a.y * inv : any.x.y;
   a.z = inv > 0.0f ? a.z * inv : any.x.z;
   vlFootprint r = {vl_mul(a, width), vl_mul(vl_cross(a, g), width / vl_max(cosine, 1.0f / 64.0f))};
   return r;

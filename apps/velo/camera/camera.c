@@ -122,7 +122,10 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
   vlCameraFileDef def = vl_default_camera_file_def();
   def.dialect = (vlCameraDialect)dialect;
   def.frame = frame;
-  if (taken) def.width = (uint32_t)taken->integers[0], def.height = (uint32_t)taken->integers[1];
+  if (taken) {
+    def.width = (uint32_t)taken->integers[0];
+    def.height = (uint32_t)taken->integers[1];
+  }
   vlResult result = vl_camera_read(context, path, &def, record, &error);
   if (result != VL_OK) return report_error(&error, result, path);
   if (sized && (record->camera.width != def.width || record->camera.height != def.height))

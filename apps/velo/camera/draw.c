@@ -82,14 +82,17 @@ static int read_options(State *s, const Arguments *arguments) {
   s->view.exposure = VL_UNSET;
   s->view.scene = !v[DRAW_EMPTY].given;
   s->view.own_image = s->view.scene && !v[DRAW_BLANK].given && !v[RENDER_TRAJECTORY].given;
-  if (v[DRAW_SIZE].given)
-    s->view.width = (uint32_t)v[DRAW_SIZE].integers[0], s->view.height = (uint32_t)v[DRAW_SIZE].integers[1];
+  if (v[DRAW_SIZE].given) {
+    s->view.width = (uint32_t)v[DRAW_SIZE].integers[0];
+    s->view.height = (uint32_t)v[DRAW_SIZE].integers[1];
+  }
   double from[2];
   if (v[DRAW_FROM].given) {
     if (!parse_numbers(v[DRAW_FROM].text, 2, from) || fabs(from[0]) > 360 || fabs(from[1]) > 89)
       return report_usage("--from \"%s\": azimuth and elevation in degrees, the elevation within 89",
                           v[DRAW_FROM].text);
-    s->view.azimuth = from[0], s->view.elevation = from[1];
+    s->view.azimuth = from[0];
+    s->view.elevation = from[1];
   }
   if (v[DRAW_ZOOM].given) s->view.zoom = v[DRAW_ZOOM].number;
   if (v[RENDER_SPP].given) s->view.spp = (uint32_t)v[RENDER_SPP].integer;
@@ -144,7 +147,10 @@ static void choose_points(State *s) {
     for (uint32_t i = 0; i < seen->count; i++) {
       double d = hypot(seen->pixels[2 * i] - targets[k][0], seen->pixels[2 * i + 1] - targets[k][1]);
       d += 2 * fmax(0, seen->depths[i] / seen->middle - 1);
-      if (d < least) least = d, best = i;
+      if (d < least) {
+        least = d;
+        best = i;
+      }
     }
     if (!(least < INFINITY)) return;
     memcpy(s->points + 3 * k, seen->points + 3 * (size_t)best, 3 * sizeof(double));

@@ -67,7 +67,8 @@ static void draw_line(const Canvas *c, const vlDrawingLine *l, Pieces pieces, do
     bool seen = in_front(c->outside, q, z);
     bool gap = dashed && fmod(hypot(q[0] - a[0], q[1] - a[1]), 2 * dash) > dash;
     if (seen == (pieces == SEEN) && !gap) overlay_line(c->overlay, last[0], last[1], p[0], p[1], width);
-    last[0] = p[0], last[1] = p[1];
+    last[0] = p[0];
+    last[1] = p[1];
   }
 }
 
@@ -104,10 +105,16 @@ static void draw_dots(const Canvas *c, const vlDrawing *d, vlDrawingPart part) {
 static bool face_point(const Canvas *c, double x, double y, double point[3]) {
   const double *q = c->plane;
   double o[3], d[3], n[3], u[3], v[3], along = 0, height = 0;
-  for (int i = 0; i < 3; i++) u[i] = q[6 + i] - q[i], v[i] = q[9 + i] - q[3 + i];
+  for (int i = 0; i < 3; i++) {
+    u[i] = q[6 + i] - q[i];
+    v[i] = q[9 + i] - q[3 + i];
+  }
   for (int i = 0; i < 3; i++) n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
   if (!vl_camera_unproject(&c->outside->camera, x, y, o, d)) return false;
-  for (int i = 0; i < 3; i++) along += n[i] * d[i], height += n[i] * (q[i] - o[i]);
+  for (int i = 0; i < 3; i++) {
+    along += n[i] * d[i];
+    height += n[i] * (q[i] - o[i]);
+  }
   if (along == 0) return false;
   for (int i = 0; i < 3; i++) point[i] = o[i] + height / along * d[i];
   return true;
@@ -128,7 +135,10 @@ static void paint_image(const Canvas *c, const double q[4][2], bool behind) {
   Overlay *o = c->overlay;
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 2; k++) low[k] = fmin(low[k], q[i][k]), high[k] = fmax(high[k], q[i][k]);
+    for (int k = 0; k < 2; k++) {
+      low[k] = fmin(low[k], q[i][k]);
+      high[k] = fmax(high[k], q[i][k]);
+    }
   for (long y = (long)fmax(0, low[1] - 1); y < (long)fmin(o->height, high[1] + 1); y++)
     for (long x = (long)fmax(0, low[0] - 1); x < (long)fmin(o->width, high[0] + 1); x++) {
       size_t at = (size_t)y * o->width + (size_t)x;
@@ -176,7 +186,10 @@ static double middle_of(const Canvas *c, const vlDrawing *d, const vlDrawingLabe
   for (uint32_t i = 0; i < d->label_count; i++) {
     const vlDrawingLabel *l = &d->labels[i];
     if (l->part != of->part || is_image(l) != is_image(of)) continue;
-    if (vl_camera_project(&c->outside->camera, l->at, p, NULL)) sum += p[1], count++;
+    if (vl_camera_project(&c->outside->camera, l->at, p, NULL)) {
+      sum += p[1];
+      count++;
+    }
   }
   return count ? sum / count + 0.5 : 0;
 }
@@ -190,16 +203,26 @@ static void draw_label(const Canvas *c, const vlDrawing *d, const vlDrawingLabel
     if (e->part != VL_DRAWING_EYE || e->camera != l->camera || !is_dot(e)) continue;
     if (l->part == VL_DRAWING_AXES && vl_camera_project(&c->outside->camera, e->from, eye, NULL)) {
       double length = hypot(p[0] - eye[0], p[1] - eye[1]);
-      if (length > 0) away[0] = (p[0] - eye[0]) / length, away[1] = (p[1] - eye[1]) / length;
+      if (length > 0) {
+        away[0] = (p[0] - eye[0]) / length;
+        away[1] = (p[1] - eye[1]) / length;
+      }
     }
     break;
   }
-  if (l->part == VL_DRAWING_EYE) away[0] = -0.5, away[1] = 0.9;
-  if (l->part == VL_DRAWING_DISTANCE) away[0] = 0, away[1] = 1.5;
+  if (l->part == VL_DRAWING_EYE) {
+    away[0] = -0.5;
+    away[1] = 0.9;
+  }
+  if (l->part == VL_DRAWING_DISTANCE) {
+    away[0] = 0;
+    away[1] = 1.5;
+  }
   if (l->part == VL_DRAWING_PROJECTOR && p[1] > middle_of(c, d, l)) away[1] = 1.5;
   double text = overlay_text_width(l->text, size), gap = size;
   double x = p[0] + away[0] * (gap + 0.5 * text) - 0.5 * text, y = p[1] + away[1] * 1.1 * gap + 0.4 * size;
-  x = fmax(2, fmin(c->overlay->width - text - 2, x)), y = fmax(size + 2, fmin(c->overlay->height - 4.0, y));
+  x = fmax(2, fmin(c->overlay->width - text - 2, x));
+  y = fmax(size + 2, fmin(c->overlay->height - 4.0, y));
   overlay_text(c->overlay, l->text, x, y, size, width);
 }
 

@@ -42,7 +42,8 @@ static vlResult collect(const vlImage *image, bool flat, Seen *seen) {
       uint32_t i = seen->count++;
       for (uint32_t k = 0; k < 3; k++) seen->points[3 * i + k] = (double)vl_image_get(image, x, y, 2 + k);
       seen->depths[i] = depth;
-      seen->pixels[2 * i] = (x + 0.5) / w, seen->pixels[2 * i + 1] = (y + 0.5) / h;
+      seen->pixels[2 * i] = (x + 0.5) / w;
+      seen->pixels[2 * i + 1] = (y + 0.5) / h;
     }
   if (!seen->count) return VL_OK;
   double *sorted = seen->depths + seen->count;
@@ -59,7 +60,8 @@ vlResult draw_look(const vlWorld *world, const vlCamera *camera, Seen *seen, vlE
   vlCamera small;
   memset(seen, 0, sizeof *seen);
   uint32_t w = camera->width, h = camera->height, most = w > h ? w : h;
-  w = w * SIDE / most ? w * SIDE / most : 1, h = h * SIDE / most ? h * SIDE / most : 1;
+  w = w * SIDE / most ? w * SIDE / most : 1;
+  h = h * SIDE / most ? h * SIDE / most : 1;
   vlResult result = vl_camera_resize(camera, w, h, &small);
   if (result != VL_OK) return result;
   vlChannelsDef def = vl_default_channels_def(w, h);
@@ -119,7 +121,8 @@ static void bound(const vlCamera *c, const double point[3], Bounds *b) {
   if (!(q[2] > 0)) return;
   for (int k = 0; k < 2; k++) {
     double f = k ? c->fy : c->fx, t = f * q[k] / q[2];
-    b->low[k] = fmin(b->low[k], t), b->high[k] = fmax(b->high[k], t);
+    b->low[k] = fmin(b->low[k], t);
+    b->high[k] = fmax(b->high[k], t);
   }
 }
 
@@ -146,7 +149,8 @@ vlResult draw_choose_view(const vlCamera *of, const vlDrawing *drawing, const Se
   }
   distance = 4 * fmax(distance, 1e-9);
   vlCameraDef camera = vl_default_camera_def(def->width, def->height);
-  camera.fov = 24 * degree, camera.fov_axis = VL_FOV_LARGER;
+  camera.fov = 24 * degree;
+  camera.fov_axis = VL_FOV_LARGER;
   for (int step = 0; step < 8; step++) { /* moves and scales until the bounds fill the image */
     memcpy(camera.lookat, middle, sizeof middle);
     memcpy(camera.up, up, sizeof up);
@@ -191,7 +195,8 @@ static vlResult clean_image(vlContext *context, const vlWorld *world, const vlCa
   vlDevelopDef develop = vl_default_develop_def();
   vlChannelsDef channels = vl_default_channels_def(camera->width, camera->height);
   channels.channels = VL_CHANNEL_ERROR | VL_CHANNEL_FEATURES;
-  channels.film = film, channels.render = render;
+  channels.film = film;
+  channels.render = render;
   vlImage *color = NULL, *floats = NULL, *joined = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
   if (result == VL_OK) result = vl_render_channels(world, camera, &channels, &floats, NULL, error);
@@ -210,7 +215,8 @@ static vlResult render_view(vlContext *context, const vlWorld *world, const vlSc
   vlFilmDef film_def = vl_default_film_def(camera->width, camera->height);
   vlRenderDef render = vl_default_render_def();
   film_def.errors = true;
-  render.spp = def->spp, render.transparent = true;
+  render.spp = def->spp;
+  render.transparent = true;
   render.max_depth = defs->render.max_depth;
   vlResult result = vl_film_create(context, &film_def, &film);
   if (result == VL_OK) result = vl_render(world, camera, film, &render, NULL, error);

@@ -24,7 +24,10 @@ static uint32_t *make_order(const vlPixelPaths *paths, bool by_sample) {
     places[i] = (Place){.share = fabs(paths_share(&paths->paths[i])), .index = i};
   if (places && !by_sample) qsort(places, count, sizeof *places, larger_first);
   for (uint32_t i = 0; places && order && i < count; i++) order[i] = places[i].index;
-  if (!places) free(order), order = NULL;
+  if (!places) {
+    free(order);
+    order = NULL;
+  }
   free(places);
   return order;
 }
@@ -35,7 +38,8 @@ static vlResult see(const PathsRequest *r, TracedPaths *traced, vlError *error) 
   def.channels = VL_CHANNEL_Z | VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_NG | VL_CHANNEL_UV |
                  VL_CHANNEL_ALBEDO | VL_CHANNEL_ID_OBJECT | VL_CHANNEL_ID_MATERIAL | VL_CHANNEL_ID_INSTANCE |
                  VL_CHANNEL_ID_PRIMITIVE;
-  def.cancel = r->render->cancel, def.priority = r->render->priority;
+  def.cancel = r->render->cancel;
+  def.priority = r->render->priority;
   memcpy(def.crop, one, sizeof one);
   return vl_render_channels(r->world, r->camera, &def, &traced->channels, &traced->ids, error);
 }

@@ -7,7 +7,8 @@
 vlResult poses_load(vlContext *context, const char *path, const vlCamera *base, vlCamera **cameras, uint32_t *count,
                     vlError *error) {
   vlTrajectory *trajectory = NULL;
-  *cameras = NULL, *count = 0;
+  *cameras = NULL;
+  *count = 0;
   vlResult result = vl_trajectory_load(context, path, NULL, &trajectory, error);
   if (result != VL_OK) return result;
   uint32_t frames = vl_trajectory_frames(trajectory), every = (frames + MOST_CAMERAS - 1) / MOST_CAMERAS;

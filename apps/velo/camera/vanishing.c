@@ -127,7 +127,10 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
   double n[3], p[2], q[2], ends[2][3];
   const double eye[3] = {c->world_from_camera[3], c->world_from_camera[7], c->world_from_camera[11]};
   if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) { /* projects to a straight line, whatever its depth */
-    for (int i = 0; i < 3; i++) ends[0][i] = point[i] + s0 * d[i], ends[1][i] = point[i] + s1 * d[i];
+    for (int i = 0; i < 3; i++) {
+      ends[0][i] = point[i] + s0 * d[i];
+      ends[1][i] = point[i] + s1 * d[i];
+    }
     if (vl_camera_project(c, ends[0], p, NULL) && vl_camera_project(c, ends[1], q, NULL))
       overlay_line(o, p[0], p[1], q[0], q[1], width);
     return;
@@ -284,7 +287,8 @@ static int run_inverse(const Arguments *arguments) {
   if (v[V_PRINCIPAL].given) {
     double p[2];
     if (!parse_numbers(v[V_PRINCIPAL].text, 2, p)) return report_usage("--principal takes cx,cy in pixels");
-    def.cx = p[0], def.cy = p[1];
+    def.cx = p[0];
+    def.cy = p[1];
   }
   vlError error = {0};
   vlCameraRecord record = {.frames = 1};

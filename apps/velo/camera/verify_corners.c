@@ -101,14 +101,18 @@ static bool right_angles(const Image *p, double reach, Corner *corner) {
             3.0 * (double)(at(p, x - 1, y + 1) - at(p, x - 1, y - 1) + at(p, x + 1, y + 1) - at(p, x + 1, y - 1)) +
             10.0 * (double)(at(p, x, y + 1) - at(p, x, y - 1));
         double xx = weight * gx * gx, xy = weight * gx * gy, yy = weight * gy * gy;
-        a += xx, b += xy, c += yy;
-        u += xx * dx + xy * dy, v += xy * dx + yy * dy;
+        a += xx;
+        b += xy;
+        c += yy;
+        u += xx * dx + xy * dy;
+        v += xy * dx + yy * dy;
       }
     double det = a * c - b * b;
     if (!(det > 1e-6 * (a + c) * (a + c))) return false;
     double dx = (c * u - b * v) / det, dy = (a * v - b * u) / det;
     if (!(dx * dx + dy * dy < reach * reach)) return false;
-    corner->x += dx, corner->y += dy;
+    corner->x += dx;
+    corner->y += dy;
     if (dx * dx + dy * dy < 1e-8) return true;
   }
   return true;
@@ -122,8 +126,10 @@ enum { MEAN, CONTRAST, SHARPNESS, X, Y, TURN1, TURN2, BEND1, BEND2 };
 static double model(const double *q, double px, double py, double *by) {
   double dx = px - q[X], dy = py - q[Y], k = 1.0 / q[SHARPNESS], g[2], slope[2], f[2], nx[2], ny[2], n[2], t[2];
   for (int i = 0; i < 2; i++) {
-    nx[i] = cos(q[TURN1 + i]), ny[i] = sin(q[TURN1 + i]);
-    n[i] = nx[i] * dx + ny[i] * dy, t[i] = nx[i] * dy - ny[i] * dx;
+    nx[i] = cos(q[TURN1 + i]);
+    ny[i] = sin(q[TURN1 + i]);
+    n[i] = nx[i] * dx + ny[i] * dy;
+    t[i] = nx[i] * dy - ny[i] * dx;
     f[i] = n[i] + 0.5 * q[BEND1 + i] * t[i] * t[i];
     g[i] = erf(f[i] * k);
     slope[i] = 1.12837916709551257390 * k * exp(-f[i] * f[i] * k * k);
@@ -176,7 +182,9 @@ static void cut_window(const Image *p, double reach, const Corner *corner, Windo
       double px = x + 0.5, py = y + 0.5, d2 = pow(px - corner->x, 2.0) + pow(py - corner->y, 2.0);
       if (d2 > reach * reach) continue;
       int i = w->count++;
-      w->x[i] = px, w->y[i] = py, w->value[i] = (double)at(p, x, y);
+      w->x[i] = px;
+      w->y[i] = py;
+      w->value[i] = (double)at(p, x, y);
       w->weight[i] = exp(-0.5 * d2 / (reach * reach));
     }
 }
@@ -193,13 +201,18 @@ static bool begin(const Window *w, const Corner *corner, double *q) {
   double xx = 0.0, xy = 0.0, yy = 0.0, sxx = 0.0, sxy = 0.0, mean = 0.0, mean2 = 0.0, total = 0.0;
   for (int i = 0; i < w->count; i++) {
     double dx = w->x[i] - corner->x, dy = w->y[i] - corner->y;
-    mean += w->weight[i] * w->value[i], mean2 += w->weight[i] * w->value[i] * w->value[i], total += w->weight[i];
-    sxx += w->weight[i] * (dx * dx - dy * dy) * (dx * dx - dy * dy), sxy += w->weight[i] * dx * dx * dy * dy;
+    mean += w->weight[i] * w->value[i];
+    mean2 += w->weight[i] * w->value[i] * w->value[i];
+    total += w->weight[i];
+    sxx += w->weight[i] * (dx * dx - dy * dy) * (dx * dx - dy * dy);
+    sxy += w->weight[i] * dx * dx * dy * dy;
   }
   mean /= total;
   for (int i = 0; i < w->count; i++) {
     double dx = w->x[i] - corner->x, dy = w->y[i] - corner->y, v = w->weight[i] * (w->value[i] - mean);
-    xx += v * (dx * dx - dy * dy), xy += v * dx * dy, yy += v * (dx * dx + dy * dy);
+    xx += v * (dx * dx - dy * dy);
+    xy += v * dx * dy;
+    yy += v * (dx * dx + dy * dy);
   }
   /* value - mean = A (x^2 - y^2) + B x y */
   double a = xx / sxx, b = xy / sxy, turn = 0.5 * atan2(b, 2.0 * a);
@@ -207,9 +220,11 @@ static bool begin(const Window *w, const Corner *corner, double *q) {
   q[MEAN] = mean;
   q[CONTRAST] = sqrt(fmax(mean2 / total - mean * mean, 0.0));
   q[SHARPNESS] = 1.2;
-  q[X] = corner->x, q[Y] = corner->y;
+  q[X] = corner->x;
+  q[Y] = corner->y;
   /* `turn` is the direction of largest increase; both edge functions have the same sign there */
-  q[TURN1] = turn - 0.25 * M_PI, q[TURN2] = turn + 0.25 * M_PI;
+  q[TURN1] = turn - 0.25 * M_PI;
+  q[TURN2] = turn + 0.25 * M_PI;
   q[BEND1] = q[BEND2] = 0.0;
   return true;
 }
@@ -227,8 +242,10 @@ static double fit(const Window *w, double *q) {
       }
     }
     for (int j = 0; j < UNKNOWNS; j++) m[j][j] = m[j][j] * (1.0 + lambda) + 1e-12;
-    m[BEND1][BEND1] += 1e-2, m[BEND2][BEND2] += 1e-2; /* prior: edges are nearly straight */
-    r[BEND1] -= 1e-2 * q[BEND1], r[BEND2] -= 1e-2 * q[BEND2];
+    m[BEND1][BEND1] += 1e-2;
+    m[BEND2][BEND2] += 1e-2; /* prior: edges are nearly straight */
+    r[BEND1] -= 1e-2 * q[BEND1];
+    r[BEND2] -= 1e-2 * q[BEND2];
     if (!solve(m, r)) return INFINITY;
     for (int j = 0; j < UNKNOWNS; j++) trial[j] = q[j] + r[j];
     trial[SHARPNESS] = fmin(fmax(trial[SHARPNESS], 0.3), 5.0);
@@ -260,6 +277,7 @@ bool corner_refine(const Image *image, double reach, Corner *corner) {
   for (int i = 0; i < window.count; i++) weight += window.weight[i];
   if (!(sqrt(error / weight) < 0.06 * fabs(q[CONTRAST]))) return false;
   if (fabs(sin(q[TURN1] - q[TURN2])) < 0.25 || hypot(q[X] - found.x, q[Y] - found.y) > 1.0) return false;
-  corner->x = q[X], corner->y = q[Y];
+  corner->x = q[X];
+  corner->y = q[Y];
   return true;
 }

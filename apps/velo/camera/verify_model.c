@@ -26,9 +26,11 @@ static void equal_area(const double p[3], double plane[2]) {
   double v = phi * r, u = r - v;
   if (p[2] < 0.0) {
     double swap = u;
-    u = 1.0 - v, v = 1.0 - swap;
+    u = 1.0 - v;
+    v = 1.0 - swap;
   }
-  plane[0] = copysign(u, p[0]), plane[1] = copysign(v, p[1]);
+  plane[0] = copysign(u, p[0]);
+  plane[1] = copysign(v, p[1]);
 }
 
 /* Cube faces: right, left, up, down, front, back, either in a row, or as a cross four faces wide and three high. */
@@ -55,8 +57,14 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
   double x = p[0], y = p[1], z = p[2], across = sqrt(x * x + y * y), length = sqrt(across * across + z * z);
   double a = c->shape[0], b = c->shape[1], k, r;
   switch (c->projection) {
-    case VL_PROJECTION_PERSPECTIVE: plane[0] = x / z, plane[1] = y / z; return z > 0.0;
-    case VL_PROJECTION_ORTHOGRAPHIC: plane[0] = x, plane[1] = y; return z >= 0.0;
+    case VL_PROJECTION_PERSPECTIVE:
+      plane[0] = x / z;
+      plane[1] = y / z;
+      return z > 0.0;
+    case VL_PROJECTION_ORTHOGRAPHIC:
+      plane[0] = x;
+      plane[1] = y;
+      return z >= 0.0;
     case VL_PROJECTION_EQUIDISTANT:
     case VL_PROJECTION_EQUISOLID:
     case VL_PROJECTION_STEREOGRAPHIC:
@@ -64,28 +72,35 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
       if (!fisheye(c->projection, atan2(across, z), &r)) return false;
       k = across > 0.0 ? r / across : 1.0 / z;
       break;
-    case VL_PROJECTION_EQUIRECTANGULAR: plane[0] = atan2(x, z), plane[1] = asin(y / length); return length > 0.0;
+    case VL_PROJECTION_EQUIRECTANGULAR:
+      plane[0] = atan2(x, z);
+      plane[1] = asin(y / length);
+      return length > 0.0;
     case VL_PROJECTION_EQUAL_AREA: equal_area(p, plane); return length > 0.0;
     case VL_PROJECTION_CYLINDRICAL:
-      plane[0] = atan2(x, z), plane[1] = y / sqrt(x * x + z * z);
+      plane[0] = atan2(x, z);
+      plane[1] = y / sqrt(x * x + z * z);
       return x * x + z * z > 0.0;
     case VL_PROJECTION_CUBE: cube(a > 0.0, p, plane); return length > 0.0;
     case VL_PROJECTION_PANINI: {
       double longitude = atan2(x, z), latitude = atan2(y, sqrt(x * x + z * z));
       double s = (a + 1.0) / (a + cos(longitude));
-      plane[0] = s * sin(longitude), plane[1] = s * tan(latitude);
+      plane[0] = s * sin(longitude);
+      plane[1] = s * tan(latitude);
       return cos(longitude) > -a && (a <= 1.0 || cos(longitude) >= -1.0 / a);
     }
     case VL_PROJECTION_FOV:
       r = atan(2.0 * across / z * tan(0.5 * a)) / a;
       k = across > 0.0 ? r / across : 0.0;
-      plane[0] = k * x, plane[1] = k * y;
+      plane[0] = k * x;
+      plane[1] = k * y;
       return z > 0.0;
     case VL_PROJECTION_DIVISION: { /* the solution r of r Z = R (1 + lambda r^2) that is 0 at R = 0 */
       double root = z * z - 4.0 * a * across * across;
       if (root < 0.0) return false;
       k = 2.0 / (z + sqrt(root));
-      plane[0] = k * x, plane[1] = k * y;
+      plane[0] = k * x;
+      plane[1] = k * y;
       return k > 0.0 && isfinite(k) && (z > 0.0 || a < 0.0);
     }
     case VL_PROJECTION_UNIFIED: k = 1.0 / (z + a * length); break;
@@ -97,7 +112,8 @@ static bool to_plane(const vlCamera *c, const double p[3], double plane[2]) {
     }
     default: return false;
   }
-  plane[0] = k * x, plane[1] = k * y;
+  plane[0] = k * x;
+  plane[1] = k * y;
   return k > 0.0 && isfinite(k);
 }
 
@@ -113,9 +129,11 @@ static void opencv(const double *k, double plane[2]) {
     double cx = cos(k[12]), sx = sin(k[12]), cy = cos(k[13]), sy = sin(k[13]);
     double rx = cy * u + sy * sx * v - sy * cx, ry = cx * v + sx, rz = sy * u - cy * sx * v + cy * cx;
     double r13 = -sy * cx, r23 = sx, r33 = cy * cx;
-    u = (r33 * rx - r13 * rz) / rz, v = (r33 * ry - r23 * rz) / rz;
+    u = (r33 * rx - r13 * rz) / rz;
+    v = (r33 * ry - r23 * rz) / rz;
   }
-  plane[0] = u, plane[1] = v;
+  plane[0] = u;
+  plane[1] = v;
 }
 
 /* Applies the lens distortion to a point of the image plane. False: unknown distortion. */
@@ -128,7 +146,8 @@ static bool bend(const vlCameraDef *def, double plane[2]) {
     case VL_DISTORTION_OPENCV: opencv(k, plane); return true;
     case VL_DISTORTION_RADIAL: {
       double q = 1.0 + k[0] * r2 + k[1] * pow(r2, 2.0) + k[2] * pow(r2, 3.0) + k[3] * pow(r2, 4.0);
-      plane[0] = q * x, plane[1] = q * y;
+      plane[0] = q * x;
+      plane[1] = q * y;
       return true;
     }
     case VL_DISTORTION_THIN_PRISM: { /* COLMAP: k1 k2 p1 p2 k3 k4 sx1 sy1 */
@@ -149,7 +168,9 @@ static void to_camera(const double m[16], const double point[3], double p[3]) {
   ((a)[0] * ((b)[1] * (c)[2] - (b)[2] * (c)[1]) + (a)[1] * ((b)[2] * (c)[0] - (b)[0] * (c)[2]) + \
    (a)[2] * ((b)[0] * (c)[1] - (b)[1] * (c)[0]))
   double det = CROSS_DOT(a, b, c);
-  p[0] = CROSS_DOT(d, b, c) / det, p[1] = CROSS_DOT(a, d, c) / det, p[2] = CROSS_DOT(a, b, d) / det;
+  p[0] = CROSS_DOT(d, b, c) / det;
+  p[1] = CROSS_DOT(a, d, c) / det;
+  p[2] = CROSS_DOT(a, b, d) / det;
 #undef CROSS_DOT
 }
 

@@ -70,7 +70,9 @@ static void expect_corners(Pose *pose) {
         double area = fabs(ax * by - ay * bx);
         apart = fmin(apart, area / fmax(fmax(hypot(ax, ay), hypot(bx, by)), 1e-9));
       }
-      e.x = at[0], e.y = at[1], e.apart = apart;
+      e.x = at[0];
+      e.y = at[1];
+      e.apart = apart;
       e.reach = fmin(8.0, (v->target.charuco ? 0.27 : 0.8) * apart - 1.5);
       if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN)) continue;
       pose->expected[pose->count++] = e;
@@ -79,10 +81,16 @@ static void expect_corners(Pose *pose) {
   for (int k = 0; k < pose->count; k++) {
     const Expected *e = &pose->expected[k];
     double around = fmax(16.0, e->apart);
-    box[0] = fmin(box[0], e->x - around), box[1] = fmin(box[1], e->y - around);
-    box[2] = fmax(box[2], e->x + around), box[3] = fmax(box[3], e->y + around);
+    box[0] = fmin(box[0], e->x - around);
+    box[1] = fmin(box[1], e->y - around);
+    box[2] = fmax(box[2], e->x + around);
+    box[3] = fmax(box[3], e->y + around);
   }
-  if (v->keep || pose->count == 0) box[0] = box[1] = 0, box[2] = v->camera.width, box[3] = v->camera.height;
+  if (v->keep || pose->count == 0) {
+    box[0] = box[1] = 0;
+    box[2] = v->camera.width;
+    box[3] = v->camera.height;
+  }
   for (int a = 0; a < 4; a++) {
     double size = a % 2 ? v->camera.height : v->camera.width;
     pose->crop[a] = (uint32_t)fmin(fmax(a < 2 ? floor(box[a]) : ceil(box[a]), 0.0), size);
@@ -154,7 +162,8 @@ static void read_markers(const Pose *pose, const Image *rendered, Measure *m) {
       for (int k = 0; k < 4; k++) {
         const Expected *e = corner_at(pose, i + k % 2, j + k / 2);
         if (!e) break;
-        at[k][0] = e->corner.x, at[k][1] = e->corner.y;
+        at[k][0] = e->corner.x;
+        at[k][1] = e->corner.y;
         there++;
       }
       int read = there == 4 ? target_read_marker(&pose->v->target, i, j, rendered, at) : -1;
@@ -182,17 +191,34 @@ static void compare(const Pose *pose, uint32_t index, Verification *v, FILE *csv
       continue;
     }
     double dx = x - at[0], dy = y - at[1], d = hypot(dx, dy);
-    m->sum += d, m->sum2 += d * d, m->sum_x += dx, m->sum_y += dy;
-    if (d >= m->most) m->most = d, m->at_x = x, m->at_y = y;
+    m->sum += d;
+    m->sum2 += d * d;
+    m->sum_x += dx;
+    m->sum_y += dy;
+    if (d >= m->most) {
+      m->most = d;
+      m->at_x = x;
+      m->at_y = y;
+    }
   }
 }
 
 static void add_up(Measure *all, const Measure *m) {
-  all->expected += m->expected, all->found += m->found, all->unseen += m->unseen;
-  all->markers += m->markers, all->misread += m->misread;
-  all->sum += m->sum, all->sum2 += m->sum2, all->sum_x += m->sum_x, all->sum_y += m->sum_y;
-  if (m->found && m->most >= all->most)
-    all->most = m->most, all->at_x = m->at_x, all->at_y = m->at_y, all->pose = m->pose;
+  all->expected += m->expected;
+  all->found += m->found;
+  all->unseen += m->unseen;
+  all->markers += m->markers;
+  all->misread += m->misread;
+  all->sum += m->sum;
+  all->sum2 += m->sum2;
+  all->sum_x += m->sum_x;
+  all->sum_y += m->sum_y;
+  if (m->found && m->most >= all->most) {
+    all->most = m->most;
+    all->at_x = m->at_x;
+    all->at_y = m->at_y;
+    all->pose = m->pose;
+  }
 }
 
 /* Writes one channel without alpha, for corner finders of other programs. */

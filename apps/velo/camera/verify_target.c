@@ -63,7 +63,8 @@ static int marker_of(const Target *target, int i, int j) {
 
 static bool cell_is_white(unsigned code, int x, int y) {
   if (x < FRAME || y < FRAME || x >= CELLS - FRAME || y >= CELLS - FRAME) return true;
-  x -= FRAME + 1, y -= FRAME + 1;
+  x -= FRAME + 1;
+  y -= FRAME + 1;
   return x >= 0 && y >= 0 && x < BITS && y < BITS && (code >> (BITS * y + x) & 1u);
 }
 
@@ -71,7 +72,8 @@ static double sample(const Image *p, double x, double y) {
   double fx = fmin(fmax(x - 0.5, 0.0), p->width - 1.001), fy = fmin(fmax(y - 0.5, 0.0), p->height - 1.001);
   int i = (int)fx, j = (int)fy;
   const float *at = p->pixels + (size_t)j * (size_t)p->width + i;
-  fx -= i, fy -= j;
+  fx -= i;
+  fy -= j;
   return (1 - fy) * ((1 - fx) * (double)at[0] + fx * (double)at[1]) +
          fy * ((1 - fx) * (double)at[p->width] + fx * (double)at[p->width + 1]);
 }
@@ -141,7 +143,10 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
       !point_at(camera, x - 0.5, y, distance, left, other) || !point_at(camera, x + 0.5, y, distance, right, other) ||
       !point_at(camera, x, y - 0.5, distance, above, other) || !point_at(camera, x, y + 0.5, distance, below, other))
     return false;
-  for (int a = 0; a < 3; a++) u[a] = right[a] - left[a], v[a] = below[a] - above[a];
+  for (int a = 0; a < 3; a++) {
+    u[a] = right[a] - left[a];
+    v[a] = below[a] - above[a];
+  }
   cross(u, v, n);
   double area = length3(n), size = side * sqrt(area);
   /* a flat board cannot fill a hemisphere */
@@ -161,7 +166,8 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
     /* axes of the tilt: e stays; f is foreshortened and tilts away from the camera */
     double e = cos(lean) * u[a] + sin(lean) * v[a], f = -sin(lean) * u[a] + cos(lean) * v[a];
     double g = cos(tilt) * f + sin(tilt) * direction[a];
-    placement->x[a] = size * (c * e + s * g), placement->y[a] = size * (-s * e + c * g);
+    placement->x[a] = size * (c * e + s * g);
+    placement->y[a] = size * (-s * e + c * g);
   }
   return true;
 }
@@ -230,14 +236,17 @@ vlResult target_build(vlContext *context, const Target *target, const Placement 
   *world = NULL;
   vlResult result = quads ? vl_scene_create(context, &scene) : VL_ERROR_MEMORY;
   if (result == VL_OK) {
-    quads->target = target, quads->placement = placement;
+    quads->target = target;
+    quads->placement = placement;
     add_board(quads);
     vlEmissionDef emission = vl_default_emission_def();
     emission.radiance = vl_spectrum_rgb(1, 1, 1);
     emission.two_sided = true;
     vlShapeDef shape = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-    shape.vertices = 4 * quads->count, shape.faces = 2 * quads->count;
-    shape.positions = quads->positions, shape.indices = quads->indices;
+    shape.vertices = 4 * quads->count;
+    shape.faces = 2 * quads->count;
+    shape.positions = quads->positions;
+    shape.indices = quads->indices;
     shape.emission = vl_scene_add_emission(scene, &emission);
     vl_scene_add_shape(scene, &shape);
     result = vl_scene_result(scene, error);

@@ -60,7 +60,10 @@ static void put_prose(const char *text, const char *paragraph) {
       if (column) putchar('\n');
       column = 0;
       text += blank ? 2 : 1;
-      if (verbatim && *text != ' ') printf(".EE\n"), verbatim = false;
+      if (verbatim && *text != ' ') {
+        printf(".EE\n");
+        verbatim = false;
+      }
       if (blank) printf("%s\n", paragraph);
       continue;
     }

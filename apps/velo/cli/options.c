@@ -46,7 +46,10 @@ const char *did_you_mean(const char *prefix, const char *wrong, const char *cons
     int distance = edit_distance(wrong, names[i]);
     /* An abbreviation counts as one wrong letter. */
     if (length >= 2 && strncmp(names[i], wrong, (size_t)length) == 0) distance = distance < 1 ? distance : 1;
-    if (distance < best_distance) best_distance = distance, best = names[i];
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = names[i];
+    }
   }
   if (!best || best_distance * 3 > (length > 3 ? length + 1 : 3)) return "";
   snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, best);

@@ -76,7 +76,10 @@ static void put_bytes(const char *data, size_t size) {
     if (ready <= 0) continue;
     ssize_t n = write(STDERR_FILENO, data, size < PIECE ? size : PIECE);
     if (n < 0 && errno != EINTR && errno != EAGAIN) return;
-    if (n > 0) data += n, size -= (size_t)n;
+    if (n > 0) {
+      data += n;
+      size -= (size_t)n;
+    }
   }
 }
 

@@ -78,7 +78,8 @@ static int develop(Develop *d, const char *path) {
   if (result == VL_OK && film->buckets) result = vl_film_spectrum(d->film, &d->spectrum);
   if (result == VL_OK) result = set_header(d, receipt, &error);
   if (result != VL_OK && error.message[0]) return report_error(&error, result, path);
-  d->outputs.layers[0] = d->errors, d->outputs.layers[1] = d->spectrum;
+  d->outputs.layers[0] = d->errors;
+  d->outputs.layers[1] = d->spectrum;
   return result == VL_OK ? -1 : report_reason(result, path, "the film cannot be developed");
 }
 

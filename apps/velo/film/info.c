@@ -139,10 +139,12 @@ static int run_info(const Command *command, const Arguments *arguments) {
   }
   if (status < 0)
     status = film_parts_read(file, arguments->values[INFO_CHECK].given, missing ? planned_of(file) : 0, &parts);
-  if (status < 0 && missing)
+  if (status < 0 && missing) {
     status = print_missing(path, file, &parts);
-  else if (status < 0)
-    print_contents(path, file, &parts), status = STATUS_OK;
+  } else if (status < 0) {
+    print_contents(path, file, &parts);
+    status = STATUS_OK;
+  }
   film_parts_free(&parts);
   vl_film_file_close(file);
   vl_context_destroy(context);

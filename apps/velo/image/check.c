@@ -18,7 +18,8 @@ void check_note(Check *c, int rule, double error) {
   if (r->checked && error <= r->worst) return;
   r->checked = true;
   r->worst = error == error ? error : (double)INFINITY; /* NaN always fails */
-  r->x = c->x, r->y = c->y;
+  r->x = c->x;
+  r->y = c->y;
 }
 
 double check_length3(const double v[3]) {
@@ -131,7 +132,8 @@ static void check_types(Check *c) {
   const int ones[] = {c->z, c->distance}, twos[] = {c->uv, c->film, c->flow[0], c->flow[1]},
             threes[] = {c->p, c->n, c->ng, c->ray, c->albedo, c->error},
             ids[] = {c->object, c->material, c->primitive, c->instance, c->samples, c->hidden[0], c->hidden[1]};
-  c->x = c->x0, c->y = c->y0;
+  c->x = c->x0;
+  c->y = c->y0;
   for (size_t i = 0; i < sizeof ones / sizeof *ones; i++) check_type(c, ones[i], 1, VL_PIXEL_F32);
   for (size_t i = 0; i < sizeof twos / sizeof *twos; i++) check_type(c, twos[i], 2, VL_PIXEL_F32);
   for (size_t i = 0; i < sizeof threes / sizeof *threes; i++) check_type(c, threes[i], 3, VL_PIXEL_F32);
@@ -149,7 +151,8 @@ static void check_all(Check *c) {
   c->pixel = vl_image_const_pixels(c->image);
   for (uint32_t y = 0; y < height; y++)
     for (uint32_t x = 0; x < width; x++, c->pixel += vl_image_channels(c->image)) {
-      c->x = c->x0 + x, c->y = c->y0 + y;
+      c->x = c->x0 + x;
+      c->y = c->y0 + y;
       check_pixel(c);
     }
   check_finish_flow(c);

@@ -29,13 +29,15 @@ static bool around(const Check *c, const double at[2], double *nearest, double *
   const float *pixels = vl_image_const_pixels(c->other);
   double x = floor(at[0]) - c->other_x0, y = floor(at[1]) - c->other_y0;
   if (!(x >= 0 && y >= 0 && x < width && y < height)) return false;
-  *nearest = INFINITY, *farthest = 0;
+  *nearest = INFINITY;
+  *farthest = 0;
   for (int j = -1; j <= 1; j++)
     for (int i = -1; i <= 1; i++) {
       double px = x + i, py = y + j;
       if (!(px >= 0 && py >= 0 && px < width && py < height)) continue;
       double t = pixels[((size_t)py * width + (size_t)px) * step + (size_t)c->other_distance];
-      *nearest = fmin(*nearest, t), *farthest = fmax(*farthest, t);
+      *nearest = fmin(*nearest, t);
+      *farthest = fmax(*farthest, t);
     }
   return true;
 }

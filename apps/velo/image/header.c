@@ -161,11 +161,13 @@ int header_camera_def(const vlImage *image, const char *path, vlCameraDef *def) 
                           path);
   if (number(image, "velo.eyeCircle", &circle) && circle != 0.0)
     return report_failure(STATUS_SCENE, "%s: one eye of an omnidirectional image is no camera of its own", path);
-  shutter[0] = def->shutter_open, shutter[1] = def->shutter_close;
+  shutter[0] = def->shutter_open;
+  shutter[1] = def->shutter_close;
   single(image, "velo.lensRadius", VL_ATTRIBUTE_FLOAT, &def->lens_radius, 1);
   single(image, "focus", VL_ATTRIBUTE_FLOAT, &def->focus_distance, 1);
   single(image, "velo.shutter", VL_ATTRIBUTE_V2F, shutter, 2);
   single(image, "velo.exposureTime", VL_ATTRIBUTE_FLOAT, &def->exposure_time, 1);
-  def->shutter_open = shutter[0], def->shutter_close = shutter[1];
+  def->shutter_open = shutter[0];
+  def->shutter_close = shutter[1];
   return -1;
 }

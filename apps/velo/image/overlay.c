@@ -111,7 +111,10 @@ void overlay_quad(Overlay *o, const double q[4][2], OverlaySeen *seen, void *use
   enum { SIDE = 4 };
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (int i = 0; i < 4; i++)
-    for (int k = 0; k < 2; k++) low[k] = fmin(low[k], q[i][k]), high[k] = fmax(high[k], q[i][k]);
+    for (int k = 0; k < 2; k++) {
+      low[k] = fmin(low[k], q[i][k]);
+      high[k] = fmax(high[k], q[i][k]);
+    }
   if (!isfinite(low[0] + low[1] + high[0] + high[1])) return;
   long x0 = (long)fmax(0, floor(low[0])), x1 = (long)fmin(o->width, ceil(high[0]));
   long y0 = (long)fmax(0, floor(low[1])), y1 = (long)fmin(o->height, ceil(high[1]));

@@ -63,7 +63,8 @@ void overlay_text(Overlay *o, const char *text, double x, double y, double size,
       double px = x + (s[0] - '0') * unit, py = y + (s[1] - '0' - 6) * unit;
       bool ends = s[2] != ' ';
       if (connected) overlay_line(o, last[0], last[1], px, py, width);
-      last[0] = px, last[1] = py;
+      last[0] = px;
+      last[1] = py;
       connected = !ends;
       s += s[2] ? 3 : 2;
     }

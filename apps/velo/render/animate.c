@@ -29,7 +29,10 @@ static int read_animation(const Arguments *arguments, Animation *a) {
   const OptionValue *v = arguments->values, *span = &v[RENDER_ANIMATE];
   a->turns = v[RENDER_TURNTABLE].given;
   a->fps = v[RENDER_FPS].given ? v[RENDER_FPS].number : 24;
-  if (a->turns) return a->count = (uint32_t)v[RENDER_TURNTABLE].integer, -1;
+  if (a->turns) {
+    a->count = (uint32_t)v[RENDER_TURNTABLE].integer;
+    return -1;
+  }
   char *end, *last;
   a->from = strtod(span->text, &end);
   const double to = *end == ':' ? strtod(end + 1, &last) : NAN;
@@ -44,7 +47,9 @@ static int read_animation(const Arguments *arguments, Animation *a) {
 
 static int choose_frames(const Arguments *arguments, Animation *a) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
-  a->first = 0, a->last = a->count - 1, a->step = 1;
+  a->first = 0;
+  a->last = a->count - 1;
+  a->step = 1;
   if (!range->given) return -1;
   if (!pattern_range(range->text, &a->first, &a->last, &a->step))
     return report_usage("--frames \"%s\": must be A, A-B, A- or A-B:STEP, numbers from 0", range->text);

@@ -123,7 +123,8 @@ static int find_boxes(Channels *c, const vlWorld *world, const Job *job) {
   vlBoxesDef def = vl_default_boxes_def(job->camera.width, job->camera.height);
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   int signals = signals_count();
-  def.stop = stop_asked, def.stop_user = &signals;
+  def.stop = stop_asked;
+  def.stop_user = &signals;
   vlError error = {0};
   vlResult result = vl_world_boxes(world, &job->camera, &def, c->box_list[0], c->box_list[1], &error);
   return fail_pass(&error, result, job);
@@ -192,7 +193,8 @@ int channels_render(Channels *c, vlContext *context, const vlWorld *world, const
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   vlError error = {0};
   int signals = signals_count();
-  def.stop = stop_asked, def.stop_user = &signals;
+  def.stop = stop_asked;
+  def.stop_user = &signals;
   vlResult result = vl_render_channels(world, &job->camera, &def, &c->layers[0], &c->layers[1], &error);
   if (result == VL_OK) result = channels_make_visible(context, &c->layers[1]);
   if (result != VL_OK) return fail_pass(&error, result, job);

@@ -101,7 +101,8 @@ static vlResult gather(vlContext *context, const vlWorld *world, const Job *job,
   def.exposure = develop.exposure;
   memcpy(def.crop, job->defs->film.crop, sizeof def.crop);
   int signals = signals_count();
-  def.stop = stop_asked, def.stop_user = &signals;
+  def.stop = stop_asked;
+  def.stop_user = &signals;
   vlImage *color = NULL, *floats = NULL;
   vlResult result = vl_film_develop(film, &develop, &color);
   if (result == VL_OK) result = vl_render_channels(world, &job->camera, &def, &floats, NULL, error);

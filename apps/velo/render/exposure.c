@@ -45,7 +45,10 @@ float exposure_meter(const vlImage *image) {
     for (uint32_t x = 0; x < width; x++) {
       double v = luminance(image, rgb, x, y);
       double w = alpha < 0 ? 1 : (double)vl_image_get(image, x, y, (uint32_t)alpha);
-      if (v > 0 && v >= least && w > 0) logs += w * log2(v), weights += w;
+      if (v > 0 && v >= least && w > 0) {
+        logs += w * log2(v);
+        weights += w;
+      }
     }
   if (!(weights > 0)) return 0;
   double ev = round(10 * (log2(0.18) - logs / weights)) / 10;
@@ -82,7 +85,8 @@ static double mean_light(ModelLight *light) {
   double most = 4 * light->ratio[n / 2];
   for (size_t i = 0; i < n; i++) {
     double limit = most > 0 ? most * light->albedo[i] : INFINITY;
-    radiance += light->radiance[i] < limit ? light->radiance[i] : limit, albedo += light->albedo[i];
+    radiance += light->radiance[i] < limit ? light->radiance[i] : limit;
+    albedo += light->albedo[i];
   }
   return radiance / albedo;
 }

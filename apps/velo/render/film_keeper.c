@@ -92,7 +92,10 @@ void film_keeper_checkpoint(FilmKeeper *k, const vlFilm *film) {
   result = begin_write(k, film);
   if (result == VL_OK) {
     k->running = pthread_create(&k->thread, NULL, end_write, k) == 0;
-    if (!k->running) end_write(k), result = k->result;
+    if (!k->running) {
+      end_write(k);
+      result = k->result;
+    }
   }
   if (result != VL_OK) report_checkpoint(k, result);
   k->last = monotonic_seconds();

@@ -63,7 +63,8 @@ static vlResult join(vlContext *context, vlImage *const images[2], const char *v
   const char *names[8];
   for (int c = 0; c < 4; c++) {
     snprintf(right[c], sizeof right[c], "%s.%s", view, plain[c]);
-    names[c] = plain[c], names[4 + c] = right[c];
+    names[c] = plain[c];
+    names[4 + c] = right[c];
   }
   vlImageDef def = vl_default_image_def(vl_image_width(images[0]), vl_image_height(images[0]), 8);
   def.names = names;

@@ -111,7 +111,10 @@ static int load_file(vlContext *context, const char *path, const Arguments *argu
   vlError error = {0};
   vlCameraFileDef def = vl_default_camera_file_def();
   const OptionValue *size = &arguments->values[arguments->values[RENDER_SIZE].given ? RENDER_SIZE : RENDER_RESOLUTION];
-  if (size->given) def.width = (uint32_t)size->integers[0], def.height = (uint32_t)size->integers[1];
+  if (size->given) {
+    def.width = (uint32_t)size->integers[0];
+    def.height = (uint32_t)size->integers[1];
+  }
   vlResult result = vl_trajectory_load(context, path, &def, trajectory, &error);
   return result == VL_OK ? -1 : report_error(&error, result, path);
 }
@@ -147,7 +150,9 @@ static int choose_shard(Frames *frames, const Arguments *arguments) {
 static int choose_frames(Frames *frames, const Arguments *arguments) {
   const OptionValue *range = &arguments->values[RENDER_FRAMES];
   uint32_t count = vl_trajectory_frames(frames->trajectory);
-  frames->first = 0, frames->last = count - 1, frames->step = 1;
+  frames->first = 0;
+  frames->last = count - 1;
+  frames->step = 1;
   if (range->given) pattern_range(range->text, &frames->first, &frames->last, &frames->step);
   if (frames->first >= count || (frames->last != UINT32_MAX && frames->last >= count))
     return report_usage("--frames \"%s\": the trajectory has %u frames, numbered from 0", range->text, count);

@@ -73,7 +73,10 @@ static void frame_place(const Run *run, const Frame *frame, char *text, size_t s
 }
 
 static void add_stats(vlRenderStats *total, const vlRenderStats *more) {
-  if (!total->not_finite) total->worst_x = more->worst_x, total->worst_y = more->worst_y;
+  if (!total->not_finite) {
+    total->worst_x = more->worst_x;
+    total->worst_y = more->worst_y;
+  }
   total->spp = more->spp;
   total->paths += more->paths;
   total->camera_rays += more->camera_rays;

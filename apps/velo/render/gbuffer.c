@@ -132,7 +132,8 @@ static vlResult ground_truth_of(const vlWorld *world, const Job *job, const vlFi
   def.render = &job->defs->render;
   def.exposure = job->defs->develop.exposure;
   def.time = job_channels_time(job);
-  def.stop = stop_asked, def.stop_user = &signals;
+  def.stop = stop_asked;
+  def.stop_user = &signals;
   return vl_render_channels(world, &job->camera, &def, geometry, NULL, error);
 }
 

@@ -26,7 +26,8 @@ static int refocus(vlScene *scene, const vlSceneDefs *defs, double distance) {
   const vlSource *place = &defs->camera_source;
   if (place->file) {
     snprintf(error.file, sizeof error.file, "%s", place->file);
-    error.line = place->line, error.column = place->column;
+    error.line = place->line;
+    error.column = place->column;
   }
   return report_error(&error, result == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : result, NULL);
 }
@@ -48,7 +49,10 @@ int lens_override(vlScene *scene, vlSceneDefs *defs, const Arguments *arguments)
     if (def->lens.optics) return refocus(scene, defs, v[RENDER_FOCUS_DISTANCE].number);
     def->focus_distance = v[RENDER_FOCUS_DISTANCE].number;
   }
-  if (v[RENDER_LENS_RADIUS].given) def->lens_radius = v[RENDER_LENS_RADIUS].number, def->lens.f_number = VL_UNSET;
+  if (v[RENDER_LENS_RADIUS].given) {
+    def->lens_radius = v[RENDER_LENS_RADIUS].number;
+    def->lens.f_number = VL_UNSET;
+  }
   if (v[RENDER_F_NUMBER].given) {
     def->lens.f_number = v[RENDER_F_NUMBER].number;
     if (!v[RENDER_LENS_RADIUS].given) def->lens_radius = 0;
@@ -66,7 +70,8 @@ int lens_focus_on(vlCamera *camera, const Arguments *arguments) {
   if (!(point[0] >= 0 && point[1] >= 0 && point[0] <= camera->width && point[1] <= camera->height))
     return report_usage("--focus-pixel \"%s\": the image has only %u x %u pixels", v->text, camera->width,
                         camera->height);
-  camera->lens.focus_pixel[0] = point[0], camera->lens.focus_pixel[1] = point[1];
+  camera->lens.focus_pixel[0] = point[0];
+  camera->lens.focus_pixel[1] = point[1];
   return -1;
 }
 
@@ -91,10 +96,12 @@ int lens_autofocus(Job *job, vlScene *scene, const vlWorld *world) {
   if (status >= 0) return status;
   vlCameraDef def = job->defs->camera;
   vlCamera made;
-  def.width = camera->width, def.height = camera->height;
+  def.width = camera->width;
+  def.height = camera->height;
   result = vl_camera_make(&def, &made, NULL, &error);
   if (result != VL_OK) return report_error(&error, result, job->path);
-  camera->fx = made.fx, camera->fy = made.fy;
+  camera->fx = made.fx;
+  camera->fy = made.fy;
   camera->focus_distance = made.focus_distance;
   camera->lens_radius = made.lens_radius;
   camera->lens = made.lens;

@@ -57,7 +57,11 @@ void memory_plan(MemoryPlan *plan, vlContext *context, const vlWorld *world, con
   for (uint32_t i = 0; frames && i < frames->camera_count; i++) {
     const uint32_t *c = frames->cameras[i].job.defs->film.crop;
     uint64_t other = (uint64_t)(c[2] - c[0]) * (c[3] - c[1]);
-    if (other > pixels) pixels = other, width = c[2] - c[0], height = c[3] - c[1];
+    if (other > pixels) {
+      pixels = other;
+      width = c[2] - c[0];
+      height = c[3] - c[1];
+    }
   }
   if (frames) copies = (frames_count(frames) < WAITING ? frames_count(frames) : WAITING) * (uint64_t)frames->views;
   bool eight_bit = false, layers = false;

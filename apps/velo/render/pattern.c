@@ -104,6 +104,8 @@ bool pattern_range(const char *text, uint32_t *first, uint32_t *last, uint32_t *
   }
   if (*end == ':' && end[1] >= '0' && end[1] <= '9') numbers[2] = strtoull(end + 1, &end, 10);
   if (*end || numbers[0] > UINT32_MAX || numbers[1] > UINT32_MAX || numbers[2] > UINT32_MAX) return false;
-  *first = (uint32_t)numbers[0], *last = (uint32_t)numbers[1], *step = (uint32_t)numbers[2];
+  *first = (uint32_t)numbers[0];
+  *last = (uint32_t)numbers[1];
+  *step = (uint32_t)numbers[2];
   return *first <= *last && *step > 0;
 }

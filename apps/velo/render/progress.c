@@ -17,7 +17,10 @@ double monotonic_seconds(void) {
 void format_count(char *text, size_t size, double count) {
   static const char *const units[] = {"", " k", " M", " G", " T"};
   int unit = 0;
-  while (count >= 999.5 && unit < 4) count /= 1000, unit++;
+  while (count >= 999.5 && unit < 4) {
+    count /= 1000;
+    unit++;
+  }
   if (unit == 0)
     snprintf(text, size, "%.0f", count);
   else

@@ -23,10 +23,12 @@ static void take_films_own(Render *render, const FilmClaim *claim) {
   vlRenderDef *own = &job->defs->render, *whole = &render->film_plan.whole.render;
   job->race = RACE_NONE;
   job->raced = film_claim_take_tracer(claim, own);
-  whole->tracer = own->tracer, whole->light_paths = own->light_paths;
+  whole->tracer = own->tracer;
+  whole->light_paths = own->light_paths;
   for (uint32_t i = 0; render->many && i < render->frames.camera_count; i++) {
     Job *camera = &render->frames.cameras[i].job;
-    camera->defs->render.tracer = own->tracer, camera->defs->render.light_paths = own->light_paths;
+    camera->defs->render.tracer = own->tracer;
+    camera->defs->render.light_paths = own->light_paths;
     camera->raced = job->raced;
   }
 }
@@ -43,7 +45,8 @@ int race_plan(Render *render, const Arguments *arguments) {
 /* ---- the race ---------------------------------------------------------------------------------------------------- */
 
 static bool on_progress(void *user, const vlProgress *now) {
-  (void)user, (void)now;
+  (void)user;
+  (void)now;
   return !signals_pending();
 }
 
@@ -96,7 +99,8 @@ static void take_all(Render *render, const vlTracerChoice *choice) {
   for (uint32_t i = 0; render->many && i < render->frames.camera_count; i++) {
     Job *own = &render->frames.cameras[i].job;
     race_take(&own->defs->render, job->race, choice);
-    own->race = job->race, own->raced = job->raced;
+    own->race = job->race;
+    own->raced = job->raced;
   }
 }
 
@@ -122,7 +126,8 @@ int race_run(Render *render, const Arguments *arguments) {
   const vlFilmDef *film;
   vlError error = {0};
   def.spp = race_samples(whole);
-  def.progress = on_progress, def.progress_user = NULL;
+  def.progress = on_progress;
+  def.progress_user = NULL;
   signals_remember();
   vlResult result = find_image(render, &camera, &film, &error);
   if (result == VL_OK)
@@ -134,7 +139,10 @@ int race_run(Render *render, const Arguments *arguments) {
   if (!choice.count && job->race == RACE_LIGHT_PATHS) return -1;
   job->raced = choice.count > 0 || race_is_asked(arguments);
   take_all(render, &choice);
-  if (shared && job->raced) shared->race = job->race, shared->choice = choice;
+  if (shared && job->raced) {
+    shared->race = job->race;
+    shared->choice = choice;
+  }
   shard_warn(arguments, job->defs->render.tracer);
   return -1;
 }

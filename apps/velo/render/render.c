@@ -177,7 +177,8 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (v[RENDER_ISA].given) def.isa = (vlIsa)v[RENDER_ISA].integer;
   if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
   if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
-  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
   if (!render->context) {
     confine(render, arguments);
     status = context_open(&def, &render->context);

@@ -57,7 +57,10 @@ const Choice up_choices[] = {{"x", 0}, {"y", 1}, {"z", 2}, {NULL, 0}};
 
 /* The front is +z, for z upwards -y, as modellers have it. */
 static void choose_up(int axis, vlCompleteDef *def) {
-  for (int i = 0; i < 3; i++) def->up[i] = i == axis, def->front[i] = axis == 2 ? -(i == 1) : i == 2;
+  for (int i = 0; i < 3; i++) {
+    def->up[i] = i == axis;
+    def->front[i] = axis == 2 ? -(i == 1) : i == 2;
+  }
 }
 
 /* Reports the lecture's parameters of the added camera. d: distance of the view plane in pixels. */

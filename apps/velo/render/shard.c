@@ -59,7 +59,8 @@ static void cut(uint32_t blocks[4], uint32_t index, uint32_t count) {
       count = low;
     } else {
       blocks[axis] += at;
-      index -= low, count -= low;
+      index -= low;
+      count -= low;
     }
   }
 }
@@ -116,11 +117,12 @@ int shard_apply(const Arguments *arguments, vlFilmDef *film, vlRenderDef *render
     shard_read(arguments, &index, &count);
     if (!by_tiles && count > render->spp)
       return report_usage("--shard %u/%u: there are %u samples per pixel", index, count, render->spp);
-    if (by_tiles)
+    if (by_tiles) {
       status = tiles_of(film->crop, index - 1, count, film->crop);
-    else
-      first = (uint32_t)((uint64_t)render->spp * (index - 1) / count),
+    } else {
+      first = (uint32_t)((uint64_t)render->spp * (index - 1) / count);
       end = (uint32_t)((uint64_t)render->spp * index / count);
+    }
   }
   if (v[RENDER_TILES].given) status = take_tiles(&v[RENDER_TILES], film);
   if (v[RENDER_SAMPLES].given) {

@@ -14,10 +14,22 @@ static void sine_cosine(double degrees, double *sine, double *cosine) {
   }
   s *= x;
   switch (((int)quarters % 4 + 4) % 4) {
-    case 0: *sine = s, *cosine = c; break;
-    case 1: *sine = c, *cosine = -s; break;
-    case 2: *sine = -s, *cosine = -c; break;
-    default: *sine = -c, *cosine = s; break;
+    case 0:
+      *sine = s;
+      *cosine = c;
+      break;
+    case 1:
+      *sine = c;
+      *cosine = -s;
+      break;
+    case 2:
+      *sine = -s;
+      *cosine = -c;
+      break;
+    default:
+      *sine = -c;
+      *cosine = s;
+      break;
   }
 }
 
@@ -25,7 +37,10 @@ static void sine_cosine(double degrees, double *sine, double *cosine) {
 static void turn(const double axis[3], double degrees, const double *middle, double p[3]) {
   double v[3], along = 0, s, c;
   sine_cosine(degrees, &s, &c);
-  for (int i = 0; i < 3; i++) v[i] = p[i] - (middle ? middle[i] : 0), along += axis[i] * v[i];
+  for (int i = 0; i < 3; i++) {
+    v[i] = p[i] - (middle ? middle[i] : 0);
+    along += axis[i] * v[i];
+  }
   for (int i = 0; i < 3; i++) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     p[i] = (middle ? middle[i] : 0) + c * v[i] + s * (axis[j] * v[k] - axis[k] * v[j]) + (1 - c) * along * axis[i];
@@ -61,7 +76,9 @@ void turn_camera(vlCameraDef *camera, const double low[3], const double high[3],
     for (int column = 0; column < 4; column++) {
       double *m = camera->world_from_camera, v[3] = {m[column], m[4 + column], m[8 + column]};
       turn(axis, degrees, column == 3 ? middle : NULL, v);
-      m[column] = v[0], m[4 + column] = v[1], m[8 + column] = v[2];
+      m[column] = v[0];
+      m[4 + column] = v[1];
+      m[8 + column] = v[2];
     }
   } else {
     turn(axis, degrees, middle, camera->eye);

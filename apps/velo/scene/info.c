@@ -17,7 +17,8 @@ int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log,
   vlContextDef def = vl_default_context_def();
   def.log = log;
   def.log_user = log_user;
-  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
   Confine confine = {.read_count = 0};
   confine_read(&confine, arguments->operands[0]);
   if (arguments->operand_count > 1) confine_write(&confine, arguments->operands[1]);
@@ -262,7 +263,10 @@ static void print_json(const Facts *f) {
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) json_integer(&json, counts[i].name, (int64_t)counts[i].n);
   json_number(&json, "seconds", f->seconds);
   json_begin(&json, "bounds", '[');
-  if (f->low[0] <= f->high[0]) json_box(&json, NULL, f->low), json_box(&json, NULL, f->high);
+  if (f->low[0] <= f->high[0]) {
+    json_box(&json, NULL, f->low);
+    json_box(&json, NULL, f->high);
+  }
   json_end(&json, ']');
   json_begin(&json, "camera", '{');
   json_bool(&json, "missing", defs->camera_missing);

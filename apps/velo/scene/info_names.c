@@ -48,7 +48,10 @@ void info_print_choices(const vlScene *scene) {
     for (uint32_t i = 0; i < n && i < NAMES; i++) {
       if (vl_scene_choice_info(scene, choice_kinds[k].kind, i, &info) != VL_OK) continue;
       printf("%s%u", i ? ", " : ": ", i);
-      if (info.name) putchar(' '), info_print_plain(info.name);
+      if (info.name) {
+        putchar(' ');
+        info_print_plain(info.name);
+      }
       if (choice_kinds[k].kind == VL_CHOICE_ANIMATION) printf(" (%g s)", info.seconds);
     }
     if (n) puts(n > NAMES ? ", ..." : "");

@@ -113,7 +113,10 @@ int convert_prove(vlContext *context, const vlLoadDef *load, const char *from, c
   if (r == VL_OK && same) {
     const uint32_t count = vl_world_id_count(before.world, VL_ID_MATERIAL);
     sums = calloc((size_t)count + 1, sizeof *sums);
-    if (sums) add_up(&before, &after, sums, count), print_ratios(&before, sums, count);
+    if (sums) {
+      add_up(&before, &after, sums, count);
+      print_ratios(&before, sums, count);
+    }
     if (!sums) r = VL_ERROR_MEMORY;
   }
   free(sums);

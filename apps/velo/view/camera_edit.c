@@ -21,7 +21,8 @@ static void note_units(const vlCameraDef *def, CameraUnits *units) {
 static void drop_window(const ViewCamera *now, vlCameraDef *def) {
   if (isnan(def->screen_min_x)) return;
   def->screen_min_x = def->screen_max_x = def->screen_min_y = def->screen_max_y = VL_UNSET;
-  def->cx = now->made.cx, def->cy = now->made.cy;
+  def->cx = now->made.cx;
+  def->cy = now->made.cy;
 }
 
 /* Removes every spelling of the focal length but the width of the sensor. */
@@ -33,7 +34,8 @@ static void spell_matrix(const ViewCamera *now, vlCameraDef *def) {
   if (isnan(def->fx)) {
     drop_window(now, def);
     drop_focal(def);
-    def->fx = now->made.fx, def->fy = now->made.fy;
+    def->fx = now->made.fx;
+    def->fy = now->made.fy;
   }
 }
 
@@ -43,11 +45,13 @@ static void spell_lecture(const ViewCamera *now, vlCameraDef *def) {
   drop_window(now, def);
   drop_focal(def);
   if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) {
-    def->zoom = u.zoom, def->pixel_size = u.zoom / now->made.fx;
+    def->zoom = u.zoom;
+    def->pixel_size = u.zoom / now->made.fx;
     return;
   }
   def->view_distance = now->made.fx * u.pixel_size / u.zoom;
-  def->zoom = u.zoom, def->pixel_size = u.pixel_size;
+  def->zoom = u.zoom;
+  def->pixel_size = u.pixel_size;
 }
 
 static void spell_lens_mm(const ViewCamera *now, vlCameraDef *def) {
@@ -168,7 +172,10 @@ static void start_projection(const ViewCamera *now, vlCameraDef *def) {
   if (def->projection == VL_PROJECTION_ORTHOGRAPHIC) def->fx = now->made.fx / (distance > 0 ? distance : 1);
   for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
     if (starts[i].projection != def->projection) continue;
-    if (starts[i].fov_degrees > 0) def->fov = starts[i].fov_degrees * degree, def->fov_axis = VL_FOV_SMALLER;
+    if (starts[i].fov_degrees > 0) {
+      def->fov = starts[i].fov_degrees * degree;
+      def->fov_axis = VL_FOV_SMALLER;
+    }
     for (int j = 0; j < 2; j++) def->shape[j] = starts[i].shape[j];
     if (!isnan(def->shape[0]))
       def->fx = def->fy = 0.4 * (now->made.width < now->made.height ? now->made.width : now->made.height);
@@ -391,7 +398,8 @@ static void spell_at_size(ViewCamera *camera) {
   if (!isnan(def->cx)) def->cx = made->cx;
   if (!isnan(def->cy)) def->cy = made->cy;
   if (!isnan(def->skew)) def->skew = made->skew;
-  def->width = made->width, def->height = made->height;
+  def->width = made->width;
+  def->height = made->height;
 }
 
 /* Spells the camera by numbers that need no others: the matrix, the radius of the lens. */
@@ -401,9 +409,15 @@ static void spell_plainly(ViewCamera *camera) {
   drop_window(camera, def);
   drop_focal(def);
   def->sensor_width_mm = VL_UNSET;
-  def->fx = made->fx, def->fy = made->fy, def->cx = made->cx, def->cy = made->cy, def->skew = made->skew;
-  def->lens_radius = made->lens_radius, def->lens.f_number = VL_UNSET;
-  def->exposure_time = made->exposure_time, def->lens.iso = def->lens.seconds = VL_UNSET;
+  def->fx = made->fx;
+  def->fy = made->fy;
+  def->cx = made->cx;
+  def->cy = made->cy;
+  def->skew = made->skew;
+  def->lens_radius = made->lens_radius;
+  def->lens.f_number = VL_UNSET;
+  def->exposure_time = made->exposure_time;
+  def->lens.iso = def->lens.seconds = VL_UNSET;
 }
 
 vlResult camera_take(const vlCameraDef *def, const vlCamera *made, double lookat, ViewCamera *camera, vlError *error) {

@@ -23,7 +23,10 @@ static bool normalise(double v[3]) {
 
 /* The rotation whose z axis is that of the matrix and whose y axis is as near as possible; columns x, y, z. */
 static void rotation_of(const double m[16], double r[3][3]) {
-  for (int i = 0; i < 3; i++) r[1][i] = m[4 * i + 1], r[2][i] = m[4 * i + 2];
+  for (int i = 0; i < 3; i++) {
+    r[1][i] = m[4 * i + 1];
+    r[2][i] = m[4 * i + 2];
+  }
   normalise(r[2]);
   cross(r[1], r[2], r[0]);
   normalise(r[0]);

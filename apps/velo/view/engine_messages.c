@@ -175,7 +175,8 @@ static void choose_scene(Engine *e, uint32_t client, const ViewMessage *m) {
     post_refusal(e, client, m, e->def.lecture ? "the lecture has no such scene" : "this page has one scene only");
     return;
   }
-  e->chosen = scene, e->chosen_change = m->change;
+  e->chosen = scene;
+  e->chosen_change = m->change;
 }
 
 /* Adds a message to a list of tasks. */

@@ -70,7 +70,8 @@ void engine_outline(Engine *e, const Task *task) {
   JsonText text;
   def.plane = plane_distance(&camera, find_field(&task->message, "plane", 1));
   def.reach = fmax(1.3 * camera.units.lookat, 1.05 * def.plane);
-  def.points = point ? point->numbers : NULL, def.point_count = point ? 1 : 0;
+  def.points = point ? point->numbers : NULL;
+  def.point_count = point ? 1 : 0;
   vlResult result = vl_camera_outline(e->def.context, &camera.made, 1, &def, &drawing, &error);
   if (json_text_begin(&text, result == VL_OK ? "outline" : "refused")) {
     json_integer(&text.json, "id", task->message.id);
@@ -139,7 +140,8 @@ static vlResult make_camera(const ViewMessage *m, vlCamera *camera, vlError *err
     const MessageField *field = find_field(m, names[i], 3);
     if (field) memcpy(values[i], field->numbers, 3 * sizeof(double));
   }
-  def.fov = outside_fov, def.fov_axis = VL_FOV_VERTICAL;
+  def.fov = outside_fov;
+  def.fov_axis = VL_FOV_VERTICAL;
   return vl_camera_make(&def, camera, NULL, error);
 }
 
@@ -148,9 +150,14 @@ static vlResult render_outside(const Engine *e, const vlCamera *camera, vlImage 
   vlFilmDef def = vl_default_film_def(camera->width, camera->height);
   vlFilm *film = NULL;
   def.max_component = 10;
-  render.spp = OUTSIDE_SPP, render.sequence = 0, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
+  render.spp = OUTSIDE_SPP;
+  render.sequence = 0;
+  render.first_sample = 0;
+  render.time_limit = 0;
+  render.noise = 0;
   if (render.max_depth > 3) render.max_depth = 3;
-  render.cancel = e->end, render.priority = 1;
+  render.cancel = e->end;
+  render.priority = 1;
   vlResult result = vl_film_create(e->def.context, &def, &film);
   if (result == VL_OK) result = vl_render(e->model.world, camera, film, &render, NULL, error);
   if (result == VL_OK) result = vl_film_develop(film, &e->model.job.defs->develop, image);

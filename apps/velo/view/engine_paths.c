@@ -59,7 +59,8 @@ static void answer(Engine *e, const Task *task, const ViewCamera *camera) {
     engine_refuse(e, task, why);
     return;
   }
-  render.cancel = e->trace_stop, render.priority = 2;
+  render.cancel = e->trace_stop;
+  render.priority = 2;
   const PathsRequest request = {.world = e->model.world,
                                 .camera = c,
                                 .film = &e->model.job.defs->film,

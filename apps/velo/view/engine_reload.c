@@ -108,7 +108,8 @@ void *engine_load_chosen(void *user) {
     pthread_mutex_lock(&e->lock);
     Model *unused = e->next;
     e->next = model;
-    e->next_path = path, e->next_change = change;
+    e->next_path = path;
+    e->next_change = change;
     engine_interrupt(e);
     pthread_cond_broadcast(&e->wake);
     pthread_mutex_unlock(&e->lock);

@@ -66,8 +66,10 @@ void engine_publish(Engine *e, const vlImage *image, FrameFormat format, uint32_
   if (!frame) return;
   frame->serial = ++e->serial;
   frame->change = e->now.change;
-  frame->width = e->now.camera.made.width, frame->height = e->now.camera.made.height;
-  frame->x0 = e->now.crop[0] / scale * scale, frame->y0 = e->now.crop[1] / scale * scale;
+  frame->width = e->now.camera.made.width;
+  frame->height = e->now.camera.made.height;
+  frame->x0 = e->now.crop[0] / scale * scale;
+  frame->y0 = e->now.crop[1] / scale * scale;
   frame->scale = scale;
   frame->channel = e->now.channel;
   frame->spp = scale == 1 && e->film ? vl_film_spp(e->film) : 0;
@@ -106,8 +108,12 @@ static bool render_coarse(Engine *e, uint32_t scale) {
   vlRenderStats stats = {0};
   memcpy(whole.crop, e->now.crop, sizeof whole.crop);
   const vlFilmDef def = vl_coarse_film_def(&whole, scale);
-  render.spp = 1, render.first_sample = 0, render.time_limit = 0, render.noise = 0;
-  render.cancel = e->stop, render.priority = 1;
+  render.spp = 1;
+  render.first_sample = 0;
+  render.time_limit = 0;
+  render.noise = 0;
+  render.cancel = e->stop;
+  render.priority = 1;
   vlResult result = vl_camera_coarse(&e->now.camera.made, scale, &camera);
   if (result == VL_OK) result = vl_film_create(e->def.context, &def, &film);
   double start = engine_clock();
@@ -145,7 +151,8 @@ static vlImage *join_flow(vlContext *context, const vlImage *flow, const vlImage
   const float *from = vl_image_const_pixels(flow);
   const uint32_t *ids = vl_image_const_pixels(hidden);
   for (size_t i = 0; i < (size_t)width * height; i++) {
-    to[3 * i] = from[2 * i], to[3 * i + 1] = from[2 * i + 1];
+    to[3 * i] = from[2 * i];
+    to[3 * i + 1] = from[2 * i + 1];
     to[3 * i + 2] = (float)ids[i];
   }
   return image;
@@ -247,7 +254,8 @@ static bool render_pass(Engine *e) {
   vlRenderStats stats = {0};
   engine_set_tracer(&render, e->best);
   render.cancel = e->stop;
-  render.first_sample = 0, render.time_limit = 0;
+  render.first_sample = 0;
+  render.time_limit = 0;
   render.spp = vl_film_spp(film) + pass_samples(e, film, e->successor ? e->successor_enough : e->now.spp);
   double start = engine_clock();
   vlResult result = vl_render(e->model.world, &e->now.camera.made, film, &render, &stats, &error);

@@ -180,12 +180,21 @@ static char *make_command(Engine *e, const Task *task, char camera[NAME_SIZE]) {
   scene_stem(e, whole);
   snprintf(stem, sizeof stem, "%.200s-view", whole);
   snprintf(whole, sizeof whole, "%s.json", stem);
-  if (!free_name(whole, camera)) return engine_refuse(e, task, "there are too many files of this name"), NULL;
+  if (!free_name(whole, camera)) {
+    engine_refuse(e, task, "there are too many files of this name");
+    return NULL;
+  }
   def.dialect = VL_CAMERA_DIALECT_VELO;
   vlResult result = vl_camera_write(e->def.context, camera, &def, &record, &error);
-  if (result != VL_OK) return engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result)), NULL;
+  if (result != VL_OK) {
+    engine_refuse(e, task, error.message[0] ? error.message : vl_result_name(result));
+    return NULL;
+  }
   FILE *out = open_memstream(&text, &size);
-  if (!out) return engine_refuse(e, task, "out of memory"), NULL;
+  if (!out) {
+    engine_refuse(e, task, "out of memory");
+    return NULL;
+  }
   const vlRenderDef *render = &e->model.job.defs->render;
   char number[40];
   fputs("velo render", out);

@@ -30,7 +30,10 @@ static double display_noise(const vlImage *image, const vlImage *errors, double 
         double value = scale * (double)vl_image_get(image, x, y, c);
         double error = scale * (double)vl_image_get(errors, x, y, c);
         double spread = 0.5 * (display_value(value + error) - display_value(value - error));
-        if (isfinite(spread)) sum += spread * spread, count++;
+        if (isfinite(spread)) {
+          sum += spread * spread;
+          count++;
+        }
       }
   return count > 0 ? sqrt(sum / count) : NAN;
 }

@@ -60,7 +60,8 @@ static void pick(Engine *e, const Task *task) {
   uint32_t x = (uint32_t)m->x, y = (uint32_t)m->y;
   const uint32_t crop[4] = {x, y, x + 1, y + 1};
   memcpy(def.crop, crop, sizeof crop);
-  def.priority = 2, def.cancel = e->end;
+  def.priority = 2;
+  def.cancel = e->end;
   def.channels = VL_CHANNEL_ALL & ~(uint32_t)(VL_CHANNEL_SAMPLES | VL_CHANNEL_FILM);
   vlImage *floats = NULL, *ids = NULL;
   vlError error = {0};

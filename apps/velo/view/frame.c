@@ -59,7 +59,8 @@ ViewFrame *frame_make(const vlImage *image, FrameFormat format, uint32_t channel
   frame->format = format;
   frame->channels = channels;
   frame->scale = 1;
-  frame->columns = vl_image_width(image), frame->rows = vl_image_height(image);
+  frame->columns = vl_image_width(image);
+  frame->rows = vl_image_height(image);
   frame->pixels = malloc((size_t)frame->columns * frame->rows * pixel_size(frame));
   if (!frame->pixels) {
     free(frame);

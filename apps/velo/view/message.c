@@ -115,25 +115,40 @@ static bool read_members(const json_t *object, ViewMessage *m, const char **why)
                  read_count(object, "samples", 65536, &m->samples, NULL) &&
                  read_count(object, "show", 64, &m->show, NULL) &&
                  read_count(object, "spp", 1 << 24, &m->spp, &m->has_spp) && (!m->has_spp || m->spp > 0);
-  if (!numbers) return *why = "a number is of a wrong type or out of range", false;
+  if (!numbers) {
+    *why = "a number is of a wrong type or out of range";
+    return false;
+  }
   bool rest = read_bool(object, "paused", &m->paused, &m->has_paused) && read_bool(object, "boxes", &m->boxes, NULL) &&
               read_bool(object, "curves", &m->curves, NULL) && read_bool(object, "field", &m->field, NULL) &&
               read_bool(object, "mark", &m->mark, NULL) && read_bool(object, "by_sample", &m->by_sample, NULL) &&
               read_counts(object, "crop", 4, m->crop, &m->has_crop) &&
               read_counts(object, "size", 2, m->size, &m->has_size);
-  if (!rest) return *why = "a setting is of a wrong type or out of range", false;
+  if (!rest) {
+    *why = "a setting is of a wrong type or out of range";
+    return false;
+  }
   bool texts = read_text(object, "channel", m->channel, &m->has_channel) && read_text(object, "what", m->what, NULL) &&
                read_text(object, "name", m->name, NULL) && read_text(object, "dialect", m->dialect, NULL) &&
                read_text(object, "view", m->view, NULL);
-  if (!texts) return *why = "a text is of a wrong type or too long", false;
-  if (!read_fields(object, m)) return *why = "a field of the camera is of a wrong type", false;
+  if (!texts) {
+    *why = "a text is of a wrong type or too long";
+    return false;
+  }
+  if (!read_fields(object, m)) {
+    *why = "a field of the camera is of a wrong type";
+    return false;
+  }
   return true;
 }
 
 bool message_parse(const char *text, size_t size, ViewMessage *message, const char **why) {
   memset(message, 0, sizeof *message);
   *why = "not a JSON object";
-  if (size > MESSAGE_LARGEST) return *why = "too long", false;
+  if (size > MESSAGE_LARGEST) {
+    *why = "too long";
+    return false;
+  }
   json_error_t error;
   json_t *object = json_loadb(text, size, JSON_REJECT_DUPLICATES, &error);
   if (!json_is_object(object)) {

@@ -69,7 +69,8 @@ int model_load(vlContext *context, const char *path, const Arguments *arguments,
   if (status < 0) status = job_make(&model->job, context, model->scene, path, arguments);
   if (status < 0) {
     vlBuildDef build = model->job.defs->build;
-    build.previous = previous, build.cancel = cancel;
+    build.previous = previous;
+    build.cancel = cancel;
     vlResult result = vl_world_build_last(model->scene, &build, &model->world, &error);
     if (result != VL_OK) status = report_error(&error, result, path);
   }

@@ -99,8 +99,10 @@ void serve_film(Serve *s, const vlFilm *film, const vlProgress *progress) {
   vl_image_destroy(image);
   if (!frame) return;
   frame->serial = ++s->serial;
-  frame->width = def->width, frame->height = def->height;
-  frame->x0 = def->crop[0], frame->y0 = def->crop[1];
+  frame->width = def->width;
+  frame->height = def->height;
+  frame->x0 = def->crop[0];
+  frame->y0 = def->crop[1];
   frame->spp = vl_film_spp(film);
   server_show(s->server, frame);
   frame_drop(frame);

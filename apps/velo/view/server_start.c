@@ -45,7 +45,10 @@ static int open_port(Server *server) {
   info.port = server->def.port;
   info.iface = server->listen[0] ? server->listen : "127.0.0.1";
   info.vhost_name = "velo";
-  if (strcmp(info.iface, "0.0.0.0") == 0) info.iface = NULL, info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  if (strcmp(info.iface, "0.0.0.0") == 0) {
+    info.iface = NULL;
+    info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
+  }
   if (info.iface && strcmp(info.iface, "::") == 0) info.iface = NULL;
   if (info.iface && !strchr(info.iface, ':')) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   server->vhost = lws_create_vhost(server->lws, &info);

@@ -33,7 +33,8 @@ static int open_context(const Arguments *arguments, vlContext **context) {
   def.log = report_log;
   if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
   if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
-  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
   int status = context_open(&def, context);
   if (status < 0) report_memory_of(*context, def.max_memory);
   return status;

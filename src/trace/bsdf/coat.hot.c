@@ -67,7 +67,11 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
   if (of != OF_WO) return;
   float back = table->back[0], escape = table->escape[0];
   int32_t bounces = (int32_t)table->bounces;
-  for (uint32_t i = 0; i < count; i++) lanes->back[i] = back, lanes->escape[i] = escape, lanes->bounces[i] = bounces;
+  for (uint32_t i = 0; i < count; i++) {
+    lanes->back[i] = back;
+    lanes->escape[i] = escape;
+    lanes->bounces[i] = bounces;
+  }
 }
 
 /* Each lane has its own table, or interpolates between two rows. Without interpolation, results are the same as

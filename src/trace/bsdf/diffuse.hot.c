@@ -54,7 +54,9 @@ void vl_bsdf_diffuse_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
 /* Reflection and transmission of a pane are deltas. */
 void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, vlBsdfDirections wi,
                        float *const value[4], float *pdf) {
-  (void)params, (void)wo, (void)wi;
+  (void)params;
+  (void)wo;
+  (void)wi;
   float *v0 = value[0], *v1 = value[1], *v2 = value[2], *v3 = value[3];
   uint32_t count = VL_PAD(n);
   for (uint32_t i = 0; i < count; i++) v0[i] = v1[i] = v2[i] = v3[i] = pdf[i] = 0.0f;
@@ -63,7 +65,8 @@ void vl_bsdf_thin_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
 void vl_bsdf_thin_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirections wo, const float *u_lobe,
                          const float *u, const float *v, vlBsdfDirections wi, float *const weight[4], float *pdf,
                          uint32_t *flags, float *eta_scale) {
-  (void)u, (void)v;
+  (void)u;
+  (void)v;
   const float *ox = wo.x, *oy = wo.y, *oz = wo.z, *eta = params->eta_s;
   float *ix = wi.x, *iy = wi.y, *iz = wi.z;
   float *w0 = weight[0], *w1 = weight[1], *w2 = weight[2], *w3 = weight[3];

@@ -102,7 +102,10 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
     r.a[1][c] = square(1.0f - f) * t;
     r.a[2][c] = r.a[1][c] * t * f;
     r.a[3][c] = r.a[2][c] * t * f / vl_max(1.0f - t * f, VL_MIN_FRACTION);
-    for (int p = 0; p < LOBES; p++) r.share[p] += r.a[p][c], total += r.a[p][c];
+    for (int p = 0; p < LOBES; p++) {
+      r.share[p] += r.a[p][c];
+      total += r.a[p][c];
+    }
   }
   total = total > 0.0f ? 1.0f / total : 0.0f;
   for (int p = 0; p < LOBES; p++) r.share[p] *= total;
@@ -110,10 +113,14 @@ static inline Hair hair_of(const vlBsdfParams *q, uint32_t i, vlVec3 wo) {
   vlSinCos tilt = vl_sincos(q->own[VL_H_ALPHA][i]);
   float s2 = 2.0f * tilt.cos * tilt.sin, c2 = square(tilt.cos) - square(tilt.sin);
   float s4 = 2.0f * c2 * s2, c4 = square(c2) - square(s2);
-  r.sin_p[0] = r.sin_o * c2 - r.cos_o * s2, r.cos_p[0] = vl_abs(r.cos_o * c2 + r.sin_o * s2);
-  r.sin_p[1] = r.sin_o * tilt.cos + r.cos_o * tilt.sin, r.cos_p[1] = vl_abs(r.cos_o * tilt.cos - r.sin_o * tilt.sin);
-  r.sin_p[2] = r.sin_o * c4 + r.cos_o * s4, r.cos_p[2] = vl_abs(r.cos_o * c4 - r.sin_o * s4);
-  r.sin_p[3] = r.sin_o, r.cos_p[3] = r.cos_o;
+  r.sin_p[0] = r.sin_o * c2 - r.cos_o * s2;
+  r.cos_p[0] = vl_abs(r.cos_o * c2 + r.sin_o * s2);
+  r.sin_p[1] = r.sin_o * tilt.cos + r.cos_o * tilt.sin;
+  r.cos_p[1] = vl_abs(r.cos_o * tilt.cos - r.sin_o * tilt.sin);
+  r.sin_p[2] = r.sin_o * c4 + r.cos_o * s4;
+  r.cos_p[2] = vl_abs(r.cos_o * c4 - r.sin_o * s4);
+  r.sin_p[3] = r.sin_o;
+  r.cos_p[3] = r.cos_o;
   return r;
 }
 
@@ -164,7 +171,9 @@ void vl_bsdf_hair_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
     vlVec3 w = vl_normalize(vl_vec3(sin_i, cos_i * at.cos, cos_i * at.sin));
     float f[4], d = hair_value(&h, w, f);
     bool valid = wo.z[i] != 0.0f && w.z != 0.0f && d > VL_MIN_POSITIVE;
-    wi.x[i] = w.x, wi.y[i] = w.y, wi.z[i] = w.z;
+    wi.x[i] = w.x;
+    wi.y[i] = w.y;
+    wi.z[i] = w.z;
     for (int c = 0; c < 4; c++) weight[c][i] = valid ? f[c] / d : 0.0f;
     pdf[i] = valid ? d : 0.0f;
     flags[i] = !valid ? (uint32_t)VL_SAMPLED_NONE : w.z * wo.z[i] < 0.0f ? (uint32_t)VL_SAMPLED_TRANSMISSION : 0u;

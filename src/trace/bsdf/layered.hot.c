@@ -87,7 +87,8 @@ static bool fly(const Layers *l, vlVec3 *w, float *height, const Step *to, vlVec
 static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[4]) {
   float u = next(state), v = next(state);
   Step from = coat_enter(l, o, u, v);
-  u = next(state), v = next(state);
+  u = next(state);
+  v = next(state);
   Step to = coat_enter(l, wi, u, v);
   if (!from.valid) return;
   float beta[4], height = l->thickness, radiance_scale = 1.0f / (l->eta * l->eta);
@@ -107,7 +108,8 @@ static void walk(const Layers *l, vlVec3 o, vlVec3 wi, uint32_t *state, float f[
     }
     bool down = w.z < 0.0f;
     if (down) join_base(l, w, &to, beta, f);
-    u = next(state), v = next(state);
+    u = next(state);
+    v = next(state);
     Step s = down ? base_sample(l, vl_neg(w), u, v) : coat_back(l, w, u, v);
     if (!s.valid) return;
     for (int c = 0; c < 4; c++) beta[c] *= s.weight[c];
@@ -158,8 +160,14 @@ static Lobes lobes_of(const Layers *l, vlVec3 o) {
   float sum = lobes.coat + lobes.base + lobes.wide;
   if (!(sum > VL_MIN_FRACTION)) lobes.coat = sum = 1.0f;
   bool matt = !all_mirror || l->scatters;
-  lobes.coat /= sum, lobes.base /= sum, lobes.wide /= sum;
-  if (matt) lobes.wide = 0.95f * lobes.wide + 0.05f, lobes.base *= 0.95f, lobes.coat *= 0.95f;
+  lobes.coat /= sum;
+  lobes.base /= sum;
+  lobes.wide /= sum;
+  if (matt) {
+    lobes.wide = 0.95f * lobes.wide + 0.05f;
+    lobes.base *= 0.95f;
+    lobes.coat *= 0.95f;
+  }
   /* Light crosses the coat twice, and each time a microfacet deflects it by (1 - 1/eta) times the microfacet's slope.
    * Reflection by the metal deflects it by twice the slope. */
   float bend = l->smooth ? 0.0f : 0.5f * (1.0f - 1.0f / l->eta) * (1.0f - 1.0f / l->eta);
@@ -253,7 +261,9 @@ void vl_bsdf_layered_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirect
     }
     valid = p > 0.0f;
     for (int c = 0; c < 4; c++) weight[c][i] = valid ? f[c] / p : 0.0f;
-    wi.x[i] = w.x, wi.y[i] = w.y, wi.z[i] = __builtin_copysignf(w.z, wo.z[i]);
+    wi.x[i] = w.x;
+    wi.y[i] = w.y;
+    wi.z[i] = __builtin_copysignf(w.z, wo.z[i]);
     pdf[i] = valid ? p : 0.0f;
     flags[i] = valid ? (mirror ? (uint32_t)VL_SAMPLED_SPECULAR : 0u) : (uint32_t)VL_SAMPLED_NONE;
     eta_scale[i] = 1.0f;

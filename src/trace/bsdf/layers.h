@@ -23,23 +23,31 @@ typedef struct Layers {
 
 static inline Layers layers_of(const vlBsdfParams *p, uint32_t i) {
   Layers l;
-  l.ax = p->alpha_x[i], l.ay = p->alpha_y[i], l.eta = p->eta_s[i];
+  l.ax = p->alpha_x[i];
+  l.ay = p->alpha_y[i];
+  l.eta = p->eta_s[i];
   l.smooth = vl_ggx_is_smooth(l.ax, l.ay) | (l.eta == 1.0f);
-  l.ax = vl_ggx_alpha(l.ax), l.ay = vl_ggx_alpha(l.ay);
+  l.ax = vl_ggx_alpha(l.ax);
+  l.ay = vl_ggx_alpha(l.ay);
   l.metal = p->own[VL_L_METAL][i] > 0.0f;
-  l.bx = p->own[VL_L_BASE_X][i], l.by = p->own[VL_L_BASE_Y][i];
+  l.bx = p->own[VL_L_BASE_X][i];
+  l.by = p->own[VL_L_BASE_Y][i];
   l.mirror = l.metal & vl_ggx_is_smooth(l.bx, l.by);
-  l.bx = vl_ggx_alpha(l.bx), l.by = vl_ggx_alpha(l.by);
+  l.bx = vl_ggx_alpha(l.bx);
+  l.by = vl_ggx_alpha(l.by);
   l.scatters = 0;
   for (int c = 0; c < 4; c++) {
-    l.e[c] = l.metal ? p->eta[c][i] : 0.0f, l.k[c] = l.metal ? p->k[c][i] : 0.0f;
+    l.e[c] = l.metal ? p->eta[c][i] : 0.0f;
+    l.k[c] = l.metal ? p->k[c][i] : 0.0f;
     l.rho[c] = l.metal ? 0.0f : p->reflectance[c][i];
     l.albedo[c] = p->own[VL_L_ALBEDO + c][i];
     l.scatters |= l.albedo[c] > 0.0f;
   }
-  l.thickness = p->own[VL_L_THICKNESS][i], l.g = p->own[VL_L_G][i];
+  l.thickness = p->own[VL_L_THICKNESS][i];
+  l.g = p->own[VL_L_G][i];
   l.scatters &= l.thickness > 0.0f;
-  l.depth = (uint32_t)p->own[VL_L_DEPTH][i], l.walks = (uint32_t)p->own[VL_L_WALKS][i];
+  l.depth = (uint32_t)p->own[VL_L_DEPTH][i];
+  l.walks = (uint32_t)p->own[VL_L_WALKS][i];
   l.walks = l.walks > 0 ? l.walks : 1;
   return l;
 }

@@ -39,7 +39,8 @@ static inline Seen seen_from(const vlMeasured *m, vlVec3 o) {
   s.o = turned(&s, o);
   if (m->halves | m->quarters) {
     float y = opposite(s.o.y, m->side_y), x = m->quarters ? opposite(s.o.x, m->side_x) : y;
-    s.turn_x *= x, s.turn_y *= y;
+    s.turn_x *= x;
+    s.turn_y *= y;
     s.o = turned(&s, o);
   }
   float theta = elevation(s.o), phi = vl_atan2(s.o.y, s.o.x);
@@ -133,7 +134,9 @@ void vl_bsdf_measured_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirec
     value_at(m, &s, at, normal.x, normal.y, lambda, f);
     for (int c = 0; c < 4; c++) weight[c][i] = vl_min(f[c] / p, 1e30f);
     w = turned(&s, w);
-    wi.x[i] = w.x, wi.y[i] = w.y, wi.z[i] = w.z;
+    wi.x[i] = w.x;
+    wi.y[i] = w.y;
+    wi.z[i] = w.z;
     pdf[i] = p;
     flags[i] = 0;
   }

@@ -17,7 +17,9 @@ static vlPrincipledSlice slice_of(const vlBsdfParams *p, uint32_t n, uint32_t fi
     s.tint[c] = p->tint[c] ? p->tint[c] + first : s.base[c];
     s.lambda[c] = p->lambda[c] ? p->lambda[c] + first : NULL;
   }
-  s.alpha_x = p->alpha_x + first, s.alpha_y = p->alpha_y + first, s.eta = p->eta_s + first;
+  s.alpha_x = p->alpha_x + first;
+  s.alpha_y = p->alpha_y + first;
+  s.eta = p->eta_s + first;
   s.film = s.sheen = s.coat = s.solid = false;
   uint32_t live = n - first < s.count ? n - first : s.count;
   for (uint32_t i = 0; i < live; i++) {
@@ -132,7 +134,9 @@ static inline __attribute__((always_inline)) void pair_loop(const vlPrincipledSl
     out->hide_matt[i] = inside > 0.0f ? 1.0f : matt;
     /* Transmitted light crosses the layers once, on the upper side. */
     out->hide_through[i] = side < 0.0f ? (1.0f - ci) * (1.0f - si) : (1.0f - co) * (1.0f - so);
-    out->facet[i] = facet.value, out->weight[i] = facet.fresnel, out->total[i] = facet.total,
+    out->facet[i] = facet.value;
+    out->weight[i] = facet.fresnel;
+    out->total[i] = facet.total;
     out->opaque[i] = facet.opaque;
     out->coat[i] = coat_value;
     float cosine = vl_abs(w.z) * VL_INV_PI;
@@ -173,7 +177,8 @@ static inline void channel_loop(const vlPrincipledSlice *s, const vlPrincipledLa
     f = f + film * (l->film[c][i] - f);
     float fd = f0 + (f90 - f0) * p->weight[i],
           fo = f0 + (f90 - f0) * p->opaque[i]; /* reflectances of the dielectric only */
-    fd = fd + film * (l->film[c][i] - fd), fo = fo + film * (l->film[c][i] - fo);
+    fd = fd + film * (l->film[c][i] - fd);
+    fo = fo + film * (l->film[c][i] - fo);
     float within = p->total[i] > 0.0f ? 1.0f : fd; /* inside, only the transmissive part is the denser medium */
     f = f + l->inside[i] * dielectric * clear * (within - fo);
     float matt = (1.0f - l->energy_o[c][i]) * (1.0f - l->energy_i[c][i]) / (1.0f - l->energy_mean[c][i]) *
@@ -272,7 +277,9 @@ static __attribute__((noinline)) void choose(const vlPrincipledSlice *s, const v
         w.z = -w.z;
       }
     }
-    wi.x[k] = w.x, wi.y[k] = w.y, wi.z[k] = w.z * side;
+    wi.x[k] = w.x;
+    wi.y[k] = w.y;
+    wi.z[k] = w.z * side;
     eta_scale[k] = scale;
   }
 }

@@ -68,8 +68,10 @@ static __attribute__((noinline)) void find_places(const vlPrincipledSlice *s, co
     int32_t ia = (int32_t)a, ic = (int32_t)c;
     ia = ia < VL_ALBEDO_ALPHA - 2 ? ia : VL_ALBEDO_ALPHA - 2;
     ic = ic < VL_ALBEDO_COS - 2 ? ic : VL_ALBEDO_COS - 2;
-    p->alpha[i] = ia > 0 ? ia : 0, p->cosine[i] = ic > 0 ? ic : 0;
-    p->alpha_t[i] = a - (float)ia, p->cosine_t[i] = c - (float)ic;
+    p->alpha[i] = ia > 0 ? ia : 0;
+    p->cosine[i] = ic > 0 ? ic : 0;
+    p->alpha_t[i] = a - (float)ia;
+    p->cosine_t[i] = c - (float)ic;
   }
 }
 
@@ -206,7 +208,8 @@ static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
     l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
     float f0 = s->row[VL_P_F0][i], mean = f0 + (s->row[VL_P_F90][i] - f0) * (1.0f / 21.0f);
     float passes = l->again_pass[i] * (1.0f - mean), lost = l->loss_o[i] / (1.0f - l->one_o[i]);
-    l->lost_up[i] = lost * (1.0f - passes), l->lost_down[i] = lost * passes;
+    l->lost_up[i] = lost * (1.0f - passes);
+    l->lost_down[i] = lost * passes;
   }
 }
 
@@ -259,8 +262,11 @@ static __attribute__((noinline)) void weigh(const vlPrincipledSlice *s, const fl
     float beyond = cover * dielectric *
                    ((1.0f - clear) * shares * through * (1.0f - energy) + clear * base * lost * l->lost_down[i]);
     float inverse = 1.0f / (mirror + matt + coat + refract + beyond);
-    l->specular[i] = mirror * inverse, l->diffuse[i] = matt * inverse, l->coat[i] = coat * inverse;
-    l->refract[i] = refract * inverse, l->through[i] = beyond * inverse;
+    l->specular[i] = mirror * inverse;
+    l->diffuse[i] = matt * inverse;
+    l->coat[i] = coat * inverse;
+    l->refract[i] = refract * inverse;
+    l->through[i] = beyond * inverse;
   }
 }
 
@@ -270,7 +276,8 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_
   uint32_t count = VL_WHOLE(s->count);
   for (uint32_t i = 0; i < count; i++) {
     float z = oz[i];
-    l->z[i] = vl_abs(z), l->side[i] = z < 0.0f ? -1.0f : 1.0f;
+    l->z[i] = vl_abs(z);
+    l->side[i] = z < 0.0f ? -1.0f : 1.0f;
     l->inside[i] = z < 0.0f ? 1.0f - thin[i] : 0.0f;
     l->coat_o[i] = l->coat_mean[i] = l->sheen_o[i] = l->sheen_mean[i] = l->sheen_raw[i] = coat_cos[i] = 0.0f;
     l->loss_mean[0][i] = l->again_up[i] = l->again_down[i] = l->again_pass[i] = 0.0f;

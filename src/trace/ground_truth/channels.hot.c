@@ -51,7 +51,8 @@ static double triangle_distance(const vlWorldShape *s, const vlWorldInstance *q,
   if (!(along != 0.0) || !(t - t == 0.0)) return otherwise;
   double ta = exact_dot(a, d), tb = exact_dot(b, d), tc = exact_dot(c, d);
   double low = ta < tb ? ta : tb, high = ta < tb ? tb : ta;
-  low = low < tc ? low : tc, high = high > tc ? high : tc;
+  low = low < tc ? low : tc;
+  high = high > tc ? high : tc;
   t = t < low ? low : t;
   return t > high ? high : t;
 }
@@ -126,7 +127,10 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
   for (uint32_t set = 0; set < def->sets; set++) {
     if (set) keep_frames(scratch, n, true);
     for (int c = 0; c < 4; c++)
-      for (uint32_t i = 0; i < n; i++) s->b.lambda[c][i] = def->lambda[set][c], s->b.beta[c][i] = 1.0f;
+      for (uint32_t i = 0; i < n; i++) {
+        s->b.lambda[c][i] = def->lambda[set][c];
+        s->b.beta[c][i] = 1.0f;
+      }
     for (uint32_t first = 0, last; first < n; first = last) {
       uint32_t material = s->hits_b.material[first];
       for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
@@ -140,12 +144,20 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
 
 static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPaths *p) {
   for (uint32_t i = 0; i < batch->n; i++) {
-    p->ox[i] = (float)batch->o[0][i], p->oy[i] = (float)batch->o[1][i], p->oz[i] = (float)batch->o[2][i];
-    p->dx[i] = (float)batch->d[0][i], p->dy[i] = (float)batch->d[1][i], p->dz[i] = (float)batch->d[2][i];
-    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
+    p->ox[i] = (float)batch->o[0][i];
+    p->oy[i] = (float)batch->o[1][i];
+    p->oz[i] = (float)batch->o[2][i];
+    p->dx[i] = (float)batch->d[0][i];
+    p->dy[i] = (float)batch->d[1][i];
+    p->dz[i] = (float)batch->d[2][i];
+    p->cone[i] = def->pixel_width;
+    p->spread[i] = def->pixel_spread;
     p->lane[i] = i;
     p->specular[i] = 1;
-    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
+    for (int c = 0; c < 4; c++) {
+      p->lambda[c][i] = def->lambda[0][c];
+      p->beta[c][i] = 0.0f;
+    }
     batch->distance[i] = VL_INFINITY;
     for (int k = 0; k < 3; k++) batch->n_shading[k][i] = batch->n_geometric[k][i] = batch->albedo[k][i] = 0.0f;
     batch->uv[0][i] = batch->uv[1][i] = 0.0f;
@@ -162,11 +174,19 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
     uint32_t k = count++;
-    b->ox[k] = a->ox[i], b->oy[k] = a->oy[i], b->oz[k] = a->oz[i];
-    b->dx[k] = a->dx[i], b->dy[k] = a->dy[i], b->dz[k] = a->dz[i];
-    b->cone[k] = a->cone[i], b->spread[k] = a->spread[i];
+    b->ox[k] = a->ox[i];
+    b->oy[k] = a->oy[i];
+    b->oz[k] = a->oz[i];
+    b->dx[k] = a->dx[i];
+    b->dy[k] = a->dy[i];
+    b->dz[k] = a->dz[i];
+    b->cone[k] = a->cone[i];
+    b->spread[k] = a->spread[i];
     b->lane[k] = i;
-    g->shape[k] = h->shape[i], g->prim[k] = h->prim[i], g->instance[k] = h->instance[i], g->t[k] = h->t[i];
+    g->shape[k] = h->shape[i];
+    g->prim[k] = h->prim[i];
+    g->instance[k] = h->instance[i];
+    g->t[k] = h->t[i];
     g->material[k] = h->material[i];
     batch->object[i] = h->shape[i] + 1;
     batch->material[i] = world->shapes.items[h->shape[i]].material + 1;
@@ -197,10 +217,14 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = s->b.lane[i];
     batch->distance[lane] = def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
-    batch->n_shading[0][lane] = f->nx[i], batch->n_shading[1][lane] = f->ny[i], batch->n_shading[2][lane] = f->nz[i];
-    batch->n_geometric[0][lane] = f->gx[i], batch->n_geometric[1][lane] = f->gy[i];
+    batch->n_shading[0][lane] = f->nx[i];
+    batch->n_shading[1][lane] = f->ny[i];
+    batch->n_shading[2][lane] = f->nz[i];
+    batch->n_geometric[0][lane] = f->gx[i];
+    batch->n_geometric[1][lane] = f->gy[i];
     batch->n_geometric[2][lane] = f->gz[i];
-    batch->uv[0][lane] = f->u[i], batch->uv[1][lane] = f->v[i];
+    batch->uv[0][lane] = f->u[i];
+    batch->uv[1][lane] = f->v[i];
   }
 }
 
@@ -213,12 +237,20 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
   uint32_t n = to->n;
   if (n == 0) return;
   for (uint32_t i = 0; i < n; i++) {
-    p->ox[i] = to->ox[i], p->oy[i] = to->oy[i], p->oz[i] = to->oz[i];
-    p->dx[i] = to->dx[i], p->dy[i] = to->dy[i], p->dz[i] = to->dz[i];
-    p->cone[i] = def->pixel_width, p->spread[i] = def->pixel_spread;
+    p->ox[i] = to->ox[i];
+    p->oy[i] = to->oy[i];
+    p->oz[i] = to->oz[i];
+    p->dx[i] = to->dx[i];
+    p->dy[i] = to->dy[i];
+    p->dz[i] = to->dz[i];
+    p->cone[i] = def->pixel_width;
+    p->spread[i] = def->pixel_spread;
     p->specular[i] = 1;
     p->lane[i] = i;
-    for (int c = 0; c < 4; c++) p->lambda[c][i] = def->lambda[0][c], p->beta[c][i] = 0.0f;
+    for (int c = 0; c < 4; c++) {
+      p->lambda[c][i] = def->lambda[0][c];
+      p->beta[c][i] = 0.0f;
+    }
   }
   p->time = to->time;
   vlTraceBatch rays = {.n = n, .t_min = to->t_min, .t_max = to->t_max};
@@ -244,7 +276,10 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
 /* Advances past each surface by the error bound of the hit point, as hits.hot.c does at interfaces. */
 static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32_t lane, vlGroundTruthLayers *to) {
   float o[3], d[3], t_min = batch->t_min[lane];
-  for (int k = 0; k < 3; k++) o[k] = (float)batch->o[k][lane], d[k] = (float)batch->d[k][lane];
+  for (int k = 0; k < 3; k++) {
+    o[k] = (float)batch->o[k][lane];
+    d[k] = (float)batch->d[k][lane];
+  }
   to->count = 0;
   for (int step = 0; step < VL_GROUND_TRUTH_LAYERS; step++) {
     uint32_t shape, prim, instance;
@@ -265,7 +300,11 @@ static void layers(const vlWorld *world, const vlGroundTruthBatch *batch, uint32
     uint32_t object = shape + 1, placed = instance == VL_NONE ? 0 : instance + 1, k = 0;
     while (k < to->count && (to->object[k] != object || to->instance[k] != placed)) k++;
     bool seen = world->materials.items[world->shapes.items[shape].material].kind != VL_MATERIAL_INTERFACE;
-    if (k == to->count && seen) to->object[k] = object, to->instance[k] = placed, to->count++;
+    if (k == to->count && seen) {
+      to->object[k] = object;
+      to->instance[k] = placed;
+      to->count++;
+    }
     t_min = vl_past_surface(&at, along, t_min);
   }
 }

@@ -24,8 +24,11 @@ static uint32_t gather(const vlWorld *world, const vlPaths *paths, const vlSurfa
     uint32_t i = lanes[k < count ? k : count - 1];
     const vlWorldLight *light = &world->lights.items[samples->light[i]];
     b->lane[k] = i;
-    b->px[k] = f->px[i], b->py[k] = f->py[i], b->pz[k] = f->pz[i];
-    b->u[k] = u[i], b->v[k] = v[i];
+    b->px[k] = f->px[i];
+    b->py[k] = f->py[i];
+    b->pz[k] = f->pz[i];
+    b->u[k] = u[i];
+    b->v[k] = v[i];
     for (int c = 0; c < 9; c++) b->corner[c][k] = light->corners[c];
     for (int c = 0; c < 3; c++) b->n[c][k] = light->direction[c];
     b->area[k] = light->area;
@@ -43,8 +46,12 @@ static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint
   int emits = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
   vlVec3 target = vl_offset_end(p, vl_vec3(side * n.x, side * n.y, side * n.z), offset, w, from);
   b->pdf[k] = emits & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
-  b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
-  b->tx[k] = target.x, b->ty[k] = target.y, b->tz[k] = target.z;
+  b->wx[k] = w.x;
+  b->wy[k] = w.y;
+  b->wz[k] = w.z;
+  b->tx[k] = target.x;
+  b->ty[k] = target.y;
+  b->tz[k] = target.z;
 }
 
 static void triangles(uint32_t padded, Block *restrict b) {
@@ -116,8 +123,12 @@ static void store(const Block *b, uint32_t count, vlLightSamples *out) {
     if (!(b->pdf[k] > 0.0f)) continue;
     float total = b->pdf[k] * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
-    out->wx[i] = b->wx[k], out->wy[i] = b->wy[k], out->wz[i] = b->wz[k];
-    out->tx[i] = b->tx[k], out->ty[i] = b->ty[k], out->tz[i] = b->tz[k];
+    out->wx[i] = b->wx[k];
+    out->wy[i] = b->wy[k];
+    out->wz[i] = b->wz[k];
+    out->tx[i] = b->tx[k];
+    out->ty[i] = b->ty[k];
+    out->tz[i] = b->tz[k];
     for (int c = 0; c < 4; c++) out->radiance[c][i] = b->radiance[c][k] * inv;
   }
 }

@@ -19,7 +19,8 @@ static inline float vl_light_coverage(const vlWorld *world, const vlWorldLight *
     at.u = at.v = 0;
     for (int k = 0; k < 3; k++) {
       const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;
-      at.u += weights[k] * t[0], at.v += weights[k] * t[1];
+      at.u += weights[k] * t[0];
+      at.v += weights[k] * t[1];
     }
   }
   return vl_clamp(vl_texture_float_at(world, s->alpha, &at), 0.0f, 1.0f);

@@ -18,6 +18,9 @@ void vl_light_emit_distant(const vlEmissionQuery *q, vlEmission *out) {
 
 float vl_light_emit_pdf_distant(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
                                 const vlPoint *at) {
-  (void)light, (void)w, (void)distance, (void)at;
+  (void)light;
+  (void)w;
+  (void)distance;
+  (void)at;
   return p / vl_light_disk(world);
 }

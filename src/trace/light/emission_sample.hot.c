@@ -17,7 +17,9 @@ static float point_density(const vlWorld *world, const vlWorldLight *light, vlVe
   const vlWorldShape *s = &world->shapes.items[light->shape];
   if (s->kind == VL_SHAPE_TRIANGLES) return light->area > 0.0f ? 1.0f / light->area : 0.0f;
   vlSurfacePoint point;
-  point.p[0] = p.x, point.p[1] = p.y, point.p[2] = p.z;
+  point.p[0] = p.x;
+  point.p[1] = p.y;
+  point.p[2] = p.z;
   return (float)vl_shape_pdf(s, light->prim, &point);
 }
 
@@ -56,7 +58,8 @@ static float side_share(const vlWorld *world, const vlWorldLight *light, vlVec3 
 
 float vl_light_emit_pdf_infinite(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
                                  const vlPoint *at) {
-  (void)distance, (void)at;
+  (void)distance;
+  (void)at;
   if (portal_of(world, light)) return p * portal_density(portal_of(world, light), w);
   return p * sky_density(world, light, w) / vl_light_disk(world);
 }
@@ -101,7 +104,8 @@ static Spot on_triangle(const vlWorldLight *light, const vlWorldShape *s, float 
     corner[k] = vl_vec3(q[3 * k], q[3 * k + 1], q[3 * k + 2]);
     r.p = vl_add(r.p, vl_mul(corner[k], b[k]));
     const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
-    r.u += b[k] * t[0], r.v += b[k] * t[1];
+    r.u += b[k] * t[0];
+    r.v += b[k] * t[1];
     if (light->one_sided_normals) continue;
     const float *x = s->normals + 3 * (size_t)f[k];
     ns = vl_add(ns, vl_mul(vl_vec3(x[0], x[1], x[2]), b[k]));
@@ -146,7 +150,8 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   if (!(local.z > 0.0f)) return;
   out->d = vl_normalize(vl_from_local(vl_frame_from_z(side), local));
   out->o = vl_offset_origin(at.p, side, at.offset, out->d);
-  out->at = at.p, out->n = at.n;
+  out->at = at.p;
+  out->n = at.n;
   vl_emitted_at(world, e, q->lambda, at.u, 1.0f - at.v, false, out->flux);
   float scale = VL_PI * sides / at.pdf;
   if (shape->alpha >= 0 && !light->invisible)

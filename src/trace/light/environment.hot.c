@@ -26,7 +26,8 @@ static inline __attribute__((always_inline)) void request_texel(const vlEnvironm
   if (env->cells_are_texels) return; /* the colour is in the cell */
   const vlMipLevel *l = &mip->levels[0];
   uint32_t x = (uint32_t)(int32_t)(s * (float)l->width), y = (uint32_t)(int32_t)(t * (float)l->height);
-  x = x < l->width ? x : l->width - 1, y = y < l->height ? y : l->height - 1;
+  x = x < l->width ? x : l->width - 1;
+  y = y < l->height ? y : l->height - 1;
   size_t at = ((size_t)y * l->width + x) * mip->channels;
   request(mip->is_bytes ? (const void *)(l->bytes + at) : (const void *)(l->floats + at));
 }
@@ -99,7 +100,9 @@ static void directions(const vlEnvironment *env, uint32_t padded, Block *restric
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
     vlVec3 w = vl_normalize(vl_environment_turn(turn, vl_octahedral_decode(b->s[k], b->t[k])));
-    b->wx[k] = w.x, b->wy[k] = w.y, b->wz[k] = w.z;
+    b->wx[k] = w.x;
+    b->wy[k] = w.y;
+    b->wz[k] = w.z;
   }
 }
 
@@ -107,7 +110,8 @@ static void choose_cells(const vlEnvironment *env, const vlMipmap *mip, const fl
                          Block *b) {
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k], y = vl_environment_row(env, v[i], &b->dy[k]);
-    b->y[k] = y, b->u[k] = u[i];
+    b->y[k] = y;
+    b->u[k] = u[i];
     request(env->cell_guide + (size_t)y * VL_GUIDES + vl_guide_index(u[i])); /* must prefetch */
   }
   for (uint32_t k = 0; k < padded; k++)
@@ -140,7 +144,9 @@ void vl_sample_environment(const vlWorld *world, const vlWorldLight *light, cons
     if (!(pdf > 0.0f) || !(pdf < VL_INFINITY)) continue;
     float total = pdf * out->pmf[i], inv = 1.0f / total;
     out->pdf[i] = total;
-    out->wx[i] = out->tx[i] = b.wx[k], out->wy[i] = out->ty[i] = b.wy[k], out->wz[i] = out->tz[i] = b.wz[k];
+    out->wx[i] = out->tx[i] = b.wx[k];
+    out->wy[i] = out->ty[i] = b.wy[k];
+    out->wz[i] = out->tz[i] = b.wz[k];
     for (int c = 0; c < 4; c++) out->radiance[c][i] = b.radiance[c][k] * inv;
   }
 }
@@ -153,14 +159,17 @@ static void squares(const vlEnvironment *env, const vlPaths *paths, uint32_t pad
   const float turn[9] = {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]};
   for (uint32_t k = 0; k < padded; k++) {
     uint32_t i = b->lane[k];
-    b->wx[k] = paths->dx[i], b->wy[k] = paths->dy[i], b->wz[k] = paths->dz[i];
+    b->wx[k] = paths->dx[i];
+    b->wy[k] = paths->dy[i];
+    b->wz[k] = paths->dz[i];
   }
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
     vlVec3 d = vl_vec3(b->wx[k], b->wy[k], b->wz[k]);
     vlVec2 st = vl_octahedral_encode(vl_normalize(vl_environment_turn(turn, d)));
-    b->s[k] = st.x, b->t[k] = st.y;
+    b->s[k] = st.x;
+    b->t[k] = st.y;
   }
 }
 

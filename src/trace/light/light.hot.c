@@ -108,7 +108,9 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
   Near near = near_triangle(light, from);
   if (near.near) {
     vlVec3 w = vl_triangle_weights(vl_triangle_from(q, from), vl_warp_spherical_triangle(near.cap, u, v));
-    b[0] = w.x, b[1] = w.y, b[2] = w.z;
+    b[0] = w.x;
+    b[1] = w.y;
+    b[2] = w.z;
   }
   Sample r;
   r.p = vl_add(vl_add(vl_mul(p[0], b[0]), vl_mul(p[1], b[1])), vl_mul(p[2], b[2]));
@@ -133,7 +135,8 @@ static Sample sample_triangle(const vlWorldLight *light, const vlWorldShape *s, 
     const float *uvs = s->emission_uvs ? s->emission_uvs : s->uvs;
     for (int k = 0; k < 3; k++) {
       const float *t = uvs ? uvs + 2 * (size_t)f[k] : unit + 2 * k;
-      r.u += b[k] * t[0], r.v += b[k] * t[1];
+      r.u += b[k] * t[0];
+      r.v += b[k] * t[1];
     }
   }
   return r;
@@ -175,7 +178,8 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
           hit.p[i] = s->to_shape[4 * i] * r.p.x + s->to_shape[4 * i + 1] * r.p.y + s->to_shape[4 * i + 2] * r.p.z +
                      s->to_shape[4 * i + 3];
         vl_shape_point(s, light->prim, &hit, &point);
-        r.u = point.uv[0], r.v = point.uv[1];
+        r.u = point.uv[0];
+        r.v = point.uv[1];
       }
       return r;
     }
@@ -187,7 +191,8 @@ static Sample sample_area(const vlWorld *world, const vlWorldLight *light, vlVec
   r.p = vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]);
   r.n = vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]);
   r.offset = vl_point_offset(&point);
-  r.u = point.uv[0], r.v = point.uv[1];
+  r.u = point.uv[0];
+  r.v = point.uv[1];
   r.weights[0] = r.weights[1] = r.weights[2] = 0;
   r.pdf = vl_solid_pdf((float)pdf, from, r.p, r.n);
   return r;
@@ -208,7 +213,9 @@ float vl_area_pdf(const vlWorld *world, const vlWorldLight *light, vlVec3 from, 
     if (vl_outside_sphere(to, radius)) return 1.0f / (2.0f * VL_PI * vl_sphere_cone(radius * radius / d2));
   }
   vlSurfacePoint point;
-  point.p[0] = at->p.x, point.p[1] = at->p.y, point.p[2] = at->p.z;
+  point.p[0] = at->p.x;
+  point.p[1] = at->p.y;
+  point.p[2] = at->p.z;
   return vl_solid_pdf((float)vl_shape_pdf(s, light->prim, &point), from, at->p, at->g);
 }
 
@@ -277,8 +284,12 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   if (!(sample.pdf > 0.0f) || !(sample.pdf < VL_INFINITY)) return;
   float total = sample.pdf * out->pmf[i], inv = 1.0f / total;
   out->pdf[i] = total;
-  out->wx[i] = sample.w.x, out->wy[i] = sample.w.y, out->wz[i] = sample.w.z;
-  out->tx[i] = sample.target.x, out->ty[i] = sample.target.y, out->tz[i] = sample.target.z;
+  out->wx[i] = sample.w.x;
+  out->wy[i] = sample.w.y;
+  out->wz[i] = sample.w.z;
+  out->tx[i] = sample.target.x;
+  out->ty[i] = sample.target.y;
+  out->tz[i] = sample.target.z;
   for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 

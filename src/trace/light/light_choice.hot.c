@@ -45,7 +45,9 @@ static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
 
 /* Lane i has arrived at its light. */
 static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, float rest) {
-  d->out->light[i] = light, d->out->pmf[i] = pmf, d->rest[i] = rest;
+  d->out->light[i] = light;
+  d->out->pmf[i] = pmf;
+  d->rest[i] = rest;
   d->by_light->lane[d->by_light->count++] = i;
 }
 
@@ -77,7 +79,8 @@ static void step_together(const float *nodes, uint32_t left, uint32_t first, uin
   for (uint32_t k = first; k < first + padded; k++) {
     uint32_t i = w->lane[k];
     Step s = step_down(a, b, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), w->u[k], w->pmf[k], &side[k]);
-    w->u[k] = s.u, w->pmf[k] = s.pmf;
+    w->u[k] = s.u;
+    w->pmf[k] = s.pmf;
   }
 }
 
@@ -92,7 +95,9 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
     uint32_t at = left * VL_LIGHT_NODE_FLOATS;
     Step s = step_down(vl_light_cluster(nodes, at), vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS),
                        vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), w->u[k], w->pmf[k], &second);
-    w->node[k] = left + second, w->u[k] = s.u, w->pmf[k] = s.pmf;
+    w->node[k] = left + second;
+    w->u[k] = s.u;
+    w->pmf[k] = s.pmf;
   }
 }
 
@@ -110,9 +115,12 @@ static void start(Descent *d, uint32_t n, const float *u) {
     bool beside = u[i] < p_unbounded;
     float x = beside ? u[i] * slots - (float)k : (u[i] - p_unbounded) / (1.0f - p_unbounded);
     x = vl_min(x, VL_ONE_MINUS_EPSILON);
-    d->out->light[i] = 0, d->out->pmf[i] = 0.0f; /* for lanes that no light reaches */
+    d->out->light[i] = 0;
+    d->out->pmf[i] = 0.0f; /* for lanes that no light reaches */
     if (beside) choose(d, i, tree->unbounded[k], 1.0f / slots, x);
-    w->lane[count] = i, w->u[count] = x, w->pmf[count] = 1.0f / slots;
+    w->lane[count] = i;
+    w->u[count] = x;
+    w->pmf[count] = 1.0f / slots;
     count += !beside;
   }
   w->count = count;
@@ -126,8 +134,12 @@ static void arrive(Descent *d, uint32_t node, Walk *w, uint32_t count) {
     w->count = first;
   } else if (count < FEW) {
     Walk *a = &d->apart;
-    for (uint32_t k = first; k < w->count; k++, a->count++)
-      a->lane[a->count] = w->lane[k], a->node[a->count] = node, a->u[a->count] = w->u[k], a->pmf[a->count] = w->pmf[k];
+    for (uint32_t k = first; k < w->count; k++, a->count++) {
+      a->lane[a->count] = w->lane[k];
+      a->node[a->count] = node;
+      a->u[a->count] = w->u[k];
+      a->pmf[a->count] = w->pmf[k];
+    }
     w->count = first;
   } else {
     d->segments[d->segment_count++] = (Segment){node, count};
@@ -139,18 +151,28 @@ static void descend_together(Descent *d) {
   Segment s = d->segments[--d->segment_count];
   Walk *w = &d->together, *other = &d->second;
   uint32_t left = d->tree->nodes[s.node].left, last = w->count, first = last - s.count, a = first, b = 0;
-  for (uint32_t k = last; k < first + VL_PAD(s.count); k++) w->lane[k] = 0, w->u[k] = 0.0f, w->pmf[k] = 0.0f;
+  for (uint32_t k = last; k < first + VL_PAD(s.count); k++) {
+    w->lane[k] = 0;
+    w->u[k] = 0.0f;
+    w->pmf[k] = 0.0f;
+  }
   step_together((const float *)d->tree->nodes, left, first, s.count, d->f, w, d->side);
   for (uint32_t k = first; k < last; k++) { /* without branches, since the sides are random */
     uint32_t lane = w->lane[k], second = d->side[k], lit = w->pmf[k] > 0.0f;
     float u = w->u[k], pmf = w->pmf[k];
-    w->lane[a] = other->lane[b] = lane, w->u[a] = other->u[b] = u, w->pmf[a] = other->pmf[b] = pmf;
-    a += lit & ~second, b += lit & second;
+    w->lane[a] = other->lane[b] = lane;
+    w->u[a] = other->u[b] = u;
+    w->pmf[a] = other->pmf[b] = pmf;
+    a += lit & ~second;
+    b += lit & second;
   }
   w->count = a;
   arrive(d, left, w, a - first);
-  for (uint32_t k = 0; k < b; k++, w->count++)
-    w->lane[w->count] = other->lane[k], w->u[w->count] = other->u[k], w->pmf[w->count] = other->pmf[k];
+  for (uint32_t k = 0; k < b; k++, w->count++) {
+    w->lane[w->count] = other->lane[k];
+    w->u[w->count] = other->u[k];
+    w->pmf[w->count] = other->pmf[k];
+  }
   arrive(d, left + 1, w, b);
 }
 
@@ -158,13 +180,20 @@ static void descend_together(Descent *d) {
 static void descend_apart(Descent *d) {
   Walk *w = &d->apart;
   uint32_t count = 0;
-  for (uint32_t k = w->count; k < VL_PAD(w->count); k++) w->lane[k] = w->node[k] = 0, w->u[k] = 0.0f, w->pmf[k] = 0.0f;
+  for (uint32_t k = w->count; k < VL_PAD(w->count); k++) {
+    w->lane[k] = w->node[k] = 0;
+    w->u[k] = 0.0f;
+    w->pmf[k] = 0.0f;
+  }
   step_apart((const float *)d->tree->nodes, d->f, w);
   for (uint32_t k = 0; k < w->count; k++) {
     uint32_t i = w->lane[k], light = d->tree->nodes[w->node[k]].light;
     if (!(w->pmf[k] > 0.0f)) continue;
     if (light != VL_INNER) choose(d, i, light, w->pmf[k], w->u[k]);
-    w->lane[count] = i, w->node[count] = w->node[k], w->u[count] = w->u[k], w->pmf[count] = w->pmf[k];
+    w->lane[count] = i;
+    w->node[count] = w->node[k];
+    w->u[count] = w->u[k];
+    w->pmf[count] = w->pmf[k];
     count += light == VL_INNER;
   }
   w->count = count;
@@ -184,7 +213,11 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
     return;
   }
   Descent d;
-  d.tree = tree, d.f = f, d.out = out, d.rest = rest, d.by_light = by_light;
+  d.tree = tree;
+  d.f = f;
+  d.out = out;
+  d.rest = rest;
+  d.by_light = by_light;
   d.segment_count = d.apart.count = 0;
   start(&d, n, u);
   arrive(&d, 0, &d.together, d.together.count);

@@ -38,7 +38,10 @@ static bool surrounding_medium(const vlWorld *world, vlVec3 p, bool far, uint32_
     uint32_t here = vl_medium_beyond(&world->shapes.items[shape], at.g, vl_neg(w), VL_NONE), i = 0;
     while (i < answers && answer[i] != here) i++;
     if (i == ANSWERS) continue;
-    if (i == answers) answer[answers] = here, votes[answers++] = 0;
+    if (i == answers) {
+      answer[answers] = here;
+      votes[answers++] = 0;
+    }
     votes[i]++;
   }
   for (uint32_t i = 1; i < answers; i++)

@@ -47,6 +47,7 @@ void vl_light_emit_projection(const vlEmissionQuery *q, vlEmission *out) {
 
 float vl_light_emit_pdf_projection(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
                                    const vlPoint *at) {
-  (void)world, (void)at;
+  (void)world;
+  (void)at;
   return vl_light_emit_pdf_from_point(light, image_span(light), p, w, distance);
 }

@@ -28,6 +28,7 @@ void vl_light_emit_spot(const vlEmissionQuery *q, vlEmission *out) {
 
 float vl_light_emit_pdf_spot(const vlWorld *world, const vlWorldLight *light, float p, vlVec3 w, float distance,
                              const vlPoint *at) {
-  (void)world, (void)at;
+  (void)world;
+  (void)at;
   return vl_light_emit_pdf_from_point(light, 1.0f - light->cos_end, p, w, distance);
 }

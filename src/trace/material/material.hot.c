@@ -36,9 +36,14 @@ static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
   vlVec3 ns = vl_lane3(f->nx, f->ny, f->nz, i);
   vlVec3 du = vl_mul(vl_sub(vl_mul(m1, v2), vl_mul(m2, v1)), scale);
   vlVec3 dv = vl_mul(vl_sub(vl_mul(m2, u1), vl_mul(m1, u2)), scale);
-  du = vl_sub(du, vl_mul(ns, vl_dot(du, ns))), dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
-  f->dn[0][i] = du.x, f->dn[1][i] = du.y, f->dn[2][i] = du.z;
-  f->dn[3][i] = dv.x, f->dn[4][i] = dv.y, f->dn[5][i] = dv.z;
+  du = vl_sub(du, vl_mul(ns, vl_dot(du, ns)));
+  dv = vl_sub(dv, vl_mul(ns, vl_dot(dv, ns)));
+  f->dn[0][i] = du.x;
+  f->dn[1][i] = du.y;
+  f->dn[2][i] = du.z;
+  f->dn[3][i] = dv.x;
+  f->dn[4][i] = dv.y;
+  f->dn[5][i] = dv.z;
 }
 
 /* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in v; h' by finite
@@ -53,12 +58,26 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     float w = 0.5f * f->width[i] * f->uv_scale[i];
     step[i] = w > MIN_STEP ? w : DEFAULT_STEP;
   }
-  r->shift_u = su, r->shift_v = sv, r->shift_x = x, r->shift_y = y, r->shift_z = z;
-  for (uint32_t i = r->first; i < r->last; i++)
-    su[i] = step[i], sv[i] = 0.0f, x[i] = step[i] * f->ux[i], y[i] = step[i] * f->uy[i], z[i] = step[i] * f->uz[i];
+  r->shift_u = su;
+  r->shift_v = sv;
+  r->shift_x = x;
+  r->shift_y = y;
+  r->shift_z = z;
+  for (uint32_t i = r->first; i < r->last; i++) {
+    su[i] = step[i];
+    sv[i] = 0.0f;
+    x[i] = step[i] * f->ux[i];
+    y[i] = step[i] * f->uy[i];
+    z[i] = step[i] * f->uz[i];
+  }
   vl_texture_float(r, node, hu);
-  for (uint32_t i = r->first; i < r->last; i++)
-    su[i] = 0.0f, sv[i] = step[i], x[i] = step[i] * f->vx[i], y[i] = step[i] * f->vy[i], z[i] = step[i] * f->vz[i];
+  for (uint32_t i = r->first; i < r->last; i++) {
+    su[i] = 0.0f;
+    sv[i] = step[i];
+    x[i] = step[i] * f->vx[i];
+    y[i] = step[i] * f->vy[i];
+    z[i] = step[i] * f->vz[i];
+  }
   vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -71,8 +90,12 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     vlVec3 m = vl_cross(du, dv);
     if (!(vl_length2(m) > 0.0f)) continue;
     m = facing(vl_normalize(m), n);
-    f->nx[i] = m.x, f->ny[i] = m.y, f->nz[i] = m.z;
-    f->ux[i] = du.x, f->uy[i] = du.y, f->uz[i] = du.z;
+    f->nx[i] = m.x;
+    f->ny[i] = m.y;
+    f->nz[i] = m.z;
+    f->ux[i] = du.x;
+    f->uy[i] = du.y;
+    f->uz[i] = du.z;
   }
 }
 
@@ -88,7 +111,9 @@ static void normal_map(vlTextureRun *r, int32_t image) {
     vlFrame frame = {x, vl_cross(n, x), n};
     vlVec3 m = vl_normalize(vl_from_local(frame, local));
     if (!(vl_length2(m) > 0.0f)) continue;
-    f->nx[i] = m.x, f->ny[i] = m.y, f->nz[i] = m.z;
+    f->nx[i] = m.x;
+    f->ny[i] = m.y;
+    f->nz[i] = m.z;
   }
 }
 
@@ -189,8 +214,10 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
   vlShade *shade = &r->s->shade;
   if (!m->principled || !m->principled->by_channel) {
     for (int c = 0; c < 4; c++)
-      for (uint32_t i = r->first; i < r->last; i++)
-        shade->tint_rgb[c][i] = 1.0f, shade->tint[c][i] = shade->reflectance[c][i];
+      for (uint32_t i = r->first; i < r->last; i++) {
+        shade->tint_rgb[c][i] = 1.0f;
+        shade->tint[c][i] = shade->reflectance[c][i];
+      }
     return;
   }
   r->rgb = true;
@@ -246,11 +273,19 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlSha
     float ok = vl_length2(t) > PARALLEL * vl_length2(u) ? 1.0f : 0.0f;
     vlFrame any = vl_frame_from_z(nn);
     t = vl_normalize(t);
-    t.x = ok > 0.0f ? t.x : any.x.x, t.y = ok > 0.0f ? t.y : any.x.y, t.z = ok > 0.0f ? t.z : any.x.z;
+    t.x = ok > 0.0f ? t.x : any.x.x;
+    t.y = ok > 0.0f ? t.y : any.x.y;
+    t.z = ok > 0.0f ? t.z : any.x.z;
     vlVec3 b = vl_cross(nn, t);
-    shade->tx[i] = t.x, shade->ty[i] = t.y, shade->tz[i] = t.z;
-    shade->bx[i] = b.x, shade->by[i] = b.y, shade->bz[i] = b.z;
+    shade->tx[i] = t.x;
+    shade->ty[i] = t.y;
+    shade->tz[i] = t.z;
+    shade->bx[i] = b.x;
+    shade->by[i] = b.y;
+    shade->bz[i] = b.z;
     vlVec3 wo = vl_vec3(-paths->dx[i], -paths->dy[i], -paths->dz[i]);
-    shade->wo[0][i] = vl_dot(wo, t), shade->wo[1][i] = vl_dot(wo, b), shade->wo[2][i] = vl_dot(wo, nn);
+    shade->wo[0][i] = vl_dot(wo, t);
+    shade->wo[1][i] = vl_dot(wo, b);
+    shade->wo[2][i] = vl_dot(wo, nn);
   }
 }

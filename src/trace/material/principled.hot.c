@@ -42,14 +42,18 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
     for (uint32_t i = r->first; i < r->last; i++) {
       vlVec3 c = map ? mapped(r, &r->world->nodes.items[p->coat_normal], p->coat_normal_scale, i)
                      : vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
-      rows[VL_P_COAT_X][i] = c.x, rows[VL_P_COAT_Y][i] = c.y, rows[VL_P_COAT_Z][i] = c.z;
+      rows[VL_P_COAT_X][i] = c.x;
+      rows[VL_P_COAT_Y][i] = c.y;
+      rows[VL_P_COAT_Z][i] = c.z;
     }
   }
   if (!is_map(r, p->normal)) return;
   const vlTextureNode *node = &r->world->nodes.items[p->normal];
   for (uint32_t i = r->first; i < r->last; i++) {
     vlVec3 m = mapped(r, node, p->normal_scale, i);
-    f->nx[i] = m.x, f->ny[i] = m.y, f->nz[i] = m.z;
+    f->nx[i] = m.x;
+    f->ny[i] = m.y;
+    f->nz[i] = m.z;
   }
 }
 
@@ -62,7 +66,9 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
     y = vl_dot(y, vl_vec3(f->vx[i], f->vy[i], f->vz[i])) < 0.0f ? vl_neg(y) : y;
     vlVec3 t = vl_add(vl_mul(x, a.cos), vl_mul(y, a.sin));
-    f->ux[i] = t.x, f->uy[i] = t.y, f->uz[i] = t.z;
+    f->ux[i] = t.x;
+    f->uy[i] = t.y;
+    f->uz[i] = t.z;
   }
 }
 

@@ -33,7 +33,11 @@ static void pass(const vlWorldMedium *m, const float majorant[4], float length, 
   if (m->grey) return;
   float factor[4];
   shift(majorant, f->hero, length, factor);
-  for (int c = 0; c < 4; c++) f->beta[c] *= factor[c], f->u[c] *= factor[c], f->l[c] *= factor[c];
+  for (int c = 0; c < 4; c++) {
+    f->beta[c] *= factor[c];
+    f->u[c] *= factor[c];
+    f->l[c] *= factor[c];
+  }
 }
 
 /* Factor of the odds at a null collision. The null probability is the same for all channels except in RGB grids, where

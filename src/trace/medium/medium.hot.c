@@ -10,7 +10,10 @@
  * so the product over parts of a path is the T of the whole. */
 static void absorb_by_channel(const vlWorldMedium *m, float length, vlFlights *f, uint32_t i) {
   float passed[3], left[3];
-  for (int k = 0; k < 3; k++) passed[k] = f->passed[k][i], left[k] = passed[k] * vl_exp(-m->sigma_rgb[k] * length);
+  for (int k = 0; k < 3; k++) {
+    passed[k] = f->passed[k][i];
+    left[k] = passed[k] * vl_exp(-m->sigma_rgb[k] * length);
+  }
   for (int c = 0; c < 4; c++) {
     float before = vl_channels_at(passed, f->lambda[c][i]), after = vl_channels_at(left, f->lambda[c][i]);
     f->beta[c][i] *= before > 0.0f ? after / before : 0.0f;
@@ -216,8 +219,14 @@ static vlFlight take(const vlTracing *t, const vlFlights *f, uint32_t i) {
 }
 
 static void put(vlFlights *f, uint32_t i, const vlFlight *r) {
-  f->first[i] = r->first, f->count[i] = r->count, f->odds[i] = r->odds;
-  for (int c = 0; c < 4; c++) f->beta[c][i] = r->beta[c], f->u[c][i] = r->u[c], f->l[c][i] = r->l[c];
+  f->first[i] = r->first;
+  f->count[i] = r->count;
+  f->odds[i] = r->odds;
+  for (int c = 0; c < 4; c++) {
+    f->beta[c][i] = r->beta[c];
+    f->u[c][i] = r->u[c];
+    f->l[c][i] = r->l[c];
+  }
 }
 
 static inline vlVec3 origin(const vlFlights *f, uint32_t i) {

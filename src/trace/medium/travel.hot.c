@@ -15,8 +15,12 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k) {
   if (k->count == 0) return;
   for (uint32_t j = 0; j < k->count; j++) {
     uint32_t i = k->open[j];
-    o[0][j] = r->ox[i], o[1][j] = r->oy[i], o[2][j] = r->oz[i];
-    d[0][j] = r->dx[i], d[1][j] = r->dy[i], d[2][j] = r->dz[i];
+    o[0][j] = r->ox[i];
+    o[1][j] = r->oy[i];
+    o[2][j] = r->oz[i];
+    d[0][j] = r->dx[i];
+    d[1][j] = r->dy[i];
+    d[2][j] = r->dz[i];
     t_min[j] = k->f.from[i];
     if (r->t_max) t_max[j] = r->t_max[i];
     if (r->time) time[j] = r->time[i];
@@ -25,7 +29,10 @@ void vl_travel_closest(const vlTracing *t, vlTravel *k) {
   vl_accel_closest(t->world, k->count, &rays, false, shape, prim, instance, hit);
   for (uint32_t j = 0; j < k->count; j++) {
     uint32_t i = k->open[j];
-    k->x.shape[i] = shape[j], k->x.prim[i] = prim[j], k->x.instance[i] = instance[j], k->x.hit[i] = hit[j];
+    k->x.shape[i] = shape[j];
+    k->x.prim[i] = prim[j];
+    k->x.instance[i] = instance[j];
+    k->x.hit[i] = hit[j];
   }
 }
 

@@ -27,7 +27,10 @@ static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
-  for (int c = 0; c < 4; c++) b->u[c][k] = a->u[c][i], b->l[c][k] = a->l[c][i];
+  for (int c = 0; c < 4; c++) {
+    b->u[c][k] = a->u[c][i];
+    b->l[c][k] = a->l[c][i];
+  }
   b->medium[k] = a->medium[i];
 }
 

@@ -16,7 +16,10 @@
 
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n) {
   for (int c = 0; c < 4; c++)
-    for (uint32_t k = 0; k < n; k++) b->u[c][k] = a->u[c][order[k]], b->l[c][k] = a->l[c][order[k]];
+    for (uint32_t k = 0; k < n; k++) {
+      b->u[c][k] = a->u[c][order[k]];
+      b->l[c][k] = a->l[c][order[k]];
+    }
   for (uint32_t k = 0; k < n; k++) b->medium[k] = a->medium[order[k]];
 }
 
@@ -45,8 +48,14 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
     int alone = heroes & (second == first);
     float u0 = v->u[0][i], u1 = alone ? u0 : v->u[1][i], u2 = alone ? u0 : v->u[2][i], u3 = alone ? u0 : v->u[3][i];
     float inv = 1.0f / vl_flight_mean_of(u0, u1, u2, u3, 4);
-    v->u[0][i] = u0 * inv, v->u[1][i] = u1 * inv, v->u[2][i] = u2 * inv, v->u[3][i] = u3 * inv;
-    p->beta[0][i] *= inv, p->beta[1][i] *= inv, p->beta[2][i] *= inv, p->beta[3][i] *= inv;
+    v->u[0][i] = u0 * inv;
+    v->u[1][i] = u1 * inv;
+    v->u[2][i] = u2 * inv;
+    v->u[3][i] = u3 * inv;
+    p->beta[0][i] *= inv;
+    p->beta[1][i] *= inv;
+    p->beta[2][i] *= inv;
+    p->beta[3][i] *= inv;
   }
 }
 
@@ -100,10 +109,14 @@ static void begin_block(vlTracing *t, vlTravel *k, uint32_t first, uint32_t n, c
                      t_max ? t_max + first : NULL,
                      p->time ? s->time + first : NULL};
   for (int c = 0; c < 4; c++) {
-    f->beta[c] = p->beta[c] + first, f->lambda[c] = p->lambda[c] + first;
-    f->u[c] = v->u[c] + first, f->l[c] = v->l[c] + first;
+    f->beta[c] = p->beta[c] + first;
+    f->lambda[c] = p->lambda[c] + first;
+    f->u[c] = v->u[c] + first;
+    f->l[c] = v->l[c] + first;
   }
-  k->x.shape = h->shape + first, k->x.prim = h->prim + first, k->x.instance = h->instance + first;
+  k->x.shape = h->shape + first;
+  k->x.prim = h->prim + first;
+  k->x.instance = h->instance + first;
   k->x.hit = h->t + first;
 }
 
@@ -185,7 +198,10 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   VL_ROW float odds[VL_FLIGHTS];
   vlTravel k;
   vl_travel_start(&k);
-  k.f.paths = p, k.f.depth = depth, k.f.purpose = VL_KEY_FLIGHT, k.f.odds = odds;
+  k.f.paths = p;
+  k.f.depth = depth;
+  k.f.purpose = VL_KEY_FLIGHT;
+  k.f.odds = odds;
   for (uint32_t first = 0; first < n; first += VL_FLIGHTS) {
     begin_block(t, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max);
     open_lanes(t, &k, first, t_min);
@@ -277,7 +293,9 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
       p->beta[c][i] /= survive;
       v->c.l[c][i] = v->c.u[c][i] / pdf;
     }
-    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->dx[i] = w.x;
+    p->dy[i] = w.y;
+    p->dz[i] = w.z;
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     vl_note_scattered(t, p->lane[i]);
@@ -299,10 +317,15 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   vl_volume_normalise_all(t, p, &v->c, count);
   for (uint32_t i = 0; i < count; i++) {
     float distance = v->t[s->order[i]];
-    p->ox[i] += distance * p->dx[i], p->oy[i] += distance * p->dy[i], p->oz[i] += distance * p->dz[i];
-    p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance), p->spread[i] = t->def->pixel_spread;
+    p->ox[i] += distance * p->dx[i];
+    p->oy[i] += distance * p->dy[i];
+    p->oz[i] += distance * p->dz[i];
+    p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance);
+    p->spread[i] = t->def->pixel_spread;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
-    s->surface.px[i] = p->ox[i], s->surface.py[i] = p->oy[i], s->surface.pz[i] = p->oz[i];
+    s->surface.px[i] = p->ox[i];
+    s->surface.py[i] = p->oy[i];
+    s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* no normal: all directions count equally */
     s->surface.no_cosine[i] = 1.0f;
   }
@@ -345,8 +368,12 @@ static void make_shadows(vlTracing *t, uint32_t n) {
     int distant = l->distant[i], delta = l->delta[i];
     float length = distant ? VL_INFINITY : vl_length(to), own = sh->pdf[i];
     lit[i] = (pdf > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
-    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z;
-    q->dx[i] = distant ? w.x : d.x, q->dy[i] = distant ? w.y : d.y, q->dz[i] = distant ? w.z : d.z;
+    q->ox[i] = o.x;
+    q->oy[i] = o.y;
+    q->oz[i] = o.z;
+    q->dx[i] = distant ? w.x : d.x;
+    q->dy[i] = distant ? w.y : d.y;
+    q->dz[i] = distant ? w.z : d.z;
     q->t_max[i] = length * VL_SHADOW_END;
     q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * pdf;
     q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * pdf;
@@ -378,7 +405,8 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
     uint32_t k = count++;
     if (k != i) vl_shadow_move(&s->shadow, i, k);
-    v->light_pdf[k] = v->light_pdf[i], v->pdf[k] = v->pdf[i];
+    v->light_pdf[k] = v->light_pdf[i];
+    v->pdf[k] = v->pdf[i];
     for (int c = 0; c < 4; c++) v->density[c][k] = v->b.u[c][i];
     v->shadow_medium[k] = vl_medium_beyond(shape, g, w, v->b.medium[i]);
     v->from[k] = i;

@@ -11,7 +11,11 @@ static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const v
                           .bsdf_pdf = p->pdf[i],
                           .weight = inv / vl_volume_inverse_density(t, i, 0.0f),
                           .target = {p->dx[i], p->dy[i], p->dz[i]}};
-  if (event == VL_PATH_LIGHT_HIT) c.target[0] = met->at.p.x, c.target[1] = met->at.p.y, c.target[2] = met->at.p.z;
+  if (event == VL_PATH_LIGHT_HIT) {
+    c.target[0] = met->at.p.x;
+    c.target[1] = met->at.p.y;
+    c.target[2] = met->at.p.z;
+  }
   vl_record_name_light(t->world, met->light, &c);
   for (int k = 0; k < 4; k++) c.radiance[k] = p->beta[k][i] * met->radiance[k] * inv;
   vl_record_light(t, p->lane[i], &c);
@@ -73,7 +77,11 @@ void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
                             .target = {l->tx[i], l->ty[i], l->tz[i]}};
     vl_record_name_light(t->world, l->light[i], &c);
     c.distant = l->distant[i];
-    if (c.distant) c.target[0] = l->wx[i], c.target[1] = l->wy[i], c.target[2] = l->wz[i];
+    if (c.distant) {
+      c.target[0] = l->wx[i];
+      c.target[1] = l->wy[i];
+      c.target[2] = l->wz[i];
+    }
     float inv = 1.0f / vl_volume_shadow_density(t, k, v->pdf[k]);
     c.weight = vl_volume_shadow_density(t, k, 0.0f) * inv;
     for (int m = 0; m < 4; m++) c.radiance[m] = q->occluded[k] ? 0.0f : q->radiance[m][k] * v->shadow_beta[m][k] * inv;

@@ -14,8 +14,12 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
     length = vl_length(to);
     w = vl_normalize(to);
   }
-  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
-  q->dx[count] = w.x, q->dy[count] = w.y, q->dz[count] = w.z;
+  q->ox[count] = o.x;
+  q->oy[count] = o.y;
+  q->oz[count] = o.z;
+  q->dx[count] = w.x;
+  q->dy[count] = w.y;
+  q->dz[count] = w.z;
   q->t_max[count] = length * VL_SHADOW_END;
   for (int c = 0; c < 4; c++) {
     q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];
@@ -43,8 +47,10 @@ static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t fi
                      NULL,          q->t_max + first, t->s->a.time ? q->time + first : NULL};
   f->odds = v->shadow_odds + first;
   for (int c = 0; c < 4; c++) {
-    f->beta[c] = v->shadow_beta[c] + first, f->lambda[c] = lambda[c];
-    f->u[c] = v->shadow_u[c] + first, f->l[c] = v->shadow_l[c] + first;
+    f->beta[c] = v->shadow_beta[c] + first;
+    f->lambda[c] = lambda[c];
+    f->u[c] = v->shadow_u[c] + first;
+    f->l[c] = v->shadow_l[c] + first;
     for (uint32_t i = 0; i < n; i++) f->beta[c][i] = f->u[c][i] = f->l[c][i] = 1.0f;
   }
   k->count = 0;
@@ -109,8 +115,13 @@ void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32
   float *rows[4] = {lambda[0], lambda[1], lambda[2], lambda[3]};
   vlTravel k;
   vl_travel_start(&k);
-  k.f.paths = p, k.f.depth = depth, k.f.purpose = VL_KEY_SHADOW;
-  k.x.shape = ids[0], k.x.prim = ids[1], k.x.instance = ids[2], k.x.hit = hit;
+  k.f.paths = p;
+  k.f.depth = depth;
+  k.f.purpose = VL_KEY_SHADOW;
+  k.x.shape = ids[0];
+  k.x.prim = ids[1];
+  k.x.instance = ids[2];
+  k.x.hit = hit;
   for (uint32_t i = 0; i < VL_FLIGHTS; i++) ids[0][i] = VL_NONE;
   for (uint32_t first = 0; first < count; first += VL_FLIGHTS) {
     begin_block(t, p, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS, rows);

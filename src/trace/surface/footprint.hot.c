@@ -15,7 +15,9 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {
     float uu = vl_dot(u, u), uv = vl_dot(u, v), vv = vl_dot(v, v), det = uu * vv - uv * uv;
     float inv = det > 0.0f && f->uv_scale[i] > 0.0f ? 1.0f / det : 0.0f;
     float au = vl_dot(r.across, u), av = vl_dot(r.across, v), bu = vl_dot(r.along, u), bv = vl_dot(r.along, v);
-    f->across_u[i] = (vv * au - uv * av) * inv, f->across_v[i] = (uu * av - uv * au) * inv;
-    f->along_u[i] = (vv * bu - uv * bv) * inv, f->along_v[i] = (uu * bv - uv * bu) * inv;
+    f->across_u[i] = (vv * au - uv * av) * inv;
+    f->across_v[i] = (uu * av - uv * au) * inv;
+    f->along_u[i] = (vv * bu - uv * bv) * inv;
+    f->along_v[i] = (uu * bv - uv * bu) * inv;
   }
 }

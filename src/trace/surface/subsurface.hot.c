@@ -32,7 +32,10 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
              vl_lane3(x->nx, x->ny, x->nz, j),
              {0},
              {0}};
-  for (int c = 0; c < 4; c++) e.sigma[c] = x->sigma[c][j], e.albedo[c] = x->albedo[c][j];
+  for (int c = 0; c < 4; c++) {
+    e.sigma[c] = x->sigma[c][j];
+    e.albedo[c] = x->albedo[c][j];
+  }
   return e;
 }
 
@@ -51,8 +54,12 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
     uint32_t j = count++;
     x->place[j] = k;
     x->material[j] = material;
-    x->px[j] = s->surface.px[i], x->py[j] = s->surface.py[i], x->pz[j] = s->surface.pz[i];
-    x->nx[j] = s->surface.nx[i], x->ny[j] = s->surface.ny[i], x->nz[j] = s->surface.nz[i];
+    x->px[j] = s->surface.px[i];
+    x->py[j] = s->surface.py[i];
+    x->pz[j] = s->surface.pz[i];
+    x->nx[j] = s->surface.nx[i];
+    x->ny[j] = s->surface.ny[i];
+    x->nz[j] = s->surface.nz[i];
     for (int c = 0; c < 4; c++) {
       x->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
       x->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
@@ -84,8 +91,12 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
   float reach = inside > 0.0f ? __builtin_sqrtf(inside) : 0.0f;
   float start = vl_max(-half, middle - reach), end = vl_min(half, middle + reach);
   o = vl_add(o, vl_mul(along, start));
-  p->ox[j] = o.x, p->oy[j] = o.y, p->oz[j] = o.z;
-  p->dx[j] = along.x, p->dy[j] = along.y, p->dz[j] = along.z;
+  p->ox[j] = o.x;
+  p->oy[j] = o.y;
+  p->oz[j] = o.z;
+  p->dx[j] = along.x;
+  p->dy[j] = along.y;
+  p->dz[j] = along.z;
   x->length[j] = end > start ? end - start : 0.0f;
 }
 
@@ -141,7 +152,9 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
     uint32_t count = ++x->found[j];
     float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->b, j, depth, VL_KEY_PROBE), count));
     if (u * (float)count < 1.0f) { /* reservoir sampling: each crossing is kept with the same probability */
-      x->hits.shape[j] = h->shape[j], x->hits.prim[j] = h->prim[j], x->hits.instance[j] = h->instance[j];
+      x->hits.shape[j] = h->shape[j];
+      x->hits.prim[j] = h->prim[j];
+      x->hits.instance[j] = h->instance[j];
       x->hits.t[j] = h->t[j];
     }
   }
@@ -163,8 +176,12 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   for (int step = 0; active > 0 && step < MOST_CROSSINGS; step++) {
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      q->ox[k] = p->ox[j], q->oy[k] = p->oy[j], q->oz[k] = p->oz[j];
-      q->dx[k] = p->dx[j], q->dy[k] = p->dy[j], q->dz[k] = p->dz[j];
+      q->ox[k] = p->ox[j];
+      q->oy[k] = p->oy[j];
+      q->oz[k] = p->oz[j];
+      q->dx[k] = p->dx[j];
+      q->dy[k] = p->dy[j];
+      q->dz[k] = p->dz[j];
       x->from[k] = x->t_min[j];
       q->t_max[k] = x->length[j];
       q->time[k] = vl_path_time(p, j);
@@ -175,8 +192,10 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
     uint32_t left = 0;
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      s->hits_b.shape[j] = to->shape[k], s->hits_b.prim[j] = to->prim[k];
-      s->hits_b.instance[j] = to->instance[k], s->hits_b.t[j] = to->t[k];
+      s->hits_b.shape[j] = to->shape[k];
+      s->hits_b.prim[j] = to->prim[k];
+      s->hits_b.instance[j] = to->instance[k];
+      s->hits_b.t[j] = to->t[k];
       if (note_crossing(t, j, depth)) under_way[left++] = j;
     }
     active = left;
@@ -196,8 +215,10 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   vl_volume_permute(&s->volume.b, &s->volume.a, x->entry, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t j = x->entry[i];
-    s->hits_b.shape[i] = x->hits.shape[j], s->hits_b.prim[i] = x->hits.prim[j];
-    s->hits_b.instance[i] = x->hits.instance[j], s->hits_b.t[i] = x->hits.t[j];
+    s->hits_b.shape[i] = x->hits.shape[j];
+    s->hits_b.prim[i] = x->hits.prim[j];
+    s->hits_b.instance[i] = x->hits.instance[j];
+    s->hits_b.t[i] = x->hits.t[j];
     s->hits_b.material[i] = x->material[j];
   }
   if (count) vl_stage_surface(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
@@ -298,14 +319,24 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
     vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
     float weight = exit_value(table_at(t, i), local.z) * VL_PI, pdf = local.z * VL_INV_PI;
-    p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
-    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
+    p->ox[i] = o.x;
+    p->oy[i] = o.y;
+    p->oz[i] = o.z;
+    p->dx[i] = w.x;
+    p->dy[i] = w.y;
+    p->dz[i] = w.z;
     p->pdf[i] = pdf;
     p->specular[i] = 0;
-    p->cone[i] = vl_abs(p->cone[i]), p->spread[i] = t->def->pixel_spread;
+    p->cone[i] = vl_abs(p->cone[i]);
+    p->spread[i] = t->def->pixel_spread;
     vl_note_scattered(t, p->lane[i]);
-    p->from_nx[i] = nn.x, p->from_ny[i] = nn.y, p->from_nz[i] = nn.z;
-    for (int c = 0; c < 4; c++) p->beta[c][i] *= weight, rows->l[c][i] = rows->u[c][i] / pdf;
+    p->from_nx[i] = nn.x;
+    p->from_ny[i] = nn.y;
+    p->from_nz[i] = nn.z;
+    for (int c = 0; c < 4; c++) {
+      p->beta[c][i] *= weight;
+      rows->l[c][i] = rows->u[c][i] / pdf;
+    }
     rows->medium[i] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, w, rows->medium[i]);
     vl_path_copy(p, i, &x->paths, place);
     vl_volume_copy(rows, i, &x->rows, place);

@@ -47,7 +47,8 @@ static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const
   for (uint32_t k = 0; k < l->count; k++) {
     vlTexturePoint at = vl_texture_point_of(r, node, first + k);
     vlVec2 st = vl_texture_st(node, at);
-    s[k] = st.x, t[k] = st.y;
+    s[k] = st.x;
+    t[k] = st.y;
     for (int c = 0; c < 4; c++) axes[c][k] = at.axes[c];
   }
   for (uint32_t k = l->count; k < VL_LANES; k++)
@@ -59,7 +60,10 @@ static void plan_lookups(const vlTextureRun *r, const vlTextureNode *node, const
   for (uint32_t k = 0; k < VL_LANES; k++) {
     vlVec2 a = {axes[0][k], axes[1][k]}, b = {axes[2][k], axes[3][k]};
     vlFilterPlan plan = vl_filter_plan(width, height, last, a, b);
-    level[k] = plan.level, taps[k] = plan.taps, ds[k] = plan.s, dt[k] = plan.t;
+    level[k] = plan.level;
+    taps[k] = plan.taps;
+    ds[k] = plan.s;
+    dt[k] = plan.t;
   }
   for (uint32_t k = 0; k < l->count; k++)
     l->at[k] = (vlImageLookup){s[k], 1.0f - t[k], {level[k], taps[k], ds[k], dt[k]}};
@@ -243,13 +247,17 @@ static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t
   VL_SIMD
   for (uint32_t k = 0; k < VL_LANES; k++) {
     float red = rgb[0][k], green = rgb[1][k], blue = rgb[2][k];
-    red = red > most ? most : red, green = green > most ? most : green, blue = blue > most ? most : blue;
+    red = red > most ? most : red;
+    green = green > most ? most : green;
+    blue = blue > most ? most : blue;
     float m = vl_max(red, vl_max(green, blue));
     float scale = up->albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
     vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
     vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
-    value[0][k] = scale * vl_sigmoid(s, lambda[0][k]), value[1][k] = scale * vl_sigmoid(s, lambda[1][k]);
-    value[2][k] = scale * vl_sigmoid(s, lambda[2][k]), value[3][k] = scale * vl_sigmoid(s, lambda[3][k]);
+    value[0][k] = scale * vl_sigmoid(s, lambda[0][k]);
+    value[1][k] = scale * vl_sigmoid(s, lambda[1][k]);
+    value[2][k] = scale * vl_sigmoid(s, lambda[2][k]);
+    value[3][k] = scale * vl_sigmoid(s, lambda[3][k]);
   }
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < count; k++)
@@ -271,7 +279,9 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
     for (uint32_t k = 0; k < VL_LANES; k++) {
       uint32_t j = k < l.count ? k : l.count - 1;
       vlVec3 c = j == k ? vl_plain_rgb(mip, value_of(node, mip, &l, k)) : vl_vec3(rgb[0][j], rgb[1][j], rgb[2][j]);
-      rgb[0][k] = c.x, rgb[1][k] = c.y, rgb[2][k] = c.z;
+      rgb[0][k] = c.x;
+      rgb[1][k] = c.y;
+      rgb[2][k] = c.z;
     }
     upsample_lanes(r, &up, l.count, rgb, first, out);
   }

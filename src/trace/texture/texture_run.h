@@ -65,20 +65,26 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
     float s = there.x - here.x, t = there.y - here.y;
     if (node->mapping == VL_MAPPING_SPHERICAL ||
         node->mapping == VL_MAPPING_CYLINDRICAL) /* the shorter way across the mapping's seam */
-      s -= __builtin_rintf(s), t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
-    at->axes[2 * k] = s, at->axes[2 * k + 1] = t;
+    {
+      s -= __builtin_rintf(s);
+      t -= node->mapping == VL_MAPPING_SPHERICAL ? __builtin_rintf(t) : 0.0f;
+    }
+    at->axes[2 * k] = s;
+    at->axes[2 * k + 1] = t;
   }
 }
 
 static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
   const vlSurface *f = r->surface;
   vlTexturePoint at = {.color = {1, 1, 1, 1}};
-  at.u = f->u[i], at.v = f->v[i];
+  at.u = f->u[i];
+  at.v = f->v[i];
   at.p = vl_vec3(f->px[i], f->py[i], f->pz[i]);
   at.n = vl_vec3(f->gx[i], f->gy[i], f->gz[i]); /* geometric normal, as in pbrt */
   at.width = f->width[i];
   if (r->shift_u) {
-    at.u += r->shift_u[i], at.v += r->shift_v[i];
+    at.u += r->shift_u[i];
+    at.v += r->shift_v[i];
     at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
   }
   if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);

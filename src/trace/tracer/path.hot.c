@@ -98,8 +98,12 @@ static uint32_t make_shadow_rays(vlTracing *t, uint32_t n) {
     float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
     float mis = vl_power_heuristic(l->pdf[i], sh->pdf[i]), weight = delta ? 1.0f : mis;
     lit[i] = (l->pdf[i] > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
-    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z;
-    q->dx[i] = distant ? w.x : x, q->dy[i] = distant ? w.y : y, q->dz[i] = distant ? w.z : z;
+    q->ox[i] = o.x;
+    q->oy[i] = o.y;
+    q->oz[i] = o.z;
+    q->dx[i] = distant ? w.x : x;
+    q->dy[i] = distant ? w.y : y;
+    q->dz[i] = distant ? w.z : z;
     q->t_max[i] = distant ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
     q->radiance[0][i] = p->beta[0][i] * v0 * l->radiance[0][i] * weight;
     q->radiance[1][i] = p->beta[1][i] * v1 * l->radiance[1][i] * weight;
@@ -147,7 +151,8 @@ static inline vlVec2 cone_after(float pixel_spread, float cone, float spread, fl
                                 float wi_z, float eta_scale, uint32_t specular) {
   float width = cone + spread * distance;
   float sign = width < 0.0f ? -1.0f : 1.0f; /* past a focus */
-  width = width * sign, spread = spread * sign;
+  width = width * sign;
+  spread = spread * sign;
   float side = wo_z < 0.0f ? -1.0f : 1.0f, k = bend * side, in = wo_z * side, out = vl_abs(wi_z);
   float ratio =
       eta_scale > 0.0f ? 1.0f / __builtin_sqrtf(eta_scale) : 1.0f; /* ratio of the indices, incident over transmitted */
@@ -197,17 +202,27 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float sum = b0 + b1 + b2 + b3;
     alive[i] = lives;
     broken[i] = sum == sum ? 0.0f : 1.0f;
-    p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
-    p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
-    p->beta[0][i] = b0 * inv, p->beta[1][i] = b1 * inv, p->beta[2][i] = b2 * inv, p->beta[3][i] = b3 * inv;
+    p->ox[i] = o.x;
+    p->oy[i] = o.y;
+    p->oz[i] = o.z;
+    p->dx[i] = w.x;
+    p->dy[i] = w.y;
+    p->dz[i] = w.z;
+    p->beta[0][i] = b0 * inv;
+    p->beta[1][i] = b1 * inv;
+    p->beta[2][i] = b2 * inv;
+    p->beta[3][i] = b3 * inv;
     p->pdf[i] = sh->pdf[i];
     p->specular[i] = sh->flags[i] & VL_SAMPLED_SPECULAR;
     p->eta_scale[i] = eta;
     vlVec2 cone = cone_after(t->def->pixel_spread, p->cone[i], p->spread[i], f->t[i], f->curvature[i], sh->wo[2][i], z,
                              sh->eta_scale[i], sh->flags[i] & VL_SAMPLED_SPECULAR);
-    p->cone[i] = cone.x, p->spread[i] = cone.y;
+    p->cone[i] = cone.x;
+    p->spread[i] = cone.y;
     float c = 1.0f - f->no_cosine[i];
-    p->from_nx[i] = c * f->nx[i], p->from_ny[i] = c * f->ny[i], p->from_nz[i] = c * f->nz[i];
+    p->from_nx[i] = c * f->nx[i];
+    p->from_ny[i] = c * f->ny[i];
+    p->from_nz[i] = c * f->nz[i];
   }
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {

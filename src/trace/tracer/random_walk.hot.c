@@ -22,7 +22,9 @@ void vl_trace_random_walk(vlTracing *t) {
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       vlVec3 w = vl_warp_sphere(sh->u1[i], sh->u2[i]);
-      s->light.wx[i] = w.x, s->light.wy[i] = w.y, s->light.wz[i] = w.z;
+      s->light.wx[i] = w.x;
+      s->light.wy[i] = w.y;
+      s->light.wz[i] = w.z;
     }
     vl_stage_light_bsdf(t, n);
     for (uint32_t i = 0; i < n; i++) {
@@ -34,9 +36,14 @@ void vl_trace_random_walk(vlTracing *t) {
       }
       vlVec3 w = vl_normalize(vl_lane3(s->light.wx, s->light.wy, s->light.wz, i));
       vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], w);
-      p->ox[i] = o.x, p->oy[i] = o.y, p->oz[i] = o.z;
-      p->dx[i] = w.x, p->dy[i] = w.y, p->dz[i] = w.z;
-      p->cone[i] = f->width[i], p->spread[i] = t->def->pixel_spread;
+      p->ox[i] = o.x;
+      p->oy[i] = o.y;
+      p->oz[i] = o.z;
+      p->dx[i] = w.x;
+      p->dy[i] = w.y;
+      p->dz[i] = w.z;
+      p->cone[i] = f->width[i];
+      p->spread[i] = t->def->pixel_spread;
       s->order[count] = i;
       count += most > 0.0f;
     }

@@ -26,7 +26,9 @@ static vlPathVertex *new_vertex(const vlTracing *t, uint32_t lane) {
 }
 
 static void put3(float *to, vlVec3 v) {
-  to[0] = v.x, to[1] = v.y, to[2] = v.z;
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
 }
 
 static void put_ids(const vlHits *h, uint32_t i, vlPathVertex *v) {
@@ -60,7 +62,8 @@ void vl_record_surface(vlTracing *t, uint32_t i, vlPathVertex *v) {
   put_ids(h, i, v);
   put3(v->position, at.p);
   put3(v->normal, at.g);
-  v->uv[0] = at.u, v->uv[1] = at.v;
+  v->uv[0] = at.u;
+  v->uv[1] = at.v;
   v->distance = vl_length(vl_sub(at.p, vl_lane3(p->ox, p->oy, p->oz, i)));
 }
 
@@ -235,7 +238,10 @@ void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v) continue;
     v->bsdf = "henyey_greenstein";
-    for (int c = 0; c < 4; c++) v->throughput[c] = p->beta[c][i], v->factor[c] = 1.0f;
+    for (int c = 0; c < 4; c++) {
+      v->throughput[c] = p->beta[c][i];
+      v->factor[c] = 1.0f;
+    }
   }
 }
 
@@ -284,7 +290,8 @@ void vl_record_exits(vlTracing *t, uint32_t n) {
     if (v->distance > 0.0f) put3(v->arrival, vl_mul(way, 1.0f / v->distance));
     put3(v->normal, vl_lane3(f->gx, f->gy, f->gz, i));
     put3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
-    v->uv[0] = f->u[i], v->uv[1] = f->v[i];
+    v->uv[0] = f->u[i];
+    v->uv[1] = f->v[i];
     for (int c = 0; c < 4; c++) v->throughput[c] = s->a.beta[c][i];
   }
 }

@@ -34,8 +34,11 @@ void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint3
 static void permute_hits(const vlHits *a, vlHits *b, const uint32_t *order, uint32_t n) {
   for (uint32_t k = 0; k < n; k++) {
     uint32_t i = order[k];
-    b->shape[k] = a->shape[i], b->prim[k] = a->prim[i], b->instance[k] = a->instance[i];
-    b->material[k] = a->material[i], b->t[k] = a->t[i];
+    b->shape[k] = a->shape[i];
+    b->prim[k] = a->prim[i];
+    b->instance[k] = a->instance[i];
+    b->material[k] = a->material[i];
+    b->t[k] = a->t[i];
   }
 }
 

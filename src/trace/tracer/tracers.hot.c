@@ -26,14 +26,21 @@ static void start_paths(vlTracing *t) {
     vl_stage_groups(t, padded, t->s->shade.u0);
   }
   for (uint32_t i = 0; i < padded; i++) {
-    p->ox[i] = b->ox[i], p->oy[i] = b->oy[i], p->oz[i] = b->oz[i];
-    p->dx[i] = b->dx[i], p->dy[i] = b->dy[i], p->dz[i] = b->dz[i];
+    p->ox[i] = b->ox[i];
+    p->oy[i] = b->oy[i];
+    p->oz[i] = b->oz[i];
+    p->dx[i] = b->dx[i];
+    p->dy[i] = b->dy[i];
+    p->dz[i] = b->dz[i];
     p->pdf[i] = 1.0f;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
     p->eta_scale[i] = 1.0f;
-    p->cone[i] = t->def->pixel_width, p->spread[i] = t->def->pixel_spread;
+    p->cone[i] = t->def->pixel_width;
+    p->spread[i] = t->def->pixel_spread;
     p->specular[i] = 1;
-    p->px[i] = b->px[i], p->py[i] = b->py[i], p->index[i] = b->index[i];
+    p->px[i] = b->px[i];
+    p->py[i] = b->py[i];
+    p->index[i] = b->index[i];
     p->lane[i] = i;
     t->s->scattered[i] = 0;
   }
@@ -94,7 +101,12 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                                 vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), s->surface.offset[i], w);
     float lambda[4];
     vl_path_lambda(&s->b, i, lambda);
-    q->ox[i] = o.x, q->oy[i] = o.y, q->oz[i] = o.z, q->dx[i] = w.x, q->dy[i] = w.y, q->dz[i] = w.z;
+    q->ox[i] = o.x;
+    q->oy[i] = o.y;
+    q->oz[i] = o.z;
+    q->dx[i] = w.x;
+    q->dy[i] = w.y;
+    q->dz[i] = w.z;
     q->t_max[i] = t->def->ao_distance;
     /* Uniform sampling: cos / pi over the density 1 / (2 pi). */
     for (int c = 0; c < 4; c++)

@@ -76,9 +76,14 @@ static void worths_of(const vlTwoWay *way, const vlEnd *e, const uint32_t at[CAN
   _Alignas(64) float back[CANDIDATES], near[CANDIDATES];
   for (uint32_t k = 0; k < CANDIDATES; k++) {
     const vlLightVertex *x = &way->inner.vertices[at[k]];
-    for (int j = 0; j < 3; j++) p[j][k] = x->p[j], g[j][k] = x->g[j], n[j][k] = x->n[j];
+    for (int j = 0; j < 3; j++) {
+      p[j][k] = x->p[j];
+      g[j][k] = x->g[j];
+      n[j][k] = x->n[j];
+    }
     for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
-    back[k] = x->back, near[k] = x->bounce > e->room ? 0.0f : 1.0f;
+    back[k] = x->back;
+    near[k] = x->bounce > e->room ? 0.0f : 1.0f;
   }
   float cosines = e->diffuse ? 1.0f : 0.0f,
         bents = 1.0f - cosines; /* a select would keep the loop from being a vector */
@@ -119,7 +124,10 @@ static uint32_t choose(const vlTracing *t, const vlEnd *e, uint32_t lane, uint32
     float share = worth[k] / sum;
     bool take = u < share;
     u = take ? u / share : (u - share) / (1.0f - share);
-    if (take) chosen = at[k], kept = worth[k];
+    if (take) {
+      chosen = at[k];
+      kept = worth[k];
+    }
   }
   float paths = (float)(inner->paths / inner->groups), count = (float)(inner->start[group + 1] - inner->start[group]);
   if (chosen == VL_NONE) return VL_NONE;
@@ -186,8 +194,12 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float 
   factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->b, i) ? 0.25f : 1.0f);
   for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * s->rows[3 + c][i] * x->power[c] * factor;
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
-  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
-  q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+  q->ox[count] = o.x;
+  q->oy[count] = o.y;
+  q->oz[count] = o.z;
+  q->dx[count] = d.x;
+  q->dy[count] = d.y;
+  q->dz[count] = d.z;
   q->t_max[count] = VL_ONE_MINUS_EPSILON;
   q->time[count] = vl_path_time(&s->b, i);
   q->lane[count] = s->b.lane[i];
@@ -231,7 +243,8 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
       w = vl_normalize(vl_sub(vl_vec3(p[0], p[1], p[2]), vl_lane3(f->px, f->py, f->pz, i)));
       found++;
     }
-    s->light.wx[i] = s->rows[9][i] = w.x, s->light.wy[i] = s->rows[10][i] = w.y;
+    s->light.wx[i] = s->rows[9][i] = w.x;
+    s->light.wy[i] = s->rows[10][i] = w.y;
     s->light.wz[i] = s->rows[11][i] = w.z;
   }
   if (!found) return;

@@ -20,10 +20,17 @@ void vl_worths_in_media(const vlTracing *t, const vlEnd *e, const uint32_t at[VL
   float extinction = e->air ? t->world->media.items[e->air - 1].extinction : 0.0f;
   for (uint32_t k = 0; k < VL_CANDIDATES; k++) {
     const vlLightVertex *x = &way->inner.vertices[at[k]];
-    for (int j = 0; j < 3; j++) p[j][k] = x->p[j], g[j][k] = x->g[j], n[j][k] = x->n[j];
+    for (int j = 0; j < 3; j++) {
+      p[j][k] = x->p[j];
+      g[j][k] = x->g[j];
+      n[j][k] = x->n[j];
+    }
     for (int c = 0; c < 4; c++) power[c][k] = x->power[c];
     in[k] = x->inside ? 1.0f : 0.0f;
-    a[k] = in[k] * x->a, dense[k] = x->dense, asymmetry[k] = in[k] * x->asymmetry, b[k] = x->back;
+    a[k] = in[k] * x->a;
+    dense[k] = x->dense;
+    asymmetry[k] = in[k] * x->asymmetry;
+    b[k] = x->back;
     near[k] = x->bounce > e->room ? 0.0f : 1.0f;
     sigma[k] = x->air == e->air ? extinction : 0.0f;
   }
@@ -93,8 +100,12 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
   vlVec3 d = vl_sub(end, c->o);
   float length = vl_length(d);
   d = vl_normalize(d);
-  q->ox[count] = c->o.x, q->oy[count] = c->o.y, q->oz[count] = c->o.z;
-  q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+  q->ox[count] = c->o.x;
+  q->oy[count] = c->o.y;
+  q->oz[count] = c->o.z;
+  q->dx[count] = d.x;
+  q->dy[count] = d.y;
+  q->dz[count] = d.z;
   q->t_max[count] = length * (1.0f - 0x1p-21f);
   q->time[count] = vl_path_time(p, c->i);
   q->lane[count] = p->lane[c->i];

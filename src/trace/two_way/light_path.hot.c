@@ -16,9 +16,13 @@ void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[
     s->light.wx[i] = x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i];
     s->light.wy[i] = x * sh->ty[i] + y * sh->by[i] + z * f->ny[i];
     s->light.wz[i] = x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i];
-    r->wo[0][i] = x, r->wo[1][i] = y, r->wo[2][i] = z;
+    r->wo[0][i] = x;
+    r->wo[1][i] = y;
+    r->wo[2][i] = z;
     float a = wi[0][i], b = wi[1][i], c = wi[2][i];
-    sh->wo[0][i] = a, sh->wo[1][i] = b, sh->wo[2][i] = c;
+    sh->wo[0][i] = a;
+    sh->wo[1][i] = b;
+    sh->wo[2][i] = c;
   }
   vl_stage_light_bsdf(t, n);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -72,24 +76,35 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     uint32_t *medium = s->volume.shadow_medium; /* not used yet */
     if (vl_has_media(t) && !start_medium(t, &e, &medium[i])) continue;
     uint32_t k = count++;
-    p->ox[k] = e.o.x, p->oy[k] = e.o.y, p->oz[k] = e.o.z;
-    p->dx[k] = e.d.x, p->dy[k] = e.d.y, p->dz[k] = e.d.z;
+    p->ox[k] = e.o.x;
+    p->oy[k] = e.o.y;
+    p->oz[k] = e.o.z;
+    p->dx[k] = e.d.x;
+    p->dy[k] = e.d.y;
+    p->dz[k] = e.d.z;
     p->pdf[k] = 1.0f;
     p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = 0.0f;
     p->eta_scale[k] = 1.0f;
     p->cone[k] = p->spread[k] = 0.0f;
     p->specular[k] = 1;
-    p->px[k] = b->px[i], p->py[k] = b->py[i], p->index[k] = b->index[i];
+    p->px[k] = b->px[i];
+    p->py[k] = b->py[i];
+    p->index[k] = b->index[i];
     p->lane[k] = i;
     for (int c = 0; c < 4; c++) {
-      p->beta[c][k] = 1.0f, p->lambda[c][k] = lambda[c];
+      p->beta[c][k] = 1.0f;
+      p->lambda[c][k] = lambda[c];
       r->flux[c][i] = e.flux[c];
     }
     r->light[i] = e.light;
     r->density[i] = e.density;
     r->carry[i] = e.delta ? 0.0f : 1.0f; /* without 1 / (density cosine), which arrive() applies */
-    r->lx[i] = e.at.x, r->ly[i] = e.at.y, r->lz[i] = e.at.z;
-    r->lnx[i] = e.n.x, r->lny[i] = e.n.y, r->lnz[i] = e.n.z;
+    r->lx[i] = e.at.x;
+    r->ly[i] = e.at.y;
+    r->lz[i] = e.at.z;
+    r->lnx[i] = e.n.x;
+    r->lny[i] = e.n.y;
+    r->lnz[i] = e.n.z;
   }
   return count;
 }
@@ -138,11 +153,16 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     if (vl_all_specular(t->world, t->s, i) || !(r->cosine[i] > 0.0f)) continue;
     vlPhoton *x = &r->photons[count];
     uint32_t lane = p->lane[i];
-    x->p[0] = f->px[i], x->p[1] = f->py[i], x->p[2] = f->pz[i];
-    x->w[0] = -p->dx[i], x->w[1] = -p->dy[i], x->w[2] = -p->dz[i];
+    x->p[0] = f->px[i];
+    x->p[1] = f->py[i];
+    x->p[2] = f->pz[i];
+    x->w[0] = -p->dx[i];
+    x->w[1] = -p->dy[i];
+    x->w[2] = -p->dz[i];
     float inv = 1.0f / r->cosine[i], sum = 0.0f;
     for (int c = 0; c < 4; c++) sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * inv;
-    x->a = r->a[i], x->b = r->b[i];
+    x->a = r->a[i];
+    x->b = r->b[i];
     x->bounce = depth + 1;
     x->id = b->first + lane;
     x->alone = vl_hero_only(p, i);
@@ -166,15 +186,23 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
     if (path >= way->inner.paths || !vl_is_inner_end(t, i) || !(r->cosine[i] > 0.0f)) continue;
     vlLightVertex *x = &r->vertices[count];
     float z = sh->wo[2][i], side = z < 0.0f ? -1.0f : 1.0f, rev = vl_abs(z) * VL_INV_PI, sum = 0.0f;
-    x->p[0] = f->px[i], x->p[1] = f->py[i], x->p[2] = f->pz[i];
-    x->g[0] = f->gx[i], x->g[1] = f->gy[i], x->g[2] = f->gz[i];
-    x->n[0] = side * f->nx[i], x->n[1] = side * f->ny[i], x->n[2] = side * f->nz[i];
+    x->p[0] = f->px[i];
+    x->p[1] = f->py[i];
+    x->p[2] = f->pz[i];
+    x->g[0] = f->gx[i];
+    x->g[1] = f->gy[i];
+    x->g[2] = f->gz[i];
+    x->n[0] = side * f->nx[i];
+    x->n[1] = side * f->ny[i];
+    x->n[2] = side * f->nz[i];
     for (int c = 0; c < 4; c++)
       sum += x->power[c] = p->beta[c][i] * r->flux[c][lane] * sh->reflectance[c][i] * rev / r->cosine[i];
     x->back = r->a[i] * rev + r->b[i] + way->merged;
     x->offset = f->offset[i];
-    x->path = path & 0x3ffffu, x->bounce = (depth + 1) & 255u;
-    x->alone = vl_hero_only(p, i), x->inside = 0;
+    x->path = path & 0x3ffffu;
+    x->bounce = (depth + 1) & 255u;
+    x->alone = vl_hero_only(p, i);
+    x->inside = 0;
     x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume.b.medium[i]) & 15u : 0;
     r->first[count] = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     count += sum > 0.0f && sum < VL_INFINITY;

@@ -48,7 +48,8 @@ static uint32_t near_next(const vlPhotonMap *map, Near *near) {
     if (near->k == 8) return VL_NONE;
     for (int i = 0; i < 3; i++) near->cell[i] = near->corner[i] + (near->k >> i & 1);
     uint32_t bucket = vl_photon_bucket(near->cell[0], near->cell[1], near->cell[2], map->buckets);
-    near->next = map->start[bucket], near->end = map->start[bucket + 1];
+    near->next = map->start[bucket];
+    near->end = map->start[bucket + 1];
     near->seen += near->end - near->next;
     near->k++;
   }

@@ -40,7 +40,8 @@ static void sort_bucket(vlPhoton *x, uint32_t count) {
   for (uint32_t i = count / 2; i-- > 0;) sink(x, i, count);
   for (uint32_t last = count; last-- > 1;) {
     vlPhoton largest = x[0];
-    x[0] = x[last], x[last] = largest;
+    x[0] = x[last];
+    x[last] = largest;
     sink(x, 0, last);
   }
 }

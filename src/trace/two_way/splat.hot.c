@@ -10,7 +10,8 @@ vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, floa
   float lx = 0.0f, ly = 0.0f;
   if (eye->lens_radius > 0.0f) {
     vlDiskPoint lens = vl_warp_disk(u, v);
-    lx = eye->lens_radius * lens.x, ly = eye->lens_radius * lens.y;
+    lx = eye->lens_radius * lens.x;
+    ly = eye->lens_radius * lens.y;
     r.from = vl_add(r.from, vl_add(vl_mul(eye->right, lx), vl_mul(eye->down, ly)));
   }
   vlVec3 to = vl_sub(p, r.from);
@@ -35,8 +36,12 @@ bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, f
   if (vl_has_media(t)) {
     const vlVolumeScratch *v = &s->volume;
     float density[4];
-    for (int c = 0; c < 4; c++) passes[c] = v->shadow_beta[c][k], density[c] = v->density[c][k] * v->shadow_l[c][k];
-    odds = v->shadow_odds[k], mean = vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
+    for (int c = 0; c < 4; c++) {
+      passes[c] = v->shadow_beta[c][k];
+      density[c] = v->density[c][k] * v->shadow_l[c][k];
+    }
+    odds = v->shadow_odds[k];
+    mean = vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
     if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) return false;
   }
   *scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
@@ -52,16 +57,22 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
   b->shadow_rays += count;
   if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   float *value[4], *lambda[4], *inv_pdf[4];
-  for (int c = 0; c < 4; c++) value[c] = r->rows[c], lambda[c] = s->rows[c], inv_pdf[c] = s->rows[4 + c];
+  for (int c = 0; c < 4; c++) {
+    value[c] = r->rows[c];
+    lambda[c] = s->rows[c];
+    inv_pdf[c] = s->rows[4 + c];
+  }
   uint32_t visible = 0;
   for (uint32_t k = 0; k < count; k++) {
     float passes[4], scale;
     if (!vl_two_way_arrives(t, r, k, passes, &scale)) continue;
     uint32_t lane = q->lane[k], m = visible++;
-    r->x[m] = r->x[k], r->y[m] = r->y[k];
+    r->x[m] = r->x[k];
+    r->y[m] = r->y[k];
     for (int c = 0; c < 4; c++) {
       value[c][m] = q->radiance[c][k] * passes[c] * scale;
-      lambda[c][m] = r->rows[4 + c][lane], inv_pdf[c][m] = r->rows[8 + c][lane];
+      lambda[c][m] = r->rows[4 + c][lane];
+      inv_pdf[c][m] = r->rows[8 + c][lane];
     }
   }
   if (visible) b->splat(b->user, visible, r->x, r->y, value, lambda, inv_pdf);
@@ -75,7 +86,9 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], vl_sub(target, at));
   vlVec3 d = vl_sub(target, o);
-  q->ox[count] = o.x, q->oy[count] = o.y, q->oz[count] = o.z;
+  q->ox[count] = o.x;
+  q->oy[count] = o.y;
+  q->oz[count] = o.z;
   q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
   if (vl_has_media(t)) { /* unit length: distances to interfaces on the way are needed */
     vlVolumeScratch *v = &s->volume;
@@ -86,7 +99,9 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
     vl_shadow_from_surface(t, count, i, wi_z);
     for (int c = 0; c < 4; c++) v->density[c][count] = v->b.u[c][i];
   }
-  q->dx[count] = d.x, q->dy[count] = d.y, q->dz[count] = d.z;
+  q->dx[count] = d.x;
+  q->dy[count] = d.y;
+  q->dz[count] = d.z;
   q->time[count] = vl_path_time(&s->b, i);
   q->lane[count] = s->b.lane[i];
 }
@@ -115,8 +130,11 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
     per_square[i] = view.seen ? cosine * view.per_square : 0.0f; /* density of the camera path's first vertex here */
     end[i] = view.end;
-    r->x[i] = view.x, r->y[i] = view.y;
-    fx[i] = view.from.x, fy[i] = view.from.y, fz[i] = view.from.z;
+    r->x[i] = view.x;
+    r->y[i] = view.y;
+    fx[i] = view.from.x;
+    fy[i] = view.from.y;
+    fz[i] = view.from.z;
   }
   vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   uint32_t count = 0;
@@ -129,7 +147,8 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
     for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv;
-    r->x[count] = r->x[i], r->y[count] = r->y[i];
+    r->x[count] = r->x[i];
+    r->y[count] = r->y[i];
     count++;
   }
   vl_two_way_splats(t, r, b, p, count, depth);

@@ -30,7 +30,10 @@ static bool is_eligible(const vlWorld *world) {
 /* (q - p) x (r - q) . n: positive if the corner q of a polygon with the normal n is convex. */
 static double turn(const double p[3], const double q[3], const double r[3], const double n[3]) {
   double in[3], out[3], across[3];
-  for (int i = 0; i < 3; i++) in[i] = q[i] - p[i], out[i] = r[i] - q[i];
+  for (int i = 0; i < 3; i++) {
+    in[i] = q[i] - p[i];
+    out[i] = r[i] - q[i];
+  }
   vl_cross3(in, out, across);
   return vl_dot3(across, n);
 }
@@ -54,7 +57,10 @@ static Face triangle_face(const vlWorldShape *s, uint32_t prim) {
   Face f = {.corners = 3};
   corners_of(s, prim, f.corner);
   double one[3], two[3];
-  for (int i = 0; i < 3; i++) one[i] = f.corner[1][i] - f.corner[0][i], two[i] = f.corner[2][i] - f.corner[0][i];
+  for (int i = 0; i < 3; i++) {
+    one[i] = f.corner[1][i] - f.corner[0][i];
+    two[i] = f.corner[2][i] - f.corner[0][i];
+  }
   vl_cross3(one, two, f.normal);
   vl_normalize3(f.normal);
   return f;
@@ -102,9 +108,15 @@ static void extend(Face *f, const vlWorldShape *s, uint32_t prim) {
 /* Swapping the ends changes nothing but signs: differences and products of doubles are rounded alike. */
 static void make_edge(const vlBruteForce *b, const double from[3], const double to[3], float edge[3], float moment[3]) {
   double p[3], q[3], across[3];
-  for (int i = 0; i < 3; i++) p[i] = from[i] - (double)b->center[i], q[i] = to[i] - (double)b->center[i];
+  for (int i = 0; i < 3; i++) {
+    p[i] = from[i] - (double)b->center[i];
+    q[i] = to[i] - (double)b->center[i];
+  }
   vl_cross3(p, q, across);
-  for (int i = 0; i < 3; i++) edge[i] = (float)(q[i] - p[i]), moment[i] = (float)across[i];
+  for (int i = 0; i < 3; i++) {
+    edge[i] = (float)(q[i] - p[i]);
+    moment[i] = (float)across[i];
+  }
 }
 
 /* extent: radius of the world. */
@@ -115,11 +127,17 @@ static void add_face(vlBruteForce *b, const Face *f, float extent) {
     float edge[3], moment[3];
     int from = k < f->corners ? k : f->corners - 1;
     make_edge(b, f->corner[from], f->corner[(from + 1) % f->corners], edge, moment);
-    for (int i = 0; i < 3; i++) b->edge[k][i][at] = edge[i], b->moment[k][i][at] = moment[i];
+    for (int i = 0; i < 3; i++) {
+      b->edge[k][i][at] = edge[i];
+      b->moment[k][i][at] = moment[i];
+    }
     for (int i = 0; i < 3; i++) longest = fmaxf(longest, fabsf(edge[i]));
   }
   b->tolerance[at] = 0x1p-23f * extent * longest;
-  for (int i = 0; i < 3; i++) b->normal[i][at] = (float)f->normal[i], b->corner[i][at] = (float)f->corner[0][i];
+  for (int i = 0; i < 3; i++) {
+    b->normal[i][at] = (float)f->normal[i];
+    b->corner[i][at] = (float)f->corner[0][i];
+  }
   b->pair[at] = f->corners == 4;
   if (b->pair[at]) make_edge(b, f->diagonal[0], f->diagonal[1], b->diagonal_edge[at], b->diagonal_moment[at]);
 }
@@ -129,7 +147,9 @@ static bool add_triangles(vlBruteForce *b, const vlWorld *world, uint32_t shape)
   const vlWorldShape *s = &world->shapes.items[shape];
   for (uint32_t prim = 0; prim < s->faces; prim++) {
     if (b->faces == VL_BRUTE_FACES) return false;
-    b->shape[b->faces] = shape, b->prim[b->faces] = prim, b->pass_shadow[b->faces] = s->pass_shadow;
+    b->shape[b->faces] = shape;
+    b->prim[b->faces] = prim;
+    b->pass_shadow[b->faces] = s->pass_shadow;
     Face f = triangle_face(s, prim);
     if (prim + 1 < s->faces) extend(&f, s, prim + 1);
     add_face(b, &f, world->radius);
@@ -153,7 +173,9 @@ static void add_other(vlBruteForce *b, const vlWorldShape *s, uint32_t face) {
 static void add_others(vlBruteForce *b, uint32_t shape, const vlWorldShape *s) {
   for (uint32_t prim = 0; prim < s->faces; prim++) {
     uint32_t id = b->faces + b->others;
-    b->shape[id] = shape, b->prim[id] = prim, b->pass_shadow[id] = s->pass_shadow;
+    b->shape[id] = shape;
+    b->prim[id] = prim;
+    b->pass_shadow[id] = s->pass_shadow;
     add_other(b, s, prim);
   }
 }

@@ -41,7 +41,10 @@ typedef struct Face {
 
 static Face face_at(const vlBruteForce *b, uint32_t j) {
   Face q = {.normal = at3(b->normal, j), .corner = at3(b->corner, j), .tolerance = b->tolerance[j]};
-  for (int k = 0; k < 4; k++) q.edge[k] = at3(b->edge[k], j), q.moment[k] = at3(b->moment[k], j);
+  for (int k = 0; k < 4; k++) {
+    q.edge[k] = at3(b->edge[k], j);
+    q.moment[k] = at3(b->moment[k], j);
+  }
   return q;
 }
 
@@ -73,8 +76,12 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   uint32_t padded = k->padded = n <= FEW_RAYS ? n : VL_PAD(n);
   for (uint32_t i = 0; i < padded; i++) {
     uint32_t at = first + (i < n ? i : n - 1);
-    k->ox[i] = r->ox[at], k->oy[i] = r->oy[at], k->oz[i] = r->oz[at];
-    k->dx[i] = r->dx[at], k->dy[i] = r->dy[at], k->dz[i] = r->dz[at];
+    k->ox[i] = r->ox[at];
+    k->oy[i] = r->oy[at];
+    k->oz[i] = r->oz[at];
+    k->dx[i] = r->dx[at];
+    k->dy[i] = r->dy[at];
+    k->dz[i] = r->dz[at];
     k->low[i] = r->t_min ? r->t_min[at] : 0.0f;
     k->height[i] = r->t_max ? r->t_max[at] : __builtin_inff();
     k->speed[i] = 1.0f;
@@ -83,7 +90,9 @@ static void load(Block *k, const vlBruteForce *b, const vlRays *r, uint32_t firs
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     vlVec3 m = vl_cross(vl_sub(vl_vec3(k->ox[i], k->oy[i], k->oz[i]), center), vl_vec3(k->dx[i], k->dy[i], k->dz[i]));
-    k->mx[i] = m.x, k->my[i] = m.y, k->mz[i] = m.z;
+    k->mx[i] = m.x;
+    k->my[i] = m.y;
+    k->mz[i] = m.z;
   }
 }
 
@@ -130,7 +139,8 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
                           side_of(at3(b->edge[2], j), at3(b->moment[2], j), d, m),
                           side_of(at3(b->edge[3], j), at3(b->moment[3], j), d, m), at3(b->normal, j), at3(b->corner, j),
                           b->tolerance[j], o, d);
-      height[j] = at.height, speed[j] = at.speed;
+      height[j] = at.height;
+      speed[j] = at.speed;
     }
     Crossing near = {k->height[i], k->speed[i]};
     for (uint32_t j = 0; j < b->faces; j++) {
@@ -140,7 +150,8 @@ static void cross_few(Block *k, const vlBruteForce *b, bool any) {
       if (any) break;
       near = at;
     }
-    k->height[i] = near.height, k->speed[i] = near.speed;
+    k->height[i] = near.height;
+    k->speed[i] = near.speed;
   }
 }
 
@@ -191,8 +202,10 @@ static void closest(const vlWorld *world, const vlBruteForce *b, uint32_t n, con
       double met;
       approach(&k, b->sphere[j], near);
       for (uint32_t i = 0; i < k.n; i++)
-        if (near[i] && meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i, k.height[i], &met))
-          k.height[i] = (float)met, k.id[i] = (int32_t)id;
+        if (near[i] && meets_other(&k, &world->shapes.items[b->shape[id]], b->prim[id], i, k.height[i], &met)) {
+          k.height[i] = (float)met;
+          k.id[i] = (int32_t)id;
+        }
     }
     for (uint32_t i = 0; i < k.n; i++) {
       bool hit = k.id[i] != NO_HIT;

@@ -25,8 +25,12 @@ static void load(Block *k, const vlOccluders *o, const vlRays *r, uint32_t first
   uint32_t padded = k->padded = VL_PAD(n);
   for (uint32_t i = 0; i < padded; i++) {
     uint32_t at = first + (i < n ? i : n - 1);
-    k->ox[i] = r->ox[at], k->oy[i] = r->oy[at], k->oz[i] = r->oz[at];
-    k->dx[i] = r->dx[at], k->dy[i] = r->dy[at], k->dz[i] = r->dz[at];
+    k->ox[i] = r->ox[at];
+    k->oy[i] = r->oy[at];
+    k->oz[i] = r->oz[at];
+    k->dx[i] = r->dx[at];
+    k->dy[i] = r->dy[at];
+    k->dz[i] = r->dz[at];
     k->low[i] = r->t_min ? r->t_min[at] : 0.0f;
     k->high[i] = r->t_max ? r->t_max[at] : __builtin_inff();
   }

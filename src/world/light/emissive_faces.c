@@ -29,7 +29,8 @@ bool vl_emissive_faces_make(const vlWorld *world, const vlEmitted *e, vlEmissive
   s->wrap_t = s->node ? s->node->wrap_t : VL_WRAP_CLAMP;
   if (s->wrap == VL_WRAP_OCTAHEDRAL || s->wrap_t == VL_WRAP_OCTAHEDRAL) return true;
   if (s->node && (s->node->invert || !(s->node->st_given || s->node->mapping == VL_MAPPING_UV))) return true;
-  s->width = mip->levels[0].width, s->height = mip->levels[0].height;
+  s->width = mip->levels[0].width;
+  s->height = mip->levels[0].height;
   s->words = (s->width + 63) / 64;
   s->bits = vl_alloc_zero(world->context, (size_t)s->words * s->height, sizeof *s->bits);
   if (!s->bits) return false;
@@ -53,7 +54,10 @@ static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32
   if (row < 0) return false;
   const uint64_t *bits = s->bits + (size_t)row * s->words;
   int32_t n = (int32_t)s->width;
-  if (to - from >= 2 * n) from = 0, to = n - 1; /* covers all columns in any wrap mode */
+  if (to - from >= 2 * n) {
+    from = 0;
+    to = n - 1;
+  } /* covers all columns in any wrap mode */
   if (from < 0 || to >= n) {
     bool emits = false;
     for (int32_t x = from; x <= to && !emits; x++) {
@@ -74,7 +78,8 @@ static bool row_emits(const vlEmissiveFaces *s, int32_t row, int32_t from, int32
 
 /* Gives the x range of the part of a triangle with low <= y <= high. An empty range has first > last. */
 static void band(const double x[3], const double y[3], double low, double high, double *first, double *last) {
-  *first = INFINITY, *last = -INFINITY;
+  *first = INFINITY;
+  *last = -INFINITY;
   for (int k = 0; k < 3; k++) {
     int j = (k + 1) % 3;
     double at[4] = {NAN, NAN, NAN, NAN};
@@ -83,7 +88,10 @@ static void band(const double x[3], const double y[3], double low, double high, 
       double level = edge ? high : low, d = y[j] - y[k];
       if ((y[k] < level) != (y[j] < level)) at[1 + edge] = x[k] + (x[j] - x[k]) * ((level - y[k]) / d);
     }
-    for (int i = 0; i < 3; i++) *first = fmin(*first, at[i]), *last = fmax(*last, at[i]); /* fmin and fmax ignore NaN */
+    for (int i = 0; i < 3; i++) {
+      *first = fmin(*first, at[i]);
+      *last = fmax(*last, at[i]);
+    } /* fmin and fmax ignore NaN */
   }
 }
 
@@ -93,8 +101,12 @@ static bool triangle_emits(const vlEmissiveFaces *s, const float uv[3][2]) {
     vlVec2 st = {uv[k][0], uv[k][1]};
     vlTexturePoint at = {st.x, st.y, vl_vec3(0, 0, 0), vl_vec3(0, 0, 1), 0, {0, 0, 0, 0}, {1, 1, 1, 1}};
     if (s->node) st = vl_texture_st(s->node, at);
-    x[k] = (double)st.x * s->width, y[k] = (1.0 - (double)st.y) * s->height;
-    x_low = fmin(x_low, x[k]), x_high = fmax(x_high, x[k]), y_low = fmin(y_low, y[k]), y_high = fmax(y_high, y[k]);
+    x[k] = (double)st.x * s->width;
+    y[k] = (1.0 - (double)st.y) * s->height;
+    x_low = fmin(x_low, x[k]);
+    x_high = fmax(x_high, x[k]);
+    y_low = fmin(y_low, y[k]);
+    y_high = fmax(y_high, y[k]);
     size = fmax(size, fmax(fabs(x[k]), fabs(y[k])));
   }
   if (!(size < 1e8) || isnan(x[0] + x[1] + x[2] + y[0] + y[1] + y[2])) return true;

@@ -62,7 +62,8 @@ static inline uint32_t vl_environment_cell(const vlEnvironment *env, uint32_t y,
 /* The cell that contains a point of the unit square, as an index into cells. */
 static inline uint32_t vl_environment_at(const vlEnvironment *env, float s, float t) {
   uint32_t x = (uint32_t)(int32_t)(s * (float)env->size), y = (uint32_t)(int32_t)(t * (float)env->size);
-  x = x < env->size ? x : env->size - 1, y = y < env->size ? y : env->size - 1;
+  x = x < env->size ? x : env->size - 1;
+  y = y < env->size ? y : env->size - 1;
   return y * env->size + x;
 }
 

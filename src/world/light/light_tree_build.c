@@ -71,7 +71,9 @@ static void absorb(vlLightBounds *a, const vlLightBounds *b) {
     Cone ca = {vl_vec3(a->axis[0], a->axis[1], a->axis[2]), a->cos_o, false};
     Cone cb = {vl_vec3(b->axis[0], b->axis[1], b->axis[2]), b->cos_o, false};
     Cone c = cone_union(ca, cb);
-    a->axis[0] = c.axis.x, a->axis[1] = c.axis.y, a->axis[2] = c.axis.z;
+    a->axis[0] = c.axis.x;
+    a->axis[1] = c.axis.y;
+    a->axis[2] = c.axis.z;
     a->cos_o = c.cos_o;
   }
   a->cos_e = b->cos_e < a->cos_e ? b->cos_e : a->cos_e;
@@ -86,7 +88,10 @@ static float cost_of(const vlLightBounds *b, const float parent_low[3], const fl
   float orientation =
       2 * VL_PI * (1 - b->cos_o) + VL_PI / 2 * (2 * tw * sin_o - cosine(to - 2 * tw) - 2 * to * sin_o + b->cos_o);
   float d[3], longest = 0;
-  for (int i = 0; i < 3; i++) d[i] = b->high[i] - b->low[i], longest = fmaxf(longest, parent_high[i] - parent_low[i]);
+  for (int i = 0; i < 3; i++) {
+    d[i] = b->high[i] - b->low[i];
+    longest = fmaxf(longest, parent_high[i] - parent_low[i]);
+  }
   float area = 2 * (d[0] * d[1] + d[1] * d[2] + d[2] * d[0]);
   float extent = parent_high[dimension] - parent_low[dimension];
   float regular = extent > 0 ? longest / extent : 0;
@@ -97,7 +102,8 @@ static void node_from_bounds(const vlLightBounds *b, vlLightNode *node) {
   memset(node, 0, sizeof *node);
   float d2 = 0;
   for (int i = 0; i < 3; i++) {
-    node->low[i] = b->low[i], node->high[i] = b->high[i];
+    node->low[i] = b->low[i];
+    node->high[i] = b->high[i];
     node->center[i] = 0.5f * (b->low[i] + b->high[i]);
     float d = b->high[i] - b->low[i];
     d2 += d * d;
@@ -149,7 +155,11 @@ static uint32_t split_items(Item *items, uint32_t count, const vlLightBounds *al
       vlLightBounds right = buckets[filled[s + 1]];
       for (int b = s + 2; b < fill_count; b++) absorb(&right, &buckets[filled[b]]);
       float cost = cost_of(&left, all->low, all->high, k) + cost_of(&right, all->low, all->high, k);
-      if (cost < best) best = cost, best_dimension = k, best_bucket = filled[s];
+      if (cost < best) {
+        best = cost;
+        best_dimension = k;
+        best_bucket = filled[s];
+      }
     }
   }
   if (best_dimension < 0) return count / 2;
@@ -191,7 +201,10 @@ static vlLightBounds build_node(Builder *b, uint32_t at, Item *items, uint32_t c
 static void light_bounds(const vlWorld *world, const vlWorldLight *light, vlLightBounds *b) {
   memset(b, 0, sizeof *b);
   b->power = light->power;
-  for (int i = 0; i < 3; i++) b->low[i] = b->high[i] = light->position[i], b->axis[i] = i == 2;
+  for (int i = 0; i < 3; i++) {
+    b->low[i] = b->high[i] = light->position[i];
+    b->axis[i] = i == 2;
+  }
   b->cos_o = -1; /* point lights emit in all directions */
   b->cos_e = 0;
   if (light->has_cone) {

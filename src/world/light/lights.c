@@ -84,10 +84,15 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
     if (known->image != image) continue;
     if (!vl_part_share(world, known->part)) return vl_fail_memory(error);
     *kept = *known;
-    env->size = from->size, env->cells_are_texels = from->cells_are_texels, env->cells = from->cells;
-    env->rows = from->rows, env->below = from->below;
-    env->row_guide = from->row_guide, env->cell_guide = from->cell_guide;
-    *mean = known->mean, *illuminance = known->illuminance;
+    env->size = from->size;
+    env->cells_are_texels = from->cells_are_texels;
+    env->cells = from->cells;
+    env->rows = from->rows;
+    env->below = from->below;
+    env->row_guide = from->row_guide;
+    env->cell_guide = from->cell_guide;
+    *mean = known->mean;
+    *illuminance = known->illuminance;
     return VL_OK;
   }
   if (!(kept->part = vl_part_add(world))) return vl_fail_memory(error);
@@ -95,7 +100,8 @@ static vlResult distribution_of(vlWorld *world, vlEnvironment *env, double *mean
   vlResult r = vl_world_build_environment(world, env, &kept->mean, &kept->illuminance, error);
   world->part = NULL;
   kept->image = image;
-  *mean = kept->mean, *illuminance = kept->illuminance;
+  *mean = kept->mean;
+  *illuminance = kept->illuminance;
   return r;
 }
 

@@ -27,7 +27,9 @@ static void set_frame(const vlLightDef *def, vlPortal *portal) {
   vlVec3 y = side(def->portal[0], def->portal[1], &portal->height), z = vl_normalize(vl_cross(x, y));
   const vlVec3 rows[3] = {x, vl_cross(z, x), z};
   for (int i = 0; i < 3; i++) {
-    portal->frame[3 * i] = rows[i].x, portal->frame[3 * i + 1] = rows[i].y, portal->frame[3 * i + 2] = rows[i].z;
+    portal->frame[3 * i] = rows[i].x;
+    portal->frame[3 * i + 1] = rows[i].y;
+    portal->frame[3 * i + 2] = rows[i].z;
     portal->corner[i] = def->portal[0][i];
   }
 }

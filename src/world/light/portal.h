@@ -56,8 +56,10 @@ static inline bool vl_portal_window(const vlPortal *portal, vlVec3 o, vlPortalWi
   vlVec3 c = vl_portal_corner_from(portal, o);
   if (!(c.z > 0.0f)) return false;
   float inv = 1.0f / c.z;
-  window->x0 = vl_portal_cell(portal, c.x * inv), window->x1 = vl_portal_cell(portal, (c.x + portal->width) * inv);
-  window->y0 = vl_portal_cell(portal, c.y * inv), window->y1 = vl_portal_cell(portal, (c.y + portal->height) * inv);
+  window->x0 = vl_portal_cell(portal, c.x * inv);
+  window->x1 = vl_portal_cell(portal, (c.x + portal->width) * inv);
+  window->y0 = vl_portal_cell(portal, c.y * inv);
+  window->y1 = vl_portal_cell(portal, (c.y + portal->height) * inv);
   return window->x1 > window->x0 && window->y1 > window->y0;
 }
 static inline vlPortalWindow vl_portal_whole(const vlPortal *portal) {
@@ -139,7 +141,8 @@ static inline vlVec3 vl_portal_sample(const vlPortal *portal, const vlPortalWind
     else
       first = middle + 1;
   }
-  a = column[first * row + 1] - column[first * row], b = column[(first + 1) * row + 1] - column[(first + 1) * row];
+  a = column[first * row + 1] - column[first * row];
+  b = column[(first + 1) * row + 1] - column[(first + 1) * row];
   double y = first + (b > a ? (wanted - a) / (b - a) : 0.5);
   y = y < w->y0 ? w->y0 : y > w->y1 ? w->y1 : y;
   vlSinCos p = vl_sincos((float)((x / portal->size - 0.5) * 3.141592653589793));

@@ -84,7 +84,9 @@ static void triangle_light(const vlWorldShape *s, uint32_t prim, vlWorldLight *l
   bool flip = s->normals ? against >= 2 : s->flip;
   light->one_sided_normals = against == 0 || against == 3;
   if (flip) g = vl_neg(g);
-  light->direction[0] = g.x, light->direction[1] = g.y, light->direction[2] = g.z;
+  light->direction[0] = g.x;
+  light->direction[1] = g.y;
+  light->direction[2] = g.z;
 }
 
 /* Sets the numbers from which points are sampled, and the bound of the error of such a point: a float's rounding of the

@@ -115,7 +115,8 @@ static void fill_row(void *user, uint32_t row, uint32_t worker) {
 }
 
 void vl_bssrdf_build(vlContext *context, float eta, float g, vlBssrdfTable *t) {
-  t->eta = eta, t->g = g;
+  t->eta = eta;
+  t->g = g;
   t->leaves = (float)(1 - 2 * moment1(1 / (double)eta));
   t->radius[0] = 0.0f;
   for (uint32_t i = 1; i < VL_BSSRDF_RADII; i++) t->radius[i] = i > 1 ? t->radius[i - 1] * 1.2f : 2.5e-3f;

@@ -48,15 +48,19 @@ static inline vlSpline vl_spline_in(const float *nodes, uint32_t n, uint32_t i, 
   float begin = t3 - 2 * t2 + t, end = t3 - t2, w0 = 0, w1 = 2 * t3 - 3 * t2 + 1, w2 = 3 * t2 - 2 * t3, w3 = 0;
   if (i > 0) {
     float s = begin * width / (x1 - nodes[i - 1]);
-    w0 = -s, w2 += s;
+    w0 = -s;
+    w2 += s;
   } else {
-    w1 -= begin, w2 += begin;
+    w1 -= begin;
+    w2 += begin;
   }
   if (i + 2 < n) {
     float s = end * width / (nodes[i + 2] - x0);
-    w1 -= s, w3 = s;
+    w1 -= s;
+    w3 = s;
   } else {
-    w1 -= end, w2 += end;
+    w1 -= end;
+    w2 += end;
   }
   if (i == 0) return (vlSpline){0, {w1, w2, w3, 0}};
   if (i + 2 == n) return (vlSpline){i - 2, {0, w0, w1, w2}};

@@ -259,7 +259,10 @@ vlResult vl_coat_white_albedo(vlContext *context, const vlCoatTable *table, doub
   if (!rules) return VL_ERROR_MEMORY;
   make_rules(rules);
   double power = 1.0, series = 0.0, back = (double)table->back[0], sum = 0.0;
-  for (uint32_t k = 0; k < table->bounces; k++) series += power, power *= back;
+  for (uint32_t k = 0; k < table->bounces; k++) {
+    series += power;
+    power *= back;
+  }
   for (int i = 0; i < OUTER; i++) {
     double c = rules->x[i], own = reflectance_outside(rules, (float)c, table->eta, row_alpha(table, 0));
     sum += rules->w[i] * 2.0 * c * (own + at_cosine(table->transmittance[0], c) * (double)table->escape[0] * series);

@@ -47,13 +47,17 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
   const vlCoatTable wanted = {
       .eta = m->eta_s, .tau = thickness, .alpha_min = low, .alpha_max = high, .conserves = def->conserve_energy};
   const vlWorldCoat *known = find_coat(world, &wanted, def->max_depth);
-  if (known) return *table = known->table, VL_OK;
+  if (known) {
+    *table = known->table;
+    return VL_OK;
+  }
   known = world->previous ? find_coat(world->previous, &wanted, def->max_depth) : NULL;
   if (known) {
     vlWorldCoat *shared = VL_PUSH(world->context, &world->coats);
     if (!shared || !vl_part_share(world, known->part)) return vl_fail_memory(error);
     *shared = *known;
-    return *table = known->table, VL_OK;
+    *table = known->table;
+    return VL_OK;
   }
   vlCoatTable *built = NULL;
   if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
@@ -65,7 +69,8 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
     vl_coat_free(world->context, built);
     return vl_fail_memory(error);
   }
-  part->destroy = free_coat, part->object = built;
+  part->destroy = free_coat;
+  part->object = built;
   built->imitate = world->def.imitate_pbrt;
   *slot = (vlWorldCoat){part, built, def->max_depth};
   *table = built;
@@ -112,7 +117,8 @@ static vlResult measured_of(vlWorld *world, const vlMaterialDef *def, vlWorldMat
   vlPart *part = vl_part_add(world);
   if (!part) vl_measured_free(world->context, made);
   if (!part) return vl_fail_memory(error);
-  part->destroy = free_measured, part->object = made;
+  part->destroy = free_measured;
+  part->object = made;
   *kept = (vlWorldFilePart){.part = part, .stamp = stamp};
   m->measured = *slot = made;
   return VL_OK;

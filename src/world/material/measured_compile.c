@@ -220,7 +220,8 @@ static void find_albedo(vlMeasured *m, float *albedo) {
           float d = vl_measured_in(&m->ndf, m->ndf.values, vl_measured_cell(&m->ndf, n.x, n.y));
           value *= 4 * (double)m->sigma.values[0] / fmax((double)d, 1e-30);
         }
-        sum += part * fmax(value, 0), all += part;
+        sum += part * fmax(value, 0);
+        all += part;
       }
     albedo[k] = (float)fmin(sum / all, 1);
   }
@@ -229,7 +230,8 @@ static void find_albedo(vlMeasured *m, float *albedo) {
 
 static vlResult build(vlContext *context, Source *s, bool rgb, vlMeasured *m, vlError *error) {
   const vlTensorField *const *f = s->fields;
-  m->phis = (uint32_t)f[PHI]->count, m->thetas = (uint32_t)f[THETA]->count;
+  m->phis = (uint32_t)f[PHI]->count;
+  m->thetas = (uint32_t)f[THETA]->count;
   m->lambdas = rgb ? 3 : (uint32_t)f[LAMBDA]->count;
   size_t slices = (size_t)m->phis * m->thetas, nodes = (size_t)(f[SPECTRA]->shape[3] * f[SPECTRA]->shape[4]);
   size_t count = (size_t)(f[PHI]->count + f[THETA]->count + f[LAMBDA]->count + f[NDF]->count + f[SIGMA]->count);

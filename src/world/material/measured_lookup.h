@@ -103,8 +103,10 @@ typedef struct vlMeasuredLine {
 static inline vlMeasuredLine vl_measured_line(vlMeasuredSlices s, size_t size, size_t row, uint32_t width, float t) {
   vlMeasuredLine line = {2 * s.count, {0}, {0}};
   for (uint32_t k = 0; k < s.count; k++) {
-    line.at[2 * k] = s.slice[k] * size + row, line.weight[2 * k] = s.weight[k] * (1.0f - t);
-    line.at[2 * k + 1] = s.slice[k] * size + row + width, line.weight[2 * k + 1] = s.weight[k] * t;
+    line.at[2 * k] = s.slice[k] * size + row;
+    line.weight[2 * k] = s.weight[k] * (1.0f - t);
+    line.at[2 * k + 1] = s.slice[k] * size + row + width;
+    line.weight[2 * k + 1] = s.weight[k] * t;
   }
   return line;
 }

@@ -66,7 +66,8 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   m->dispersive = !p->thin && d->dispersion > 0.0f && world->def.color == VL_COLOR_SPECTRAL;
   if (m->dispersive) cauchy(m->eta_s, d->dispersion, p);
   p->film_index = d->iridescence_ior;
-  p->normal_scale = d->normal_scale, p->coat_normal_scale = d->clearcoat_normal_scale;
+  p->normal_scale = d->normal_scale;
+  p->coat_normal_scale = d->clearcoat_normal_scale;
   const vlMaterialFloat floats[] = {{d->metallic, &p->metallic},
                                     {d->roughness, &p->roughness},
                                     {d->anisotropy, &p->anisotropy},
@@ -87,8 +88,10 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   if (r == VL_OK) r = normal_node(world, scene, d->normal, &p->normal, error);
   if (r == VL_OK) r = normal_node(world, scene, d->clearcoat_normal, &p->coat_normal, error);
   /* Lobes whose weight is always 0 need no lookups. */
-  p->has_coat = !is_zero(d->clearcoat), p->has_film = !is_zero(d->iridescence);
-  p->has_anisotropy = !is_zero(d->anisotropy), p->has_transmission = !is_zero(d->diffuse_transmission);
+  p->has_coat = !is_zero(d->clearcoat);
+  p->has_film = !is_zero(d->iridescence);
+  p->has_anisotropy = !is_zero(d->anisotropy);
+  p->has_transmission = !is_zero(d->diffuse_transmission);
   const vlSpectrum *sheen = &d->sheen_color.value;
   float grey;
   bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||

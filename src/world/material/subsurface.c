@@ -16,7 +16,11 @@ static bool set_table(vlWorld *world, float eta, float g, vlWorldSubsurface *s) 
   const vlWorldSubsurface *known = find(world, eta, g);
   if (!known && world->previous && (known = find(world->previous, eta, g)) && !vl_part_share(world, known->part))
     return false;
-  if (known) return s->table = known->table, s->part = known->part, true;
+  if (known) {
+    s->table = known->table;
+    s->part = known->part;
+    return true;
+  }
   vlPart *part = s->part = vl_part_add(world);
   if (!part) return false;
   world->part = part;

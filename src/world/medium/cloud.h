@@ -25,7 +25,8 @@ static inline float vl_medium_density_cloud(const vlWorldMedium *m, vlVec3 p, vl
     frequency *= 1.99f;
   }
   float sum = 0;
-  omega = 0.5f, frequency = 1.0f;
+  omega = 0.5f;
+  frequency = 1.0f;
   for (int i = 0; i < 5; i++) {
     sum += omega * vl_noise(frequency * q.x, frequency * q.y, frequency * q.z);
     omega *= 0.5f;

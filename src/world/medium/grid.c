@@ -33,7 +33,10 @@ static bool copy_rgb_grid(vlWorld *world, const vlMediumDef *def, const float *f
     }
     float inv = high > 0 ? 0.5f / high : 0;
     vlSigmoid s = vl_rgb_table_lookup(table, rgb[0] * inv, rgb[1] * inv, rgb[2] * inv);
-    v[0] = s.c0, v[1] = s.c1, v[2] = s.c2, v[3] = 2 * high;
+    v[0] = s.c0;
+    v[1] = s.c1;
+    v[2] = s.c2;
+    v[3] = 2 * high;
   }
   *to = (vlDenseGrid){def->nx, def->ny, def->nz, values};
   return true;
@@ -109,7 +112,10 @@ static vlResult compile_cells(vlWorld *world, const vlMediumDef *def, vlWorldMed
     /* pbrt-v4 multiplies by the illuminant of the colour space, scaled to the luminance of a constant spectrum of 1. */
     double sum = 0, whole = 0;
     const float *y = vl_cie_y(), *illuminant = vl_space_illuminant(def->space);
-    for (int i = 0; i < VL_LAMBDA_COUNT; i++) sum += (double)y[i] * (double)illuminant[i], whole += (double)y[i];
+    for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+      sum += (double)y[i] * (double)illuminant[i];
+      whole += (double)y[i];
+    }
     m->grey = m->scatters = true;
     m->emits = def->rgb_emission && def->emission_scale > 0;
     m->rgb_scale = def->scale;

@@ -49,7 +49,9 @@ static inline float vl_dense_lookup(const vlDenseGrid *g, vlVec3 q) {
 
 static inline float vl_sparse_value(const vlSparseGrid *g, int32_t x, int32_t y, int32_t z) {
   int64_t bx = (int64_t)x - g->low[0], by = (int64_t)y - g->low[1], bz = (int64_t)z - g->low[2];
-  bx >>= 7, by >>= 7, bz >>= 7;
+  bx >>= 7;
+  by >>= 7;
+  bz >>= 7;
   if (bx < 0 || by < 0 || bz < 0 || bx >= g->size[0] || by >= g->size[1] || bz >= g->size[2]) return g->tiles[0];
   uint32_t block = g->blocks[((size_t)bz * g->size[1] + (size_t)by) * g->size[0] + (size_t)bx];
   if (block & VL_SPARSE_TILE) return g->tiles[block & ~VL_SPARSE_TILE];

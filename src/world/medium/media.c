@@ -81,7 +81,9 @@ vlResult vl_medium_temperature(vlWorld *world, const vlMediumDef *def, vlWorldMe
 }
 
 float *vl_medium_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_t y, uint32_t z) {
-  m->cells[0] = x, m->cells[1] = y, m->cells[2] = z;
+  m->cells[0] = x;
+  m->cells[1] = y;
+  m->cells[2] = z;
   float *majorants = vl_world_block(world, (size_t)x * y * z, sizeof *majorants);
   m->majorants = majorants;
   return majorants;
@@ -90,7 +92,9 @@ float *vl_medium_majorants(vlWorld *world, vlWorldMedium *m, uint32_t x, uint32_
 /* ---- all --------------------------------------------------------------------------------------------------------- */
 
 vlResult vl_compile_medium_homogeneous(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
-  (void)world, (void)def, (void)error;
+  (void)world;
+  (void)def;
+  (void)error;
   m->uniform = true;
   m->extinction = vl_medium_mean_extinction(m);
   return VL_OK;

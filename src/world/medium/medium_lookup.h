@@ -70,7 +70,10 @@ static inline vlMediumLight vl_medium_coefficients(const vlWorldMedium *m, const
 
 static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float lambda[4], vlVec3 q, bool emission) {
   vlMediumLight r;
-  for (int c = 0; c < 4; c++) r.a[c] = r.s[c] = m->rgb_scale, r.le[c] = 0.0f;
+  for (int c = 0; c < 4; c++) {
+    r.a[c] = r.s[c] = m->rgb_scale;
+    r.le[c] = 0.0f;
+  }
   if (m->rgb_a.values) vl_rgb_lookup(m, &m->rgb_a, lambda, q, m->rgb_scale, r.a);
   if (m->rgb_s.values) vl_rgb_lookup(m, &m->rgb_s, lambda, q, m->rgb_scale, r.s);
   if (!emission || !m->rgb_emission.values) return r;
@@ -80,11 +83,15 @@ static inline vlMediumLight vl_rgb_medium_at(const vlWorldMedium *m, const float
 }
 
 static inline float vl_medium_density_homogeneous(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)m, (void)p, (void)q;
+  (void)m;
+  (void)p;
+  (void)q;
   return 1.0f;
 }
 static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
-  (void)m, (void)p, (void)q;
+  (void)m;
+  (void)p;
+  (void)q;
   return 1.0f;
 }
 
@@ -108,7 +115,11 @@ static inline vlMediumLight vl_medium_at(const vlWorldMedium *m, const vlMediumL
   float density = vl_medium_density(m, p, q);
   density = density > 0.0f ? density : 0.0f;
   vlMediumLight r;
-  for (int c = 0; c < 4; c++) r.a[c] = density * whole->a[c], r.s[c] = density * whole->s[c], r.le[c] = 0.0f;
+  for (int c = 0; c < 4; c++) {
+    r.a[c] = density * whole->a[c];
+    r.s[c] = density * whole->s[c];
+    r.le[c] = 0.0f;
+  }
   if (!emission || !m->emits) return r;
   float scale = m->emission_scales.values ? vl_dense_lookup(&m->emission_scales, q) : 1.0f;
   if (m->temperature.values)
@@ -159,11 +170,13 @@ static inline bool vl_majorant_start(const vlWorldMedium *m, vlVec3 o, vlVec3 d,
       continue;
     }
     float a = (m->low[i] - from[i]) / along[i], b = (m->high[i] - from[i]) / along[i];
-    t0 = vl_max(t0, vl_min(a, b)), t1 = vl_min(t1, vl_max(a, b));
+    t0 = vl_max(t0, vl_min(a, b));
+    t1 = vl_min(t1, vl_max(a, b));
   }
   if (!(t0 < t1)) return false;
   w->medium = m;
-  w->t = t0, w->end = t1;
+  w->t = t0;
+  w->end = t1;
   for (int i = 0; i < 3; i++) {
     float n = (float)m->cells[i], scale = n / (m->high[i] - m->low[i]);
     float here = (from[i] + t0 * along[i] - m->low[i]) * scale, speed = along[i] * scale;

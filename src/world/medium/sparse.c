@@ -26,7 +26,8 @@ static void raise(const vlWorldMedium *m, float *majorants, const double medium_
     }
     /* 1.001 voxels and 1e-3 of a cell: more than the rounding of lookups in float */
     double scale = m->cells[i] / ((double)m->high[i] - (double)m->low[i]);
-    low = floor((low - (double)m->low[i]) * scale - 1e-3), high = floor((high - (double)m->low[i]) * scale + 1e-3);
+    low = floor((low - (double)m->low[i]) * scale - 1e-3);
+    high = floor((high - (double)m->low[i]) * scale + 1e-3);
     if (high < 0 || low > m->cells[i] - 1) return;
     first[i] = low > 0 ? (int32_t)low : 0;
     last[i] = high < m->cells[i] - 1 ? (int32_t)high : (int32_t)m->cells[i] - 1;
@@ -60,7 +61,10 @@ static void bound_sparse(const vlWorldMedium *m, float *majorants, const double 
   for (uint32_t i = 0; i < g->size[0] * g->size[1] * g->size[2]; i++) {
     uint32_t at[3] = {i % g->size[0], i / g->size[0] % g->size[1], i / g->size[0] / g->size[1]}, block = g->blocks[i];
     int32_t corner[3], end[3];
-    for (int k = 0; k < 3; k++) corner[k] = g->low[k] + (int32_t)at[k] * VL_BLOCK, end[k] = corner[k] + VL_BLOCK - 1;
+    for (int k = 0; k < 3; k++) {
+      corner[k] = g->low[k] + (int32_t)at[k] * VL_BLOCK;
+      end[k] = corner[k] + VL_BLOCK - 1;
+    }
     if (block & VL_SPARSE_TILE) {
       float value = g->tiles[block & ~VL_SPARSE_TILE];
       if (value > 0) raise(m, majorants, medium_from_index, corner, end, value);
@@ -70,7 +74,10 @@ static void bound_sparse(const vlWorldMedium *m, float *majorants, const double 
       uint32_t brick = g->bricks[(size_t)block * VL_BLOCK_BRICKS + j];
       const uint32_t step[3] = {j & 15, j >> 4 & 15, j >> 8};
       int32_t c[3], e[3];
-      for (int k = 0; k < 3; k++) c[k] = corner[k] + (int32_t)step[k] * VL_BRICK, e[k] = c[k] + VL_BRICK - 1;
+      for (int k = 0; k < 3; k++) {
+        c[k] = corner[k] + (int32_t)step[k] * VL_BRICK;
+        e[k] = c[k] + VL_BRICK - 1;
+      }
       if (!(brick & VL_SPARSE_TILE)) {
         raise_brick(m, majorants, medium_from_index, g->values + (size_t)brick * VL_BRICK_VALUES, c);
       } else if (g->tiles[brick & ~VL_SPARSE_TILE] > 0) {
@@ -90,7 +97,10 @@ vlResult vl_compile_medium_nanovdb(vlWorld *world, const vlMediumDef *def, vlWor
   if (r != VL_OK) return r;
   if (heat && !m->sparse_temperature)
     return vl_fail(error, VL_ERROR_SCENE, "%s: it has no grid \"%s\"", def->path, vl_short_text(heat).text);
-  for (int i = 0; i < 3; i++) m->low[i] = INFINITY, m->high[i] = -INFINITY;
+  for (int i = 0; i < 3; i++) {
+    m->low[i] = INFINITY;
+    m->high[i] = -INFINITY;
+  }
   grow_box(m->sparse, m);
   if (m->sparse_temperature) grow_box(m->sparse_temperature, m);
   for (int i = 0; i < 3; i++)

@@ -59,7 +59,8 @@ static bool grow_edges(Cutter *c) {
   for (size_t i = 0; i < c->edge_capacity; i++)
     if (c->edges[i].key) edges[slot_of(edges, capacity, c->edges[i].key)] = c->edges[i];
   vl_free(c->context, c->edges);
-  c->edges = edges, c->edge_capacity = capacity;
+  c->edges = edges;
+  c->edge_capacity = capacity;
   return true;
 }
 
@@ -160,7 +161,10 @@ static void find_normals(Cutter *c, const uint32_t *indices, size_t faces) {
     const float *p = c->p.items + 3 * (size_t)v[0], *q = c->p.items + 3 * (size_t)v[1],
                 *r = c->p.items + 3 * (size_t)v[2];
     float a[3], b[3];
-    for (int i = 0; i < 3; i++) a[i] = q[i] - p[i], b[i] = r[i] - p[i];
+    for (int i = 0; i < 3; i++) {
+      a[i] = q[i] - p[i];
+      b[i] = r[i] - p[i];
+    }
     float n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     for (int k = 0; k < 3; k++)
       for (int i = 0; i < 3; i++) c->n.items[3 * (size_t)v[k] + i] += n[i];
@@ -173,7 +177,8 @@ static bool start(Cutter *c, const vlShapeDef *def) {
   if (!VL_RESERVE(c->context, &c->p, 3 * n) || !VL_RESERVE(c->context, &c->n, 3 * n) ||
       !VL_RESERVE(c->context, &c->uv, 2 * n))
     return false;
-  c->p.count = c->n.count = 3 * n, c->uv.count = 2 * n;
+  c->p.count = c->n.count = 3 * n;
+  c->uv.count = 2 * n;
   memcpy(c->p.items, def->positions, 3 * n * sizeof(float));
   memset(c->uv.items, 0, 2 * n * sizeof(float));
   if (def->uvs) memcpy(c->uv.items, def->uvs, 2 * n * sizeof(float));

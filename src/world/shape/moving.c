@@ -245,8 +245,12 @@ static void map(const float m[12], const double p[3], double q[3]) {
 /* Applies the inverse of m in double precision; vlWorldInstance.to_group is rounded to float. */
 static void unmap(const float m[12], const double p[3], double q[3]) {
   double x[3], y[3], z[3], r[3], n[3];
-  for (int i = 0; i < 3; i++)
-    x[i] = m[4 * i], y[i] = m[4 * i + 1], z[i] = m[4 * i + 2], r[i] = p[i] - (double)m[4 * i + 3];
+  for (int i = 0; i < 3; i++) {
+    x[i] = m[4 * i];
+    y[i] = m[4 * i + 1];
+    z[i] = m[4 * i + 2];
+    r[i] = p[i] - (double)m[4 * i + 3];
+  }
   vl_cross3(y, z, n);
   double volume = vl_dot3(x, n);
   q[0] = vl_dot3(r, n) / volume;
@@ -268,7 +272,11 @@ static void corners(const vlWorldShape *s, uint32_t prim, float time, double c[3
 static void follow_triangle(const vlWorldShape *s, uint32_t prim, float from, float to, double p[3]) {
   double c[3][3], a[3], b[3], r[3], n[3], x[3];
   corners(s, prim, from, c);
-  for (int i = 0; i < 3; i++) a[i] = c[1][i] - c[0][i], b[i] = c[2][i] - c[0][i], r[i] = p[i] - c[0][i];
+  for (int i = 0; i < 3; i++) {
+    a[i] = c[1][i] - c[0][i];
+    b[i] = c[2][i] - c[0][i];
+    r[i] = p[i] - c[0][i];
+  }
   vl_cross3(a, b, n);
   double area = vl_dot3(n, n);
   if (!(area > 0)) return;

@@ -72,7 +72,10 @@ static bool patch_intersect(const vlWorldShape *s, uint32_t prim, const double o
     if (!(u >= -overlap && u <= 1 + overlap)) continue;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     double base[3], e[3], x[3];
-    for (int i = 0; i < 3; i++) base[i] = a0[i] + u * a1[i], e[i] = e0[i] + u * e1[i];
+    for (int i = 0; i < 3; i++) {
+      base[i] = a0[i] + u * a1[i];
+      e[i] = e0[i] + u * e1[i];
+    }
     /* Solves base + v e = t d with the normal of the plane that d and e span. */
     vl_cross3(d, e, x);
     double den = vl_dot3(x, x);
@@ -140,18 +143,23 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
   vl_normal_derivative(point->n, length, point->dndu);
   vl_normal_derivative(point->n, length, point->dndv);
   double w[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-  point->uv[0] = (float)u, point->uv[1] = (float)v;
+  point->uv[0] = (float)u;
+  point->uv[1] = (float)v;
   if (s->uvs) {
     double a = 0, b = 0;
     for (int k = 0; k < 4; k++) {
       a += w[k] * s->uvs[2 * (size_t)q.index[k]];
       b += w[k] * s->uvs[2 * (size_t)q.index[k] + 1];
     }
-    point->uv[0] = (float)a, point->uv[1] = (float)b;
+    point->uv[0] = (float)a;
+    point->uv[1] = (float)b;
   }
   if (s->flip)
-    for (int i = 0; i < 3; i++)
-      point->n[i] = -point->n[i], point->dndu[i] = -point->dndu[i], point->dndv[i] = -point->dndv[i];
+    for (int i = 0; i < 3; i++) {
+      point->n[i] = -point->n[i];
+      point->dndu[i] = -point->dndu[i];
+      point->dndv[i] = -point->dndv[i];
+    }
   for (int i = 0; i < 3; i++) point->ns[i] = point->n[i];
   if (s->normals) {
     double ns[3] = {0, 0, 0};
@@ -163,7 +171,10 @@ static void surface_at(const vlWorldShape *s, uint32_t prim, double u, double v,
       vl_normal_derivative(ns, length, point->dndv);
       /* The geometric normal is flipped to the side of the shading normal. */
       double side = vl_dot3(ns, point->n) < 0 ? -1 : 1;
-      for (int i = 0; i < 3; i++) point->ns[i] = ns[i], point->n[i] *= side;
+      for (int i = 0; i < 3; i++) {
+        point->ns[i] = ns[i];
+        point->n[i] *= side;
+      }
     }
   }
   if (s->uvs) over_texture(s, &q, u, v, point);
@@ -199,7 +210,8 @@ static double patch_pdf(const vlWorldShape *shape, uint32_t prim, const double a
     double det = a * c - b * b;
     if (!(det > 0)) break;
     double su = (c * e - b * f) / det, sv = (a * f - b * e) / det;
-    u += su, v += sv;
+    u += su;
+    v += sv;
     u = u < 0 ? 0 : u > 1 ? 1 : u;
     v = v < 0 ? 0 : v > 1 ? 1 : v;
     if (fabs(su) + fabs(sv) < 1e-9) break; /* the next step would be about 1e-18 */

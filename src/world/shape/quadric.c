@@ -22,7 +22,8 @@ static Quadric load(const vlWorldShape *s, uint32_t prim) {
                s->phi_max, s->height, NULL,      s->from_shape,   s->to_shape};
   if (s->centers) {
     q.center = s->centers + 3 * (size_t)prim;
-    q.radius = q.z_max = s->radii[prim], q.z_min = -q.radius;
+    q.radius = q.z_max = s->radii[prim];
+    q.z_min = -q.radius;
   }
   return q;
 }
@@ -66,7 +67,8 @@ static bool try_root(const Quadric *s, const double o[3], const double d[3], dou
     p[2] = s->height;
   } else if (r2 > 0) {
     double f = s->radius / sqrt(r2);
-    p[0] *= f, p[1] *= f;
+    p[0] *= f;
+    p[1] *= f;
     if (s->kind == VL_SHAPE_SPHERE) p[2] *= f;
   }
   if (!inside_limits(s, p)) return false;
@@ -129,7 +131,9 @@ static inline double theta_of(double z, double r) {
 static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu[3], double dpdv[3], float uv[2]) {
   double phi = angle_of(p);
   uv[0] = (float)(phi / s->phi_max);
-  dpdu[0] = -s->phi_max * p[1], dpdu[1] = s->phi_max * p[0], dpdu[2] = 0;
+  dpdu[0] = -s->phi_max * p[1];
+  dpdu[1] = s->phi_max * p[0];
+  dpdu[2] = 0;
   if (s->kind == VL_SHAPE_SPHERE) {
     double r = s->radius;
     double low = theta_of(s->z_min, r), high = theta_of(s->z_max, r);
@@ -137,18 +141,29 @@ static void quadric_derivatives(const Quadric *s, const double p[3], double dpdu
     uv[1] = (float)((theta - low) / (high - low));
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     double cos_phi = radial > 0 ? p[0] / radial : 1, sin_phi = radial > 0 ? p[1] / radial : 0;
-    if (!(radial > 0))
-      dpdu[0] = 0, dpdu[1] = s->phi_max * 1e-12; /* at the poles any direction of a length near 0 is valid */
-    dpdv[0] = (high - low) * p[2] * cos_phi, dpdv[1] = (high - low) * p[2] * sin_phi, dpdv[2] = -(high - low) * radial;
+    if (!(radial > 0)) {
+      dpdu[0] = 0;
+      dpdu[1] = s->phi_max * 1e-12;
+    } /* at the poles any direction of a length near 0 is valid */
+    dpdv[0] = (high - low) * p[2] * cos_phi;
+    dpdv[1] = (high - low) * p[2] * sin_phi;
+    dpdv[2] = -(high - low) * radial;
   } else if (s->kind == VL_SHAPE_CYLINDER) {
     uv[1] = (float)((p[2] - s->z_min) / (s->z_max - s->z_min));
-    dpdv[0] = 0, dpdv[1] = 0, dpdv[2] = s->z_max - s->z_min;
+    dpdv[0] = 0;
+    dpdv[1] = 0;
+    dpdv[2] = s->z_max - s->z_min;
   } else {
     double radial = sqrt(p[0] * p[0] + p[1] * p[1]);
     uv[1] = (float)((s->radius - radial) / (s->radius - s->inner_radius));
     double f = radial > 0 ? (s->inner_radius - s->radius) / radial : 0;
-    dpdv[0] = p[0] * f, dpdv[1] = p[1] * f, dpdv[2] = 0;
-    if (!(radial > 0)) dpdu[1] = s->phi_max * 1e-12, dpdv[0] = -1;
+    dpdv[0] = p[0] * f;
+    dpdv[1] = p[1] * f;
+    dpdv[2] = 0;
+    if (!(radial > 0)) {
+      dpdu[1] = s->phi_max * 1e-12;
+      dpdv[0] = -1;
+    }
   }
 }
 
@@ -184,14 +199,18 @@ static void describe(const Quadric *s, const double p[3], vlSurfacePoint *point)
   double length = vl_normalize3(point->n), side = s->flip ? -1 : 1;
   double bend = s->kind == VL_SHAPE_DISK || !(s->radius > 0) ? 0 : 1.0 / s->radius;
   if (s->kind == VL_SHAPE_CYLINDER) dpdv[2] = 0; /* the normal of a cylinder does not change along its axis */
-  for (int i = 0; i < 3; i++) dpdu[i] *= bend, dpdv[i] *= bend;
+  for (int i = 0; i < 3; i++) {
+    dpdu[i] *= bend;
+    dpdv[i] *= bend;
+  }
   vl_map_normal(s->to_shape, dpdu, point->dndu);
   vl_map_normal(s->to_shape, dpdv, point->dndv);
   vl_normal_derivative(point->n, length, point->dndu);
   vl_normal_derivative(point->n, length, point->dndv);
   for (int i = 0; i < 3; i++) {
     point->ns[i] = point->n[i] = side * point->n[i];
-    point->dndu[i] *= side, point->dndv[i] *= side;
+    point->dndu[i] *= side;
+    point->dndv[i] *= side;
   }
 }
 
@@ -237,11 +256,15 @@ static void quadric_sample(const vlWorldShape *shape, uint32_t prim, float u, fl
   if (s->kind == VL_SHAPE_DISK) {
     double inner2 = (double)s->inner_radius * s->inner_radius, outer2 = (double)s->radius * s->radius;
     double r = sqrt(inner2 + v * (outer2 - inner2));
-    p[0] = r * x, p[1] = r * y, p[2] = s->height;
+    p[0] = r * x;
+    p[1] = r * y;
+    p[2] = s->height;
   } else {
     double z = s->z_min + v * ((double)s->z_max - s->z_min);
     double r = s->kind == VL_SHAPE_SPHERE ? sqrt(fmax(0, (double)s->radius * s->radius - z * z)) : s->radius;
-    p[0] = r * x, p[1] = r * y, p[2] = z;
+    p[0] = r * x;
+    p[1] = r * y;
+    p[2] = z;
   }
   describe(s, p, point);
   double n[3];
@@ -270,7 +293,8 @@ static vlResult copy_spheres(vlWorld *world, const vlShapeDef *def, vlWorldShape
 
 static vlResult quadric_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
                                 vlWorldShape *shape, vlError *error) {
-  (void)to_group, (void)from_group;
+  (void)to_group;
+  (void)from_group;
   return def->centers ? copy_spheres(world, def, shape, error) : VL_OK;
 }
 

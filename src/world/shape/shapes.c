@@ -54,7 +54,10 @@ static void grow_bounds(float low[3], float high[3], const float p[3]) {
 }
 
 static void compute_bounds(const vlWorldShape *s, float low[3], float high[3]) {
-  for (int i = 0; i < 3; i++) low[i] = INFINITY, high[i] = -INFINITY;
+  for (int i = 0; i < 3; i++) {
+    low[i] = INFINITY;
+    high[i] = -INFINITY;
+  }
   if (vl_shape_is_mesh(s->kind)) { /* the box covers all time steps */
     for (size_t i = 0; i < (size_t)s->steps * s->vertices; i++) grow_bounds(low, high, s->positions + 3 * i);
     return;
@@ -123,7 +126,10 @@ static vlResult add_shape(vlWorld *world, const vlScene *scene, size_t index, vl
   if (cut != VL_OK) return cut;
   s->pass_shadow = world->materials.items[s->material].kind == VL_MATERIAL_INTERFACE;
   world->has_subsurface = world->has_subsurface || world->materials.items[s->material].has_subsurface;
-  s->radius = def->radius, s->inner_radius = def->inner_radius, s->height = def->height, s->phi_max = def->phi_max;
+  s->radius = def->radius;
+  s->inner_radius = def->inner_radius;
+  s->height = def->height;
+  s->phi_max = def->phi_max;
   s->z_min = def->z_min < def->z_max ? def->z_min : def->z_max;
   s->z_max = def->z_min < def->z_max ? def->z_max : def->z_min;
   if (def->kind == VL_SHAPE_SPHERE) {
@@ -150,7 +156,10 @@ static void shape_bounds(const vlWorld *world, size_t index, float low[3], float
 }
 
 static void set_group_bounds(const vlWorld *world, vlWorldGroup *group) {
-  for (int i = 0; i < 3; i++) group->low[i] = INFINITY, group->high[i] = -INFINITY;
+  for (int i = 0; i < 3; i++) {
+    group->low[i] = INFINITY;
+    group->high[i] = -INFINITY;
+  }
   for (uint32_t i = 0; i < group->count; i++) shape_bounds(world, group->shapes[i], group->low, group->high);
 }
 
@@ -215,7 +224,10 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     shape_bounds(world, root->shapes[i], a, b);
     check_edges(world, a, b, s->kind == VL_SHAPE_TRIANGLES ? s->faces : 0, source, &warned);
-    if (a[0] <= b[0]) grow_bounds(low, high, a), grow_bounds(low, high, b);
+    if (a[0] <= b[0]) {
+      grow_bounds(low, high, a);
+      grow_bounds(low, high, b);
+    }
     vlResult r = check_reach(low, high, source, error);
     if (r != VL_OK) return r;
   }
@@ -227,13 +239,17 @@ static vlResult set_world_bounds(vlWorld *world, const vlScene *scene, vlError *
     float a[3] = {INFINITY, INFINITY, INFINITY}, b[3] = {-INFINITY, -INFINITY, -INFINITY};
     instance_bounds(world, instance, a, b);
     check_edges(world, a, b, group_triangles(world, &world->groups.items[instance->group]), source, &warned);
-    if (a[0] <= b[0]) grow_bounds(low, high, a), grow_bounds(low, high, b);
+    if (a[0] <= b[0]) {
+      grow_bounds(low, high, a);
+      grow_bounds(low, high, b);
+    }
     vlResult r = check_reach(low, high, source, error);
     if (r != VL_OK) return r;
   }
   for (int i = 0; i < 3; i++) {
     if (low[i] > high[i]) low[i] = high[i] = 0;
-    world->bounds_min[i] = low[i], world->bounds_max[i] = high[i];
+    world->bounds_min[i] = low[i];
+    world->bounds_max[i] = high[i];
     world->center[i] = 0.5f * (low[i] + high[i]);
   }
   float d[3] = {high[0] - world->center[0], high[1] - world->center[1], high[2] - world->center[2]};

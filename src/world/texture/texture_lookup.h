@@ -107,14 +107,20 @@ static inline vlTexel vl_texel_2(const vlMipmap *mip, uint32_t level, int32_t x,
                                  vlWrap wrap_t) {
   int32_t w = (int32_t)mip->levels[level].width, h = (int32_t)mip->levels[level].height;
   if (wrap == VL_WRAP_OCTAHEDRAL) { /* the square's edges fold onto themselves (pbrt book 3.8.3) */
-    if (x < 0)
-      x = -x - 1, y = h - 1 - y;
-    else if (x >= w)
-      x = 2 * w - 1 - x, y = h - 1 - y;
-    if (y < 0)
-      x = w - 1 - x, y = -y - 1;
-    else if (y >= h)
-      x = w - 1 - x, y = 2 * h - 1 - y;
+    if (x < 0) {
+      x = -x - 1;
+      y = h - 1 - y;
+    } else if (x >= w) {
+      x = 2 * w - 1 - x;
+      y = h - 1 - y;
+    }
+    if (y < 0) {
+      x = w - 1 - x;
+      y = -y - 1;
+    } else if (y >= h) {
+      x = w - 1 - x;
+      y = 2 * h - 1 - y;
+    }
     wrap = wrap_t = VL_WRAP_CLAMP;
   }
   x = vl_wrap_index(x, w, wrap);
@@ -174,16 +180,22 @@ static inline bool vl_texel_square(const vlMipmap *mip, uint32_t level, float s,
   float fx = s * (float)l->width - 0.5f, fy = t * (float)l->height - 0.5f;
   int32_t xi = vl_to_index(fx), yi = vl_to_index(fy);
   float dx = fx - (float)xi, dy = fy - (float)yi;
-  q->w[0] = (1 - dx) * (1 - dy), q->w[1] = dx * (1 - dy), q->w[2] = (1 - dx) * dy, q->w[3] = dx * dy;
-  *x = xi, *y = yi;
+  q->w[0] = (1 - dx) * (1 - dy);
+  q->w[1] = dx * (1 - dy);
+  q->w[2] = (1 - dx) * dy;
+  q->w[3] = dx * dy;
+  *x = xi;
+  *y = yi;
   if (!(wrap != VL_WRAP_OCTAHEDRAL && dx >= 0.0f && dx <= 1.0f && dy >= 0.0f && dy <= 1.0f)) return false;
   int32_t x0 = vl_wrap_index(xi, (int32_t)l->width, wrap), x1 = vl_wrap_next(xi, x0, (int32_t)l->width, wrap);
   int32_t y0 = vl_wrap_index(yi, (int32_t)l->height, wrap_t), y1 = vl_wrap_next(yi, y0, (int32_t)l->height, wrap_t);
   if ((x0 | x1 | y0 | y1) < 0) return false;
   uint32_t n = mip->channels;
   size_t pitch = (size_t)l->width * n;
-  q->row[0] = (size_t)y0 * pitch, q->row[1] = (size_t)y1 * pitch;
-  q->column[0] = (uint32_t)x0 * n, q->column[1] = (uint32_t)x1 * n;
+  q->row[0] = (size_t)y0 * pitch;
+  q->row[1] = (size_t)y1 * pitch;
+  q->column[0] = (uint32_t)x0 * n;
+  q->column[1] = (uint32_t)x1 * n;
   return true;
 }
 /* Bilinear lookup in one level. (s, t) = (0, 0) is the top left corner of the image. */
@@ -238,7 +250,8 @@ static inline __attribute__((always_inline)) vlFilterPlan vl_filter_plan(float w
   plan.level = reduces ? level : whole;
   plan.taps = reduces ? taps : 1;
   float s = first ? a.x : b.x, t = first ? a.y : b.y;
-  plan.s = reduces ? s : 0.0f, plan.t = reduces ? t : 0.0f;
+  plan.s = reduces ? s : 0.0f;
+  plan.t = reduces ? t : 0.0f;
   return plan;
 }
 static inline vlFilterPlan vl_filter_plan_of(const vlMipmap *mip, const float axes[4]) {
@@ -348,7 +361,10 @@ static inline vlTexel vl_texture_rgba(const vlTextureNode *node, const vlMipmap 
   if (mip) {
     uint32_t n = mip->channels;
     t = vl_texture_image(node, mip, at);
-    if (n < 3) t.c[3] = n == 2 ? t.c[1] : 1.0f, t.c[1] = t.c[2] = t.c[0];
+    if (n < 3) {
+      t.c[3] = n == 2 ? t.c[1] : 1.0f;
+      t.c[1] = t.c[2] = t.c[0];
+    }
     if (n == 3) t.c[3] = 1.0f;
   }
   for (int c = 0; c < 4; c++) t.c[c] *= node->colors ? node->tint[c] * at.color[c] : node->tint[c];

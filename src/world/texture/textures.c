@@ -141,9 +141,14 @@ static vlResult load_image(const vlWorld *world, const Image *p, vlMipmap **mipm
 static vlImageKey key_of(const Image *p) {
   vlImageKey key;
   memset(&key, 0, sizeof key);
-  key.pyramid = p->pyramid, key.keep_coverage = p->keep_coverage, key.owner = p->owner;
+  key.pyramid = p->pyramid;
+  key.keep_coverage = p->keep_coverage;
+  key.owner = p->owner;
   key.encoding_given = p->encoding != NULL;
-  if (p->encoding) key.encoding = *p->encoding, key.gamma = p->gamma;
+  if (p->encoding) {
+    key.encoding = *p->encoding;
+    key.gamma = p->gamma;
+  }
   key.stamp = vl_file_stamp(p->path);
   return key;
 }
@@ -188,7 +193,10 @@ static void free_mipmap(vlContext *context, void *mipmap) {
 static int32_t push_image(vlWorld *world, vlMipmap *mipmap, const vlImageKey *key, vlError *error) {
   vlPart *part = vl_part_add(world);
   vlWorldImage *entry = part ? VL_PUSH(world->context, &world->images) : NULL;
-  if (part) part->destroy = free_mipmap, part->object = mipmap;
+  if (part) {
+    part->destroy = free_mipmap;
+    part->object = mipmap;
+  }
   if (!part) vl_mipmap_destroy(mipmap);
   if (!entry) {
     vl_fail_memory(error);
@@ -482,12 +490,16 @@ bool vl_node_has_rgb_colors(const vlWorld *world, int32_t node) {
 
 /* Parameters of image and vertex-colour textures other than the image. */
 static void fill_image_node(const vlTextureDef *def, vlTextureNode *node) {
-  node->wrap = def->wrap, node->filter = def->filter, node->scale = def->scale, node->invert = def->invert;
+  node->wrap = def->wrap;
+  node->filter = def->filter;
+  node->scale = def->scale;
+  node->invert = def->invert;
   node->wrap_t = def->wrap_t_given ? def->wrap_t : def->wrap;
   node->colors = def->colors || def->kind == VL_TEXTURE_VERTEX_COLOR;
   node->channel = (int8_t)def->channel;
   node->uv_set = (uint8_t)def->uv_set;
-  node->bias = def->bias, node->cutoff = (float)def->cutoff;
+  node->bias = def->bias;
+  node->cutoff = (float)def->cutoff;
   memcpy(node->tint, def->tint, sizeof node->tint);
   node->st_given = def->st_from_uv_given;
   memcpy(node->st, def->st_from_uv, sizeof node->st);
@@ -528,12 +540,17 @@ static int32_t compile_texture(Compile *c, uint32_t index, int role, int nesting
   node.role = def->spectrum ? (vlSpectrumRole)role : VL_ROLE_UNBOUNDED;
   node.space = def->space;
   node.mapping = def->mapping;
-  node.su = def->su, node.sv = def->sv, node.du = def->du, node.dv = def->dv;
+  node.su = def->su;
+  node.sv = def->sv;
+  node.du = def->du;
+  node.dv = def->dv;
   memcpy(node.v1, def->planar_v1, sizeof node.v1);
   memcpy(node.v2, def->planar_v2, sizeof node.v2);
   for (int i = 0; i < 12; i++) node.texture_from_world[i] = (float)def->texture_from_world[i];
   node.dimension = def->dimension;
-  node.octaves = def->octaves < 64 ? def->octaves : 64, node.omega = def->omega, node.variation = def->variation;
+  node.octaves = def->octaves < 64 ? def->octaves : 64;
+  node.omega = def->omega;
+  node.variation = def->variation;
   memcpy(node.direction, def->direction, sizeof node.direction);
   fill_image_node(def, &node);
   if (def->kind == VL_TEXTURE_CONSTANT) { /* a constant texture compiles to its input's node */
@@ -638,7 +655,9 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
 
 vlResult vl_world_mix_node(vlWorld *world, int32_t a, int32_t b, int32_t amount, int32_t *node, vlError *error) {
   vlTextureNode mix = empty_node(VL_NODE_MIX);
-  mix.a = a, mix.b = b, mix.amount = amount;
+  mix.a = a;
+  mix.b = b;
+  mix.amount = amount;
   if (!weigh(world, &mix)) return vl_fail(error, VL_ERROR_SCENE, "textures are nested too deep");
   *node = push_node(world, &mix);
   return *node == VL_TEXTURE_NO_MEMORY ? vl_fail_memory(error) : VL_OK;

@@ -34,8 +34,7 @@ double ior_of(const world *w, const vlSpectrumInput *eta, const wavelengths *lam
 
 /* A metal's index of refraction; for a metal of a given reflectance r at normal incidence eta = 1,
  * k = 2 sqrt(r / (1 - r)). */
-static void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
-                       bsdf *b) {
+void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b) {
   b->eta = gray(1);
   if (!m->use_reflectance) {
     b->eta = spectrum_at(w, &m->eta, VL_PARAMETER_UNBOUNDED, at, lambda);

@@ -13,3 +13,5 @@ spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_reco
 double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at);
 /* A dielectric's index of refraction. An RGB render has one: that of catalogues, at the yellow line of sodium. */
 double ior_of(const world *w, const vlSpectrumInput *eta, const wavelengths *lambda);
+/* eta and k of a metal. */
+void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b);

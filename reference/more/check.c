@@ -20,10 +20,7 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
 }
 
 static bool check_material(const vlMaterialDef *def, vlError *error) {
-  vlSpectrum albedo = def->albedo.value;
-  bool clear = !def->albedo.texture.index && albedo.value == 0 && albedo.kind == VL_SPECTRUM_CONSTANT;
   bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
-  if (coated && !clear) return refuse(error, def->source, "a coat that scatters light");
   if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
   if (def->displacement.texture.index || def->displacement.value != 0) return refuse(error, def->source, "a bump map");
   if (def->normal_map) return refuse(error, def->source, "a normal map");
@@ -34,6 +31,9 @@ static bool check_material(const vlMaterialDef *def, vlError *error) {
     case VL_MATERIAL_MIX:
     case VL_MATERIAL_INTERFACE:
     case VL_MATERIAL_COATED_DIFFUSE:
+    case VL_MATERIAL_COATED_CONDUCTOR:
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
+    case VL_MATERIAL_THIN_DIELECTRIC:
     case VL_MATERIAL_HAIR: return true;
     default: return refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
   }

@@ -1,19 +1,22 @@
-/* more/coated.c: a diffuse surface under a clear coat (pbrt book 14.3), by random walk: light enters through the coat,
- * is scattered by the base, and is reflected between base and coat until it leaves. The coat absorbs; it does not
- * scatter. Walks give values with noise; directions are drawn from a simple density, so that density and value may be
- * asked for any direction. */
+/* more/coated.c: a diffuse surface or a metal under a coat (pbrt book 14.3), by random walk: light enters through the
+ * coat, is scattered by the medium under it and by the base, and is reflected between base and coat until it leaves.
+ * Walks give values with noise; directions are drawn from a simple density, so that density and value may be asked for
+ * any direction. */
 #include "bsdfs.h"
 
 #include "microfacet.h"
 
 static bsdf coat_of(const bsdf *b) {
-  return (bsdf){.kind = BSDF_DIELECTRIC, .ior = b->ior, .alpha_x = b->alpha_x, .alpha_y = b->alpha_y};
+  double a = b->more.coat_alpha_x, c = b->more.coat_alpha_y;
+  return (bsdf){.kind = BSDF_DIELECTRIC, .ior = b->ior, .alpha_x = a, .alpha_y = c};
 }
 
-/* The share of light that is left after one way through the coat. */
-static double absorbed(const bsdf *b, vector w) {
-  return b->more.coat_thickness > 0 ? exp(-b->more.coat_thickness / fabs(w.z)) : 1;
+/* The share of light that is left after a height of the coat. */
+static double absorbed(double height, vector w) {
+  return height > 0 ? exp(-height / fabs(w.z)) : 1;
 }
+
+/* ---- the coat's surface ------------------------------------------------------------------------------------------ */
 
 static vector mirror_normal(const bsdf *coat, vector w, sampler *s) {
   return is_smooth(coat) ? make_vector(0, 0, 1) : sample_visible_normal(coat, w, s);
@@ -39,62 +42,157 @@ static double go_back(const bsdf *coat, vector from, sampler *s, vector *to) {
   return reflected_by_glass(dot(from, m), coat->ior) * masking(coat, from, *to);
 }
 
-/* One walk from wo. At each meeting with the base, the way out to wi is asked for (next-event estimation). */
-static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, sampler *s) {
-  spectrum sum = gray(0), throughput;
+/* ---- the base ---------------------------------------------------------------------------------------------------- */
+
+static spectrum base_value(const bsdf *b, vector wo, vector wi) {
+  double density;
+  if (wo.z <= 0 || wi.z <= 0) return gray(0);
+  return b->more.metal ? conductor_value(b, wo, wi, &density) : scaled(wi.z / PI, b->reflectance);
+}
+
+/* Draws a direction; the result is its weight. */
+static spectrum sample_base(const bsdf *b, vector wo, sampler *s, vector *wi) {
+  bsdf_sample next;
+  if (!b->more.metal) {
+    *wi = sample_cosine_hemisphere(s);
+    return b->reflectance;
+  }
+  sample_conductor(b, wo, s, &next);
+  *wi = next.wi;
+  if (next.specular) return next.weight;
+  double density = 0;
+  spectrum value = conductor_value(b, wo, next.wi, &density);
+  return density > 0 ? scaled(1 / density, value) : gray(0);
+}
+
+/* ---- the walk ---------------------------------------------------------------------------------------------------- */
+
+/* A mirror under a rough coat: no light that comes in at wi has just the direction that the mirror needs. So paths ask
+ * the coat for wi where they leave, not where they are scattered. */
+static bool asks_at_exit(const bsdf *b, const bsdf *coat) {
+  return b->more.metal && !is_smooth(coat) && b->alpha_x < coat->alpha_x;
+}
+
+/* What light from wi adds where it is scattered at height z into the direction that the walk came from, -travel. */
+static spectrum light_from(const bsdf *b, const bsdf *coat, vector travel, double z, bool at_base, vector wi,
+                           sampler *s) {
+  vector in; /* the direction of light from wi inside */
   double eta;
-  vector down;
-  double entered = go_through(coat, wo, s, &down, &eta);
-  throughput = gray(entered / square(eta));
-  for (uint32_t depth = 0; depth < b->more.coat_depth && largest(throughput) > 0; depth += 2) {
-    throughput = scaled(absorbed(b, down), throughput);
-    vector in; /* the direction in which light from wi reaches the base */
-    double out_eta, out = go_through(coat, wi, s, &in, &out_eta);
-    if (out > 0) sum = plus(sum, scaled(out * absorbed(b, in) * fabs(wi.z) / PI, times(throughput, b->reflectance)));
-    vector up = sample_cosine_hemisphere(s);
-    throughput = scaled(absorbed(b, up), times(throughput, b->reflectance));
-    /* from inside, the coat's surface is met by the direction that points away from it: down */
-    vector back;
-    throughput = scaled(up.z > 0 ? go_back(coat, negate(up), s, &back) : 0, throughput);
-    down = back;
+  double through = go_through(coat, wi, s, &in, &eta);
+  if (through == 0) return gray(0);
+  through *= absorbed(b->more.coat_thickness - z, in) * fabs(wi.z / in.z);
+  if (at_base) return scaled(through, base_value(b, negate(travel), negate(in)));
+  return scaled(through * phase(b->more.coat_g, negate(travel), negate(in)), b->more.coat_albedo);
+}
+
+/* One walk from wo. Its height is z: the base's is 0. */
+static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, sampler *s) {
+  double eta, z = b->more.coat_thickness;
+  bool at_exit = asks_at_exit(b, coat), medium = largest(b->more.coat_albedo) > 0 && z > 0;
+  vector travel;
+  double entered = go_through(coat, wo, s, &travel, &eta);
+  spectrum sum = gray(0), throughput = gray(entered / square(eta));
+  for (uint32_t depth = 0; depth < b->more.coat_depth && largest(throughput) > 0; depth++) {
+    double end = travel.z < 0 ? 0 : b->more.coat_thickness;
+    double flight = medium ? -log1p(-next_number(s)) * travel.z : travel.z * (double)INFINITY;
+    bool scatters = fabs(flight) < fabs(end - z);
+    if (!medium) throughput = scaled(absorbed(fabs(end - z), travel), throughput);
+    z = scatters ? z + flight : end;
+    bool at_base = !scatters && end == 0 && travel.z < 0;
+    if (!scatters && !at_base) { /* at the coat, from inside: that is seen from above, at -travel */
+      double ignored;
+      if (at_exit) sum = plus(sum, times(throughput, dielectric_value(coat, negate(travel), wi, &ignored)));
+      throughput = scaled(go_back(coat, negate(travel), s, &travel), throughput);
+      continue;
+    }
+    if (!at_exit) sum = plus(sum, times(throughput, light_from(b, coat, travel, z, at_base, wi, s)));
+    if (at_base) {
+      throughput = times(throughput, sample_base(b, negate(travel), s, &travel));
+      if (travel.z <= 0) break;
+    } else {
+      throughput = times(throughput, b->more.coat_albedo);
+      frame f = make_frame(negate(travel), make_vector(0.3, 0.5, 0.8));
+      travel = from_local(f, sample_phase(b->more.coat_g, s));
+    }
   }
   return sum;
 }
 
-/* The density of sampled directions: half by the coat's reflection, half by the cosine; under a smooth coat by the
- * cosine alone, for the share of light that is not reflected. */
-static double direction_density(const bsdf *coat, vector wo, vector wi) {
-  double by_cosine = fabs(wi.z) / PI;
-  if (is_smooth(coat)) return (1 - reflected_by_glass(wo.z, coat->ior)) * by_cosine;
+/* ---- a smooth metal under a smooth coat -------------------------------------------------------------------------- */
+
+/* The sum of all reflections: F + T^2 R a^2 / (1 - F R a^2), R of the metal, a what one way through the coat leaves. */
+static spectrum all_reflections(const bsdf *b, vector wo) {
+  vector down;
+  double eta;
+  double f = reflected_by_glass(wo.z, b->ior);
+  if (!refract(wo, make_vector(0, 0, 1), b->ior, &eta, &down)) return gray(1);
+  double twice = square(absorbed(b->more.coat_thickness, down));
+  bsdf_sample metal;
+  sample_conductor(b, negate(down), NULL, &metal);
+  for (int i = 0; i < CHANNELS; i++) {
+    double r = metal.weight.c[i] * twice;
+    metal.weight.c[i] = f + square(1 - f) * r / (1 - f * r);
+  }
+  return metal.weight;
+}
+
+static bool is_all_smooth(const bsdf *b, const bsdf *coat) {
+  return b->more.metal && is_smooth(coat) && is_smooth(b);
+}
+
+/* ---- directions -------------------------------------------------------------------------------------------------- */
+
+/* Roughly what the base's mirrors look like from above. */
+static bsdf seen_base(const bsdf *b) {
+  double x = fmin(1, 1.5 * b->alpha_x + b->more.coat_alpha_x), y = fmin(1, 1.5 * b->alpha_y + b->more.coat_alpha_y);
+  return (bsdf){.alpha_x = fmax(x, 2e-3), .alpha_y = fmax(y, 2e-3)};
+}
+
+static double mirror_density(const bsdf *mirrors, vector wo, vector wi) {
   vector m = normalize(add(wo, wi));
-  return 0.5 * by_cosine + 0.5 * visible_density(coat, wo, m) / (4 * fabs(dot(wo, m)));
+  return visible_density(mirrors, wo, m) / (4 * fabs(dot(wo, m)));
+}
+
+/* The density of sampled directions: half by the cosine, or by a metal's mirrors, half by the coat's reflection. A
+ * smooth coat's reflection is none of these, and leaves its share out. */
+static double direction_density(const bsdf *b, const bsdf *coat, vector wo, vector wi) {
+  bsdf base = seen_base(b);
+  double density = fabs(wi.z) / PI;
+  if (b->more.metal) density = 0.2 * density + 0.8 * mirror_density(&base, wo, wi);
+  if (is_smooth(coat)) return (1 - reflected_by_glass(wo.z, coat->ior)) * density;
+  return 0.5 * density + 0.5 * mirror_density(coat, wo, wi);
 }
 
 enum { WALKS = 4 };
 
 /* The coat lies on both sides. */
 spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
-  *density = 0;
-  if (wo.z * wi.z <= 0) return gray(0);
+  bsdf coat = coat_of(b);
+  double ignored;
+  if (wo.z * wi.z <= 0 || is_all_smooth(b, &coat)) return gray(0);
   if (wo.z < 0) {
     wo = negate(wo);
     wi = negate(wi);
   }
-  bsdf coat = coat_of(b);
-  double ignored;
   spectrum value = dielectric_value(&coat, wo, wi, &ignored);
   for (int i = 0; i < WALKS; i++) value = plus(value, scaled(1.0 / WALKS, walk(b, &coat, wo, wi, s)));
-  *density = direction_density(&coat, wo, wi);
+  *density = direction_density(b, &coat, wo, wi);
   return value;
 }
 
 bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  bsdf coat = coat_of(b);
+  bsdf coat = coat_of(b), base = seen_base(b);
   vector o = wo.z < 0 ? negate(wo) : wo;
   double reflected = is_smooth(&coat) ? reflected_by_glass(o.z, coat.ior) : 0.5;
-  bool reflects = next_number(s) < reflected;
-  vector wi = reflects ? reflect(o, mirror_normal(&coat, o, s)) : sample_cosine_hemisphere(s);
+  bool all_smooth = is_all_smooth(b, &coat);
+  bool reflects = all_smooth || next_number(s) < reflected;
   result->specular = reflects && is_smooth(&coat);
+  if (all_smooth) result->weight = all_reflections(b, o);
+  vector wi = sample_cosine_hemisphere(s);
+  if (reflects)
+    wi = reflect(o, mirror_normal(&coat, o, s));
+  else if (b->more.metal && next_number(s) < 0.8)
+    wi = reflect(o, sample_visible_normal(&base, o, s));
   result->wi = wo.z < 0 ? negate(wi) : wi;
   return wi.z > 0;
 }

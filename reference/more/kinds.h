@@ -2,15 +2,20 @@
 #pragma once
 #include "color.h"
 
-typedef enum more_kind { MORE_COATED, MORE_HAIR } more_kind;
+typedef enum more_kind { MORE_COATED, MORE_HAIR, MORE_DIFFUSE_TRANSMISSION, MORE_THIN_GLASS } more_kind;
 
 typedef struct more_bsdf {
   more_kind kind;
-  double coat_thickness;       /* coated: sigma_t is 1 */
-  uint32_t coat_depth;         /* coated: most surfaces that a walk inside meets */
+  bool metal;            /* coated: the base is one; else it is diffuse */
+  double coat_thickness; /* coated: sigma_t is 1 */
+  double coat_alpha_x, coat_alpha_y;
+  spectrum coat_albedo; /* coated: of the medium under the coat */
+  double coat_g;
+  uint32_t coat_depth;         /* coated: most events of a walk inside */
   double offset;               /* hair: of the point from the middle, -1 to 1 */
   double beta_m, beta_n, tilt; /* hair: roughness along and around; angle of the scales */
   spectrum absorption;         /* hair: per radius */
+  spectrum transmittance;      /* diffuse transmission */
 } more_bsdf;
 
 typedef struct more_light {

@@ -36,24 +36,69 @@ static void make_hair(const world *w, const vlMaterialDef *m, const shade_record
   b->more.absorption = hair_absorption(w, m, at, b->more.beta_n, lambda);
 }
 
+/* ---- the others ---------------------------------------------------------------------------------------------------
+ */
+
+static double sodium_ior(const world *w, const vlSpectrumInput *eta) {
+  wavelengths rgb = {.rgb = true};
+  return ior_of(w, eta, &rgb);
+}
+
+/* A metal's index of refraction is relative to the coat. */
+static void make_coated(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
+                        bsdf *b) {
+  b->more.kind = MORE_COATED;
+  b->more.metal = m->kind == VL_MATERIAL_COATED_CONDUCTOR;
+  b->more.coat_alpha_x = alpha_at(w, m, b->more.metal ? m->coat_u_roughness : m->u_roughness, at);
+  b->more.coat_alpha_y = alpha_at(w, m, b->more.metal ? m->coat_v_roughness : m->v_roughness, at);
+  b->more.coat_thickness = number_at(w, m->thickness, at);
+  b->more.coat_albedo = spectrum_at(w, &m->albedo, VL_PARAMETER_ALBEDO, at, lambda);
+  b->more.coat_g = clamp(number_at(w, m->g, at), -0.999, 0.999);
+  b->more.coat_depth = m->max_depth;
+  b->ior = sodium_ior(w, b->more.metal ? &m->coat_eta : &m->eta);
+  b->reflectance = reflectance_at(w, m, at, lambda);
+  if (!b->more.metal) return;
+  make_metal(w, m, at, lambda, b);
+  b->eta = scaled(1 / b->ior, b->eta);
+  b->k = scaled(1 / b->ior, b->k);
+}
+
+static spectrum scaled_share(double scale, spectrum share) {
+  for (int i = 0; i < CHANNELS; i++) share.c[i] = clamp(scale * share.c[i], 0, 1);
+  return share;
+}
+
+static void make_diffuse_transmission(const world *w, const vlMaterialDef *m, const shade_record *at,
+                                      const wavelengths *lambda, bsdf *b) {
+  b->more.kind = MORE_DIFFUSE_TRANSMISSION;
+  spectrum r = spectrum_at(w, &m->reflectance, VL_PARAMETER_ALBEDO, at, lambda);
+  spectrum t = spectrum_at(w, &m->transmittance, VL_PARAMETER_ALBEDO, at, lambda);
+  b->reflectance = scaled_share((double)m->scale, r);
+  b->more.transmittance = scaled_share((double)m->scale, t);
+}
+
+static void make_thin_glass(const world *w, const vlMaterialDef *m, wavelengths *lambda, bsdf *b) {
+  b->more.kind = MORE_THIN_GLASS;
+  if (find_color(w->colors, &m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
+  b->ior = ior_of(w, &m->eta, lambda);
+}
+
 /* ---- all kinds --------------------------------------------------------------------------------------------------- */
 
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b) {
-  if (m->kind == VL_MATERIAL_HAIR) {
-    make_hair(w, m, at, lambda, b);
-    return;
+  switch (m->kind) {
+    case VL_MATERIAL_HAIR: make_hair(w, m, at, lambda, b); break;
+    case VL_MATERIAL_DIFFUSE_TRANSMISSION: make_diffuse_transmission(w, m, at, lambda, b); break;
+    case VL_MATERIAL_THIN_DIELECTRIC: make_thin_glass(w, m, lambda, b); break;
+    default: make_coated(w, m, at, lambda, b);
   }
-  b->more.kind = MORE_COATED;
-  b->reflectance = reflectance_at(w, m, at, lambda);
-  wavelengths rgb = {.rgb = true};
-  b->ior = ior_of(w, &m->eta, &rgb);
-  b->more.coat_thickness = number_at(w, m->thickness, at);
-  b->more.coat_depth = m->max_depth;
 }
 
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
   switch (b->more.kind) {
     case MORE_HAIR: return hair_value(b, wo, wi, density);
+    case MORE_DIFFUSE_TRANSMISSION: return diffuse_transmission_value(b, wo, wi, density);
+    case MORE_THIN_GLASS: return gray(0);
     default: return coated_value(b, wo, wi, s, density);
   }
 }
@@ -61,6 +106,8 @@ spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   switch (b->more.kind) {
     case MORE_HAIR: sample_hair(b, wo, s, result); return true;
+    case MORE_DIFFUSE_TRANSMISSION: return sample_diffuse_transmission(b, wo, s, result);
+    case MORE_THIN_GLASS: sample_thin_glass(b, wo, s, result); return true;
     default: return sample_coated(b, wo, s, result);
   }
 }

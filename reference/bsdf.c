@@ -3,21 +3,21 @@
 
 #include "more/more.h"
 
-/* A diffuse surface looks equally bright from everywhere: f = reflectance / pi, on the side that the light comes from.
- */
+/* A diffuse surface looks equally bright from everywhere on the light's side: f = reflectance / pi. */
 static spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density) {
   *density = wo.z * wi.z > 0 ? fabs(wi.z) / PI : 0;
   return scaled(*density, b->reflectance);
 }
 
-static spectrum local_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
+spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
+  vector o = to_local(b->frame, wo), i = to_local(b->frame, wi);
   *density = 0;
   switch (b->kind) {
-    case BSDF_DIFFUSE: return diffuse_value(b, wo, wi, density);
-    case BSDF_CONDUCTOR: return conductor_value(b, wo, wi, density);
-    case BSDF_DIELECTRIC: return dielectric_value(b, wo, wi, density);
-    case BSDF_PHASE: return gray(*density = phase(b->g, wo, wi));
-    default: return more_bsdf_value(b, wo, wi, s, density);
+    case BSDF_DIFFUSE: return diffuse_value(b, o, i, density);
+    case BSDF_CONDUCTOR: return conductor_value(b, o, i, density);
+    case BSDF_DIELECTRIC: return dielectric_value(b, o, i, density);
+    case BSDF_PHASE: return gray(*density = phase(b->g, o, i));
+    default: return more_bsdf_value(b, o, i, s, density);
   }
 }
 
@@ -31,19 +31,12 @@ static bool sample_direction(const bsdf *b, vector wo, sampler *s, bsdf_sample *
   }
 }
 
-spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
-  return local_value(b, to_local(b->frame, wo), to_local(b->frame, wi), s, density);
-}
-
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  vector o = to_local(b->frame, wo);
   *result = (bsdf_sample){.weight = gray(1), .density = 1};
-  if (o.z == 0 || !sample_direction(b, o, s, result)) return false;
-  if (!result->specular) {
-    spectrum value = local_value(b, o, result->wi, s, &result->density);
-    if (!(result->density > 0)) return false;
-    result->weight = scaled(1 / result->density, value);
-  }
+  if (!sample_direction(b, to_local(b->frame, wo), s, result)) return false;
   result->wi = normalize(from_local(b->frame, result->wi));
-  return true;
+  if (result->specular) return true;
+  spectrum value = bsdf_value(b, wo, result->wi, s, &result->density);
+  result->weight = scaled(1 / result->density, value);
+  return result->density > 0;
 }

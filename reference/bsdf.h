@@ -1,9 +1,7 @@
 /* bsdf.h: how a surface, or a medium, scatters light at one point (pbrt book 9). Directions point away from the point;
  * wo is where the path comes from, wi where it goes on. A value includes the cosine |wi . n|. */
 #pragma once
-#include "color.h"
 #include "more/kinds.h"
-#include "vector.h"
 
 typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_PHASE, BSDF_MORE } bsdf_kind;
 

@@ -1,8 +1,6 @@
 /* camera.c: pinhole, orthographic camera, thin lens and two fisheyes. The camera looks along its z axis, x to the
  * right, y down. Its description has been made uniform by the library: fx and fy, in pixels, are the lecture's zoom d /
  * s; cx, cy is where the axis meets the view plane; the pose is world_from_camera. */
-#include "camera.h"
-
 #include "more/more.h"
 
 /* The lecture's pinhole: direction = x_v u + y_v v - d w, divided by d. Here the axes are x right, y down, z forward,
@@ -22,9 +20,9 @@ static vector fisheye_direction(const vlCamera *c, double x, double y) {
 
 /* A thin lens: all rays of a film point meet in the plane in focus; each starts at another point of the lens (pbrt book
  * 5.2.3). Fisheyes focus on a sphere. */
-static void through_lens(const vlCamera *c, double focus, sampler *s, vector *origin, vector *direction) {
-  if (!(c->lens_radius > 0) || !isfinite(focus)) return;
-  vector in_focus = add(*origin, scale(focus, *direction));
+static void through_lens(const vlCamera *c, sampler *s, vector *origin, vector *direction) {
+  if (!(c->lens_radius > 0) || !isfinite(c->focus_distance)) return;
+  vector in_focus = add(*origin, scale(c->focus_distance, *direction));
   square_point p = sample_unit_disk(s);
   *origin = add(*origin, make_vector(c->lens_radius * p.x, c->lens_radius * p.y, 0));
   *direction = subtract(in_focus, *origin);
@@ -45,10 +43,10 @@ bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r) {
     direction = fisheye_direction(c, x_plane, y_plane);
   else
     return false;
-  through_lens(c, c->focus_distance, s, &origin, &direction);
-  matrix world_from_camera = load_matrix(c->world_from_camera);
-  vector in_world = transform_vector(&world_from_camera, direction);
-  r->origin = transform_point(&world_from_camera, origin);
+  through_lens(c, s, &origin, &direction);
+  frame uvw = load_matrix(c->world_from_camera);
+  vector in_world = transform_vector(&uvw, direction);
+  r->origin = transform_point(&uvw, origin);
   r->direction = normalize(in_world);
   /* near and far are depths along the axis, or distances for fisheyes, in units of the camera's space */
   double world_per_unit = length(in_world) / (flat ? direction.z : length(direction));

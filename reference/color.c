@@ -1,8 +1,6 @@
 /* color.c: from spectra to numbers at four wavelengths, and from these to red, green and blue. */
 #include "color.h"
 
-#include "refuse.h"
-
 /* One random number serves all four: they lie a quarter of the distribution apart (pbrt book 4.5.4). Wavelengths that
  * the eye sees well are dense: p(l) = .0039398042 / cosh^2(.0072 (l - 538)) from 360 to 830 nm, the derivative of a
  * tanh, so that it can be inverted. */
@@ -44,8 +42,9 @@ static color *make_color(const vlSpectrum *s, vlParameterRole role) {
   return c;
 }
 
-const color *find_color(color_table *table, const vlSpectrum *s, vlParameterRole role) {
-  color **c = &table->first[(uintptr_t)s / 16 % 1024];
+const color *find_color(const vlSpectrum *s, vlParameterRole role) {
+  static color *table[1024];
+  color **c = &table[(uintptr_t)s / 16 % 1024];
   while (*c && ((*c)->of != s || (*c)->role != role)) c = &(*c)->next;
   if (!*c) *c = make_color(s, role);
   return *c;
@@ -54,10 +53,8 @@ const color *find_color(color_table *table, const vlSpectrum *s, vlParameterRole
 /* The value of a table with one number per nm, linear between them. */
 static double table_at(const float *table, int stride, double nm) {
   double x = clamp(nm - VL_SPECTRUM_FIRST_NM, 0, VL_SPECTRUM_VALUES - 1);
-  int i = x < VL_SPECTRUM_VALUES - 1 ? (int)x : VL_SPECTRUM_VALUES - 2;
-  double a = (double)table[stride * i];
-  double b = (double)table[stride * (i + 1)];
-  return a + (x - i) * (b - a);
+  int i = (int)fmin(x, VL_SPECTRUM_VALUES - 2);
+  return (double)table[stride * i] * (i + 1 - x) + (double)table[stride * (i + 1)] * (x - i);
 }
 
 spectrum color_at(const color *c, const wavelengths *w) {

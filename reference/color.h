@@ -54,14 +54,9 @@ typedef struct color {
   struct color *next;
 } color;
 
-/* The table of all colours, each made when it is first asked for. */
-typedef struct color_table {
-  color *first[1024];
-} color_table;
-
-/* A light's spectrum (VL_PARAMETER_ILLUMINANT) is divided by its luminance, so that its scale alone sets its
- * brightness. */
-const color *find_color(color_table *table, const vlSpectrum *s, vlParameterRole role);
+/* The colour of a spectrum; all are kept in one table, each made when it is first asked for. A light's
+ * (VL_PARAMETER_ILLUMINANT) is divided by its luminance, so that its scale alone sets its brightness. */
+const color *find_color(const vlSpectrum *s, vlParameterRole role);
 spectrum color_at(const color *c, const wavelengths *w);
 /* The spectrum of a texel, linear RGB: a reflectance (VL_PARAMETER_ALBEDO), or any value from 0. */
 spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w);
@@ -74,3 +69,7 @@ typedef struct observer {
 
 /* What a path adds to its pixel: its radiance as linear RGB of the film's colour space. */
 void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]);
+
+/* An array of `count` elements whose first ones are those of `array`, which may be null; the others are not set. Ends
+ * the program without memory, which is given back when the program ends. */
+void *resize(void *array, size_t count, size_t size);

@@ -1,7 +1,5 @@
 /* film.c: sums, means, and how sure they are. */
-#include "film.h"
-
-#include "refuse.h"
+#include "world.h"
 
 view_plane make_view_plane(const vlSceneDefs *defs, uint32_t samples) {
   view_plane v = {.width = defs->film.width, .height = defs->film.height, .samples = samples};
@@ -17,10 +15,9 @@ view_plane make_view_plane(const vlSceneDefs *defs, uint32_t samples) {
 
 /* The filter's curve (pbrt book 8.8). */
 static double filter_value(const vlPixelFilter *f, double x, double radius) {
-  double sigma = (double)f->sigma;
   if (f->kind == VL_PIXEL_FILTER_TRIANGLE) return radius - fabs(x);
   if (f->kind == VL_PIXEL_FILTER_BOX) return 1;
-  return exp(-square(x / sigma) / 2) - exp(-square(radius / sigma) / 2);
+  return exp(-square(x / (double)f->sigma) / 2) - exp(-square(radius / (double)f->sigma) / 2);
 }
 
 /* Points are drawn under the curve: from the rectangle around it, until one lies below it. */
@@ -37,8 +34,7 @@ square_point sample_filter(const view_plane *v, sampler *s) {
   return (square_point){x, y};
 }
 
-void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance, const wavelengths *lambda,
-                bool covered) {
+void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance, const wavelengths *lambda, bool met) {
   double rgb[3];
   radiance_to_rgb(&v->eye, radiance, lambda, rgb);
   pixel *p = &v->pixels[(size_t)row * v->width + column];
@@ -46,7 +42,7 @@ void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance,
     p->sum[k] += rgb[k];
     p->squares[k] += square(rgb[k]);
   }
-  p->covered += covered;
+  p->covered += met;
 }
 
 /* The variance of a mean of n independent samples is their variance / n. */

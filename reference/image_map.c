@@ -1,25 +1,5 @@
-/* image_map.c: looks up pixels. The library reads the files, and gives their values as linear numbers. */
-#include "image_map.h"
-
-#include <math.h>
-
-#include "more/more.h"
-
-image_map make_image_map(const vlImage *image) {
-  image_map map = {.image = image, .width = vl_image_width(image), .height = vl_image_height(image)};
-  map.channels = vl_image_shown(image, map.channel);
-  return map;
-}
-
-bool read_image_map(vlContext *context, const vlTextureDef *def, image_map *map, vlError *error) {
-  vlImage *image = NULL;
-  if (def->path && vl_image_read(context, def->path, &image, error) != VL_OK) return false;
-  if (def->data && vl_image_read_memory(context, "image", def->data, def->data_size, &image, error) != VL_OK)
-    return false;
-  *map = make_image_map(image ? image : def->image);
-  if (def->encoding_given) *map = decode_otherwise(context, map->image, def);
-  return true;
-}
+/* image_map.c: looks up pixels. more/images.c reads them. */
+#include "world.h"
 
 /* The column or row inside the image that stands for one outside; -1: black. */
 static long wrapped(long i, long size, vlWrap wrap) {
@@ -51,8 +31,8 @@ void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWr
   double weight[4] = {(1 - dx) * (1 - dy), dx * (1 - dy), (1 - dx) * dy, dx * dy};
   for (int c = 0; c < 4; c++) value[c] = 0;
   for (int k = 0; k < 4; k++) {
-    double pixel[4];
-    pixel_of(map, (long)left + (k & 1), (long)top + (k >> 1), wrap_s, wrap_t, pixel);
-    for (int c = 0; c < 4; c++) value[c] += weight[k] * pixel[c];
+    double near[4];
+    pixel_of(map, (long)left + (k & 1), (long)top + (k >> 1), wrap_s, wrap_t, near);
+    for (int c = 0; c < 4; c++) value[c] += weight[k] * near[c];
   }
 }

@@ -1,8 +1,5 @@
 /* material.c: diffuse surfaces, metals, glass, interfaces and mixtures. */
-#include "material.h"
-
 #include "more/more.h"
-#include "texture.h"
 
 const vlMaterialDef *material_at(const world *w, const shade_record *at, sampler *s) {
   const vlMaterialDef *m = vl_scene_material(w->scene, at->where->def->material);
@@ -25,33 +22,27 @@ spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_reco
   return r;
 }
 
-double ior_of(const world *w, const vlSpectrumInput *eta, const wavelengths *lambda) {
-  wavelengths sodium = {.nm = {589}};
-  double ior =
-      color_at(find_color(w->colors, &eta->value, VL_PARAMETER_UNBOUNDED), lambda->rgb ? &sodium : lambda).c[0];
+double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda) {
+  static const wavelengths sodium = {.nm = {589}};
+  double ior = color_at(find_color(&eta->value, VL_PARAMETER_UNBOUNDED), lambda->rgb ? &sodium : lambda).c[0];
   return ior == 0 ? 1 : ior;
 }
 
-/* A metal's index of refraction; for a metal of a given reflectance r at normal incidence eta = 1,
+/* A metal's index of refraction, or that of a metal of reflectance r at normal incidence: eta = 1,
  * k = 2 sqrt(r / (1 - r)). */
 void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b) {
-  b->eta = gray(1);
-  if (!m->use_reflectance) {
-    b->eta = spectrum_at(w, &m->eta, VL_PARAMETER_UNBOUNDED, at, lambda);
-    b->k = spectrum_at(w, &m->k, VL_PARAMETER_UNBOUNDED, at, lambda);
-    return;
-  }
   spectrum r = reflectance_at(w, m, at, lambda);
-  for (int i = 0; i < CHANNELS; i++) {
-    double share = fmin(r.c[i], 0.9999);
-    b->k.c[i] = 2 * sqrt(share / (1 - share));
-  }
+  for (int i = 0; i < CHANNELS; i++) b->k.c[i] = 2 * sqrt(fmin(r.c[i], 0.9999) / (1 - fmin(r.c[i], 0.9999)));
+  b->eta = gray(1);
+  if (m->use_reflectance) return;
+  b->eta = spectrum_at(w, &m->eta, VL_PARAMETER_UNBOUNDED, at, lambda);
+  b->k = spectrum_at(w, &m->k, VL_PARAMETER_UNBOUNDED, at, lambda);
 }
 
 bsdf make_bsdf(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda) {
   shade_record bent = *at;
   bend_normal(w, m, &bent);
-  bsdf b = {.frame = make_frame(bent.shading_normal, bent.tangent)};
+  bsdf b = {.kind = BSDF_MORE, .frame = make_frame(bent.shading_normal, bent.tangent)};
   b.alpha_x = alpha_at(w, m, m->u_roughness, at);
   b.alpha_y = alpha_at(w, m, m->v_roughness, at);
   switch (m->kind) {
@@ -65,10 +56,10 @@ bsdf make_bsdf(const world *w, const vlMaterialDef *m, const shade_record *at, w
       break;
     case VL_MATERIAL_DIELECTRIC:
       b.kind = BSDF_DIELECTRIC;
-      if (find_color(w->colors, &m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
-      b.ior = ior_of(w, &m->eta, lambda);
+      if (find_color(&m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
+      b.ior = ior_of(&m->eta, lambda);
       break;
-    default: b.kind = BSDF_MORE; more_bsdf_at(w, m, at, lambda, &b);
+    default: more_bsdf_at(w, m, at, lambda, &b);
   }
   return b;
 }

@@ -1,6 +1,4 @@
 /* medium.c: homogeneous media: the same everywhere. */
-#include "medium.h"
-
 #include "more/more.h"
 
 const vlMediumDef *medium_of(const world *w, vlMediumId id) {
@@ -13,39 +11,26 @@ const vlMediumDef *medium_beyond(const world *w, const shade_record *at, vector 
   return medium_of(w, dot(direction, at->normal) > 0 ? def->outside : def->inside);
 }
 
-static spectrum coefficient(const world *w, const vlMediumDef *m, const vlSpectrum *sigma, const wavelengths *lambda) {
-  return scaled((double)m->scale, color_at(find_color(w->colors, sigma, VL_PARAMETER_UNBOUNDED), lambda));
+spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavelengths *lambda) {
+  return scaled((double)m->scale, color_at(find_color(sigma, VL_PARAMETER_UNBOUNDED), lambda));
 }
 
 /* Beer's law: exp(-sigma_t distance), sigma_t = sigma_a + sigma_s. */
 spectrum transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
                        const wavelengths *lambda) {
   if (!is_homogeneous(m)) return more_transmittance(w, m, r, distance, s, lambda);
-  spectrum t = plus(coefficient(w, m, &m->sigma_a, lambda), coefficient(w, m, &m->sigma_s, lambda));
+  spectrum t = plus(coefficient(m, &m->sigma_a, lambda), coefficient(m, &m->sigma_s, lambda));
   for (int i = 0; i < CHANNELS; i++) t.c[i] = t.c[i] > 0 ? exp(-t.c[i] * distance) : 1;
   return t;
 }
 
-/* The integral of sigma_a L exp(-sigma_t x) over the distance. */
-static spectrum emission_along(const world *w, const vlMediumDef *m, double distance, const wavelengths *lambda) {
-  spectrum a = coefficient(w, m, &m->sigma_a, lambda), s = coefficient(w, m, &m->sigma_s, lambda);
-  const color *emission = find_color(w->colors, &m->emission, VL_PARAMETER_ILLUMINANT);
-  spectrum result = scaled((double)m->emission_scale, times(a, color_at(emission, lambda)));
-  for (int i = 0; i < CHANNELS; i++) {
-    double sigma = a.c[i] + s.c[i];
-    result.c[i] *= sigma > 0 ? -expm1(-sigma * distance) / sigma : 0;
-  }
-  return result;
-}
-
 /* The distance is drawn with the density sigma_s exp(-sigma_s x) of one channel; absorption is a factor. The result is
- * divided by the mean density over all channels, so that each may have been the one (single-sample balance heuristic).
- */
+ * divided by the mean density over all channels, so that each may have been the one (balance heuristic). */
 bool scatters_before(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
                      const wavelengths *lambda, spectrum *throughput, spectrum *emitted) {
   if (!is_homogeneous(m)) return scatters_in_more(w, m, r, distance, s, lambda, throughput, emitted);
   *emitted = plus(*emitted, times(*throughput, emission_along(w, m, *distance, lambda)));
-  spectrum sigma_s = coefficient(w, m, &m->sigma_s, lambda);
+  spectrum sigma_s = coefficient(m, &m->sigma_s, lambda);
   uint32_t channels = channels_of(lambda);
   double by = sigma_s.c[choose(s, channels)];
   double flight = by > 0 ? -log1p(-next_number(s)) / by : (double)INFINITY;

@@ -1,31 +1,42 @@
-/* quadric.c: spheres, disks and cylinders (pbrt book 6.2 to 6.4), also parts of them. Rays are taken to the space of
- * the shape, where the axis is z; t stays the same if the direction keeps its length. */
+/* quadric.c: spheres, disks and cylinders (pbrt book 6.2 to 6.4), also parts of them. Each is a profile (r, z) that is
+ * turned around the z axis of its own space. */
 #include "world.h"
 
-/* Polar angles of the sphere's edges z_min and z_max. */
+typedef struct profile {
+  double r, z, dr, dz; /* and the derivatives by v */
+} profile;
+
+/* Polar angle of a point of a sphere at height z. */
 static double theta_at(const vlShapeDef *def, double z) {
   return acos(clamp(z / (double)def->radius, -1, 1));
 }
 
-/* The coordinates of a point of the whole sphere, disk or cylinder. They are 0 to 1 on the part that the shape keeps:
- * u goes around the axis, v from the bottom to the top, or from the disk's edge inwards. */
+/* v = 0 to 1 goes from the bottom to the top, or from the disk's edge inwards. */
+static profile profile_at(const vlShapeDef *def, double v) {
+  double radius = (double)def->radius, bottom = (double)def->z_min, height = (double)def->z_max - bottom;
+  double inwards = (double)def->inner_radius - radius;
+  if (def->kind == VL_SHAPE_CYLINDER) return (profile){radius, bottom + v * height, 0, height};
+  if (def->kind == VL_SHAPE_DISK) return (profile){radius + v * inwards, (double)def->height, inwards, 0};
+  double range = theta_at(def, (double)def->z_max) - theta_at(def, bottom);
+  double theta = theta_at(def, bottom) + v * range;
+  double r = radius * sin(theta), z = radius * cos(theta);
+  return (profile){r, z, z * range, -r * range};
+}
+
+/* The coordinates of a point of the whole sphere, disk or cylinder. They are 0 to 1 on the part that the shape keeps.
+ */
 static void coordinates_of(const vlShapeDef *def, vector p, meeting *m) {
-  double phi = atan2(p.y, p.x);
-  double bottom = (double)def->z_min, top = (double)def->z_max, radius = (double)def->radius;
+  profile first = profile_at(def, 0), last = profile_at(def, 1);
+  double phi = atan2(p.y, p.x), theta0 = theta_at(def, first.z), theta1 = theta_at(def, last.z);
   m->a = (phi < 0 ? phi + 2 * PI : phi) / (double)def->phi_max;
-  if (def->kind == VL_SHAPE_SPHERE) {
-    bottom = theta_at(def, bottom);
-    top = theta_at(def, top);
-    m->b = (theta_at(def, p.z) - bottom) / (top - bottom);
-  } else if (def->kind == VL_SHAPE_CYLINDER) {
-    m->b = (p.z - bottom) / (top - bottom);
-  } else {
-    m->b = (radius - sqrt(p.x * p.x + p.y * p.y)) / (radius - (double)def->inner_radius);
-  }
+  if (def->kind == VL_SHAPE_SPHERE) m->b = (theta_at(def, p.z) - theta0) / (theta1 - theta0);
+  if (def->kind == VL_SHAPE_CYLINDER) m->b = (p.z - first.z) / (last.z - first.z);
+  if (def->kind == VL_SHAPE_DISK) m->b = (sqrt(p.x * p.x + p.y * p.y) - first.r) / (last.r - first.r);
 }
 
 /* The points o + t d of the surface are the roots of a t^2 + 2 b t + c: put into x^2 + y^2 + z^2 = radius^2 for a
- * sphere, x^2 + y^2 = radius^2 for a cylinder, z = height for a disk. */
+ * sphere, x^2 + y^2 = radius^2 for a cylinder, z = height for a disk. In the shape's space t is the same if the
+ * direction keeps its length. */
 bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   const placement *where = &w->placements[p->placement];
   const vlShapeDef *def = where->def;
@@ -33,12 +44,10 @@ bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   vector direction = transform_vector(&where->shape_from_world, r.direction);
   vector o = origin, d = direction;
   if (def->kind == VL_SHAPE_CYLINDER) o.z = d.z = 0;
-  double a = dot(d, d), b = dot(o, d), c = dot(o, o) - square((double)def->radius);
-  if (def->kind == VL_SHAPE_DISK) {
-    a = 0;
-    b = d.z / 2;
-    c = o.z - (double)def->height;
-  }
+  bool disk = def->kind == VL_SHAPE_DISK;
+  double a = disk ? 0 : dot(d, d);
+  double b = disk ? d.z / 2 : dot(o, d);
+  double c = disk ? o.z - (double)def->height : dot(o, o) - square((double)def->radius);
   double discriminant = b * b - a * c;
   if (!(discriminant >= 0)) return false;
   double q = -(b + copysign(sqrt(discriminant), b)); /* a sum of equal signs: nothing cancels */
@@ -52,41 +61,16 @@ bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   return false;
 }
 
-/* The point at (u, v), its derivatives and its normal, in the space of the shape. */
-static vector point_at(const vlShapeDef *def, double u, double v, vector *dpdu, vector *dpdv, vector *normal) {
-  double phi_max = (double)def->phi_max, radius = (double)def->radius;
-  double bottom = (double)def->z_min, top = (double)def->z_max;
-  double c = cos(u * phi_max), s = sin(u * phi_max);
-  vector p;
-  if (def->kind == VL_SHAPE_SPHERE) {
-    double range = theta_at(def, top) - theta_at(def, bottom);
-    double theta = theta_at(def, bottom) + v * range;
-    p = make_vector(radius * sin(theta) * c, radius * sin(theta) * s, radius * cos(theta));
-    *dpdv = scale(range, make_vector(p.z * c, p.z * s, -radius * sin(theta)));
-    *normal = p;
-  } else if (def->kind == VL_SHAPE_CYLINDER) {
-    p = make_vector(radius * c, radius * s, bottom + v * (top - bottom));
-    *dpdv = make_vector(0, 0, top - bottom);
-    *normal = make_vector(c, s, 0);
-  } else {
-    double inwards = (double)def->inner_radius - radius;
-    p = make_vector((radius + v * inwards) * c, (radius + v * inwards) * s, (double)def->height);
-    *dpdv = make_vector(inwards * c, inwards * s, 0);
-    *normal = make_vector(0, 0, 1);
-  }
-  *dpdu = make_vector(-phi_max * p.y, phi_max * p.x, 0);
-  return p;
-}
-
-/* The surface at (u, v). (u, v) is drawn uniformly from the unit square, so a point has the density 1 / |dp/du x dp/dv|
- * per area: that holds under any transform. */
+/* The surface at (u, v), with the normal dp/du x dp/dv. (u, v) is drawn uniformly from the unit square, so a point has
+ * the density 1 / |dp/du x dp/dv| per area: that holds under any transform. */
 void quadric_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
   const placement *where = &w->placements[p->placement];
-  vector dpdu, dpdv, normal;
-  vector point = point_at(where->def, u, v, &dpdu, &dpdv, &normal);
-  normal = normalize(transform_normal(&where->shape_from_world, normal));
-  record->point = transform_point(&where->world_from_shape, point);
-  record->normal = where->flip ? negate(normal) : normal;
+  double phi_max = (double)where->def->phi_max, c = cos(u * phi_max), s = sin(u * phi_max);
+  profile f = profile_at(where->def, v);
+  vector dpdu = scale(f.r * phi_max, make_vector(-s, c, 0)), dpdv = make_vector(f.dr * c, f.dr * s, f.dz);
+  vector normal = transform_normal(&where->shape_from_world, make_vector(f.dz * c, f.dz * s, -f.dr));
+  record->point = transform_point(&where->world_from_shape, make_vector(f.r * c, f.r * s, f.z));
+  record->normal = scale(where->flip ? -1 : 1, normalize(normal));
   record->shading_normal = record->normal;
   record->tangent = transform_vector(&where->world_from_shape, dpdu);
   record->u = u;

@@ -1,6 +1,5 @@
-/* sampler.h: the lecture's sampler. It gives numbers in [0, 1) and, from them, points of the unit square, disk, sphere
- * and hemisphere. The numbers are independent: this renderer shows how an image comes about, not how to need few
- * samples. */
+/* sampler.h: the lecture's sampler. It gives numbers in [0, 1) and, from them, points of the unit square, disk and
+ * hemisphere. The numbers are independent: that is simple, and needs many samples. */
 #pragma once
 #include <stdint.h>
 
@@ -50,17 +49,7 @@ static inline vector sample_cosine_hemisphere(sampler *s) {
   return make_vector(d.x, d.y, sqrt(fmax(0, 1 - d.x * d.x - d.y * d.y)));
 }
 
-/* A direction with density 1 / 4 pi: z is uniform (Archimedes). */
-static inline vector sample_sphere(sampler *s) {
-  square_point u = sample_unit_square(s);
-  double z = 1 - 2 * u.x;
-  double radius = sqrt(fmax(0, 1 - z * z));
-  double angle = 2 * PI * u.y;
-  return make_vector(radius * cos(angle), radius * sin(angle), z);
-}
-
 /* A whole number below `count`. */
 static inline uint32_t choose(sampler *s, uint32_t count) {
-  uint32_t i = (uint32_t)(next_number(s) * count);
-  return i < count ? i : count - 1;
+  return (uint32_t)(next_number(s) * count);
 }

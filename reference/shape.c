@@ -5,15 +5,14 @@ static const vlShapeDef *def_of(const world *w, const primitive *p) {
   return w->placements[p->placement].def;
 }
 
-static bool is_quadric(vlShapeKind kind) {
+bool is_quadric(vlShapeKind kind) {
   return kind == VL_SHAPE_SPHERE || kind == VL_SHAPE_DISK || kind == VL_SHAPE_CYLINDER;
 }
 
-bool meet_shape(const world *w, const primitive *p, ray r, meeting *m) {
+static bool meet_shape(const world *w, const primitive *p, ray r, meeting *m) {
   vlShapeKind kind = def_of(w, p)->kind;
   if (kind == VL_SHAPE_TRIANGLES) return meet_triangle(p, r, m);
-  if (is_quadric(kind)) return meet_quadric(w, p, r, m);
-  return meet_more(w, p, r, m);
+  return is_quadric(kind) ? meet_quadric(w, p, r, m) : meet_more(w, p, r, m);
 }
 
 void shape_surface(const world *w, const primitive *p, double a, double b, shade_record *record) {
@@ -32,32 +31,25 @@ void shape_surface(const world *w, const primitive *p, double a, double b, shade
 void sample_shape(const world *w, const primitive *p, sampler *s, shade_record *record) {
   square_point u = sample_unit_square(s);
   bool fold = def_of(w, p)->kind == VL_SHAPE_TRIANGLES && u.x + u.y > 1;
-  if (fold) u = (square_point){1 - u.x, 1 - u.y};
-  shape_surface(w, p, u.x, u.y, record);
+  shape_surface(w, p, fold ? 1 - u.x : u.x, fold ? 1 - u.y : u.y, record);
 }
 
-void include_point(primitive *p, vector point) {
-  p->low = least(p->low, point);
-  p->high = greatest(p->high, point);
-}
-
-/* The box around the corners; of a quadric those of its box in the space of the shape, taken to the world. */
-void bound_shape(const world *w, primitive *p) {
-  const vlShapeDef *def = def_of(w, p);
-  p->low = make_vector(INFINITY, INFINITY, INFINITY);
-  p->high = negate(p->low);
-  if (def->kind == VL_SHAPE_TRIANGLES) {
-    for (int k = 0; k < 3; k++) include_point(p, p->corner[k]);
-    return;
+/* The lecture's loop over all objects. A ray may meet a curved primitive twice: the second time counts where the
+ * surface is not there the first time. Alpha is the share of the surface that is there. */
+bool nearest_of(const world *w, uint32_t first, uint32_t count, ray *r, sampler *s, shade_record *hit) {
+  bool found = false;
+  for (uint32_t i = first; i < first + count; i++) {
+    meeting m;
+    for (ray rest = *r; meet_shape(w, &w->primitives[i], rest, &m); rest.t_min = m.t) {
+      shade_record record = {.t = m.t, .arrival = r->direction};
+      shape_surface(w, &w->primitives[i], m.a, m.b, &record);
+      double alpha = number_at(w, record.where->def->alpha, &record);
+      if (alpha < 1 && next_number(s) >= alpha) continue;
+      *hit = record;
+      r->t_max = m.t;
+      found = true;
+      break;
+    }
   }
-  if (!is_quadric(def->kind)) {
-    bound_more(w, p);
-    return;
-  }
-  double radius = (double)def->radius, bottom = (double)def->z_min, top = (double)def->z_max;
-  if (def->kind == VL_SHAPE_DISK) bottom = top = (double)def->height;
-  for (int k = 0; k < 8; k++) {
-    vector corner = make_vector(k & 1 ? radius : -radius, k & 2 ? radius : -radius, k & 4 ? top : bottom);
-    include_point(p, transform_point(&w->placements[p->placement].world_from_shape, corner));
-  }
+  return found;
 }

@@ -1,17 +1,5 @@
 /* texture.c: scale, checkerboard and image textures. */
-#include "texture.h"
-
 #include "more/more.h"
-#include "refuse.h"
-
-bool read_images(world *w, vlError *error) {
-  const vlTextureDef *def;
-  for (uint32_t i = 0; (def = vl_scene_texture(w->scene, (vlTextureId){i + 1})); i++) {
-    w->images = resize(w->images, i + 1, sizeof *w->images);
-    if (def->kind == VL_TEXTURE_IMAGE && !read_image_map(w->context, def, &w->images[i], error)) return false;
-  }
-  return true;
-}
 
 /* The surface's own coordinates, scaled and moved; the others are those of more/ (pbrt book 10.2). */
 square_point texture_coordinates(const vlTextureDef *def, const shade_record *at) {
@@ -36,32 +24,19 @@ static void texel_at(const image_map *map, const vlTextureDef *def, const shade_
     pixel_of(map, (long)floor(st.x * map->width), (long)floor((1 - st.y) * map->height), def->wrap, wrap_t, value);
   else
     pixels_around(map, st.x, 1 - st.y, def->wrap, wrap_t, value);
-  for (int c = 0; c < 4; c++) {
-    bool missing = c == 3 && map->channels % 2 == 1; /* an image without coverage covers all */
-    double v = missing ? 1 : value[c] * (double)def->scale;
-    if (def->invert && !missing) v = 1 - v;
-    value[c] = fmax(0, v) * (double)def->tint[c];
-  }
-}
-
-/* An image as one number: the channel that the texture selects, else coverage if there is one, else the mean. */
-static double number_of_image(const image_map *map, const vlTextureDef *def, const shade_record *at) {
-  double value[4];
-  texel_at(map, def, at, value);
-  double number = map->channels == 4 ? value[3] : (value[0] + value[1] + value[2]) / 3;
-  if (def->channel >= 0) number = value[def->channel];
-  number += (double)def->bias;
-  if (isnan(def->cutoff)) return number;
-  return number >= def->cutoff ? 1 : 0;
+  adjust_texel(def, map->channels, value);
 }
 
 double number_at(const world *w, vlFloatInput input, const shade_record *at) {
   const vlTextureDef *def = vl_scene_texture(w->scene, input.texture);
   if (!def) return (double)input.value;
+  double texel[4];
   switch (def->kind) {
     case VL_TEXTURE_SCALE: return number_at(w, def->float_a, at) * number_at(w, def->amount, at);
     case VL_TEXTURE_CHECKERBOARD: return number_at(w, is_second_square(def, at) ? def->float_b : def->float_a, at);
-    case VL_TEXTURE_IMAGE: return number_of_image(&w->images[input.texture.index - 1], def, at);
+    case VL_TEXTURE_IMAGE:
+      texel_at(&w->images[input.texture.index - 1], def, at, texel);
+      return number_of_texel(def, w->images[input.texture.index - 1].channels, texel);
     default: return more_number(w, def, at);
   }
 }
@@ -69,7 +44,7 @@ double number_at(const world *w, vlFloatInput input, const shade_record *at) {
 spectrum spectrum_at(const world *w, const vlSpectrumInput *input, vlParameterRole role, const shade_record *at,
                      const wavelengths *lambda) {
   const vlTextureDef *def = vl_scene_texture(w->scene, input->texture);
-  if (!def) return color_at(find_color(w->colors, &input->value, role), lambda);
+  if (!def) return color_at(find_color(&input->value, role), lambda);
   double texel[4];
   switch (def->kind) {
     case VL_TEXTURE_SCALE:

@@ -1,13 +1,13 @@
 /* tracer.c: path tracing. The rendering equation (Kajiya 1986) says that the radiance leaving a point is what the point
  * emits, plus what arrives there from all directions and is scattered on. A path estimates it: at each point it asks
  * one light, and follows one direction (pbrt book 13, 14). */
-#include "tracer.h"
-
-#include "light.h"
-#include "material.h"
+#include "world.h"
 
 /* What a path is and has gathered so far. */
 typedef struct path {
+  const world *w;
+  sampler *s;
+  wavelengths *lambda;
   ray r;
   spectrum radiance;         /* found so far */
   spectrum throughput;       /* the share of light that reaches the eye from the path's end */
@@ -19,12 +19,17 @@ typedef struct path {
   bool chosen_alone; /* no light could have been asked for this direction */
 } path;
 
+/* Double precision leaves 1e-15 of the largest coordinate. */
+double surface_distance(const world *w, vector p) {
+  return 1e-11 * (w->radius + fabs(p.x) + fabs(p.y) + fabs(p.z));
+}
+
 /* A ray that leaves a point. A curve turns to face each ray: so that the new one does not meet it, it starts as far off
  * as the curve is thick. */
-static ray ray_from(const world *w, const shade_record *at, vector direction, double time) {
+static ray ray_from(const path *p, const shade_record *at, vector direction) {
   double side = dot(direction, at->normal) < 0 ? -1 : 1;
   vector origin = add(at->point, scale(side * at->thickness, at->normal));
-  return (ray){origin, direction, surface_distance(w, origin), (double)INFINITY, time};
+  return (ray){origin, direction, surface_distance(p->w, origin), (double)INFINITY, p->r.time};
 }
 
 /* Both ways of finding a light, asking it and meeting it, have a density. Each result is multiplied by its share of the
@@ -33,44 +38,37 @@ static double share_of(double own, double other) {
   return isfinite(own) ? square(own) / (square(own) + square(other)) : 1;
 }
 
-static bool is_interface(const world *w, const shade_record *at, sampler *s) {
-  return material_at(w, at, s)->kind == VL_MATERIAL_INTERFACE;
-}
-
 /* The lecture's shadow ray: the share of light that gets from a light to a point, 0 behind a surface, less than 1
  * through media. */
-static spectrum visibility(const world *w, ray r, double distance, const vlMediumDef *inside, sampler *s,
-                           const wavelengths *lambda) {
+static spectrum visibility(const path *p, ray r, double distance, const vlMediumDef *inside) {
   spectrum share = gray(1);
   for (;;) {
     shade_record at;
-    r.t_max = distance * (1 - 1e-10) - surface_distance(w, r.origin);
-    bool found = find_hit(w, r, s, &at);
-    if (found && !is_interface(w, &at, s)) return gray(0);
+    r.t_max = distance * (1 - 1e-10) - surface_distance(p->w, r.origin);
+    bool found = find_hit(p->w, r, p->s, &at);
+    if (found && material_at(p->w, &at, p->s)->kind != VL_MATERIAL_INTERFACE) return gray(0);
     double step = found ? at.t : distance;
-    if (inside) share = times(share, transmittance(w, inside, r, step, s, lambda));
+    if (inside) share = times(share, transmittance(p->w, inside, r, step, p->s, p->lambda));
     if (!found || largest(share) == 0) return share;
-    inside = medium_beyond(w, &at, r.direction, inside);
+    inside = medium_beyond(p->w, &at, r.direction, inside);
     distance -= step;
-    r = ray_from(w, &at, r.direction, r.time);
+    r = ray_from(p, &at, r.direction);
   }
 }
 
-/* The lecture's direct light: asks one light, whose light is scattered towards wo. */
-static void add_direct_light(const world *w, path *p, const bsdf *b, const shade_record *at, sampler *s,
-                             const wavelengths *lambda) {
+/* The lecture's direct light: asks one light, whose light is scattered back along the path. */
+static void add_direct_light(path *p, const bsdf *b, const shade_record *at) {
   light_sample asked;
   double density;
-  if (!sample_light(w, at->point, s, lambda, &asked)) return;
-  spectrum value = times(asked.radiance, bsdf_value(b, negate(p->r.direction), asked.direction, s, &density));
+  if (!sample_light(p->w, at->point, p->s, p->lambda, &asked)) return;
+  spectrum value = times(asked.radiance, bsdf_value(b, negate(p->r.direction), asked.direction, p->s, &density));
   if (largest(value) == 0) return;
-  ray shadow = ray_from(w, at, asked.direction, p->r.time);
-  if (at->thickness > 0 && isfinite(asked.distance)) { /* to the same place of the light, from where the ray starts */
-    aim_at(add(at->point, scale(asked.distance, asked.direction)), shadow.origin, &asked);
-    shadow.direction = asked.direction;
-  }
-  const vlMediumDef *inside = medium_beyond(w, at, asked.direction, p->inside);
-  value = times(value, visibility(w, shadow, asked.distance, inside, s, lambda));
+  const vlMediumDef *inside = medium_beyond(p->w, at, asked.direction, p->inside);
+  ray shadow = ray_from(p, at, asked.direction);
+  vector end = add(at->point, scale(asked.distance, asked.direction));
+  if (isfinite(asked.distance)) aim_at(end, shadow.origin, &asked);
+  shadow.direction = asked.direction;
+  value = times(value, visibility(p, shadow, asked.distance, inside));
   double share = asked.single ? 1 : share_of(asked.density, density);
   p->radiance = plus(p->radiance, scaled(share / asked.density, times(p->throughput, value)));
 }
@@ -82,42 +80,39 @@ static void add_met_light(path *p, spectrum emitted, double light_density) {
   p->radiance = plus(p->radiance, scaled(share, times(p->throughput, emitted)));
 }
 
-static void add_skies(const world *w, path *p, const wavelengths *lambda) {
-  for (uint32_t i = 0; i < w->light_count; i++) {
-    const light *l = &w->lights[i];
+static void add_skies(path *p) {
+  for (const light *l = p->w->lights; l < p->w->lights + p->w->light_count; l++) {
     if (!l->def || l->def->kind != VL_LIGHT_INFINITE) continue;
-    double density = sky_density(l, p->r.direction) / w->light_count;
-    add_met_light(p, sky_radiance(w, l, p->r.direction, lambda), density);
+    add_met_light(p, sky_radiance(l, p->r.direction, p->lambda), sky_density(p->w, l, p->r.direction));
   }
 }
 
 /* The path goes on in a direction that the BSDF chooses. False: it ends. */
-static bool scatter(const world *w, path *p, const bsdf *b, const shade_record *at, sampler *s) {
+static bool scatter(path *p, const bsdf *b, const shade_record *at) {
   bsdf_sample next;
-  if (!sample_bsdf(b, negate(p->r.direction), s, &next)) return false;
+  if (!sample_bsdf(b, negate(p->r.direction), p->s, &next)) return false;
   p->throughput = times(p->throughput, next.weight);
-  p->inside = medium_beyond(w, at, next.wi, p->inside);
-  p->r = ray_from(w, at, next.wi, p->r.time);
+  p->inside = medium_beyond(p->w, at, next.wi, p->inside);
+  p->r = ray_from(p, at, next.wi);
   p->chosen_at = p->r.origin;
   p->chosen_density = next.density;
   p->chosen_alone = next.specular;
   return true;
 }
 
-/* Paths that carry little light end by chance; those that go on carry more, so that the mean stays (Russian roulette).
- */
-static bool survives(path *p, sampler *s) {
+/* Paths that carry little light end by chance; the others carry more, so that the mean stays (Russian roulette). */
+static bool survives(path *p) {
   double most = largest(p->throughput);
   if (p->depth < 4 || most >= 1) return most > 0;
   double chance = fmax(0.1, most);
   p->throughput = scaled(1 / chance, p->throughput);
-  return most > 0 && next_number(s) < chance;
+  return most > 0 && next_number(p->s) < chance;
 }
 
 spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t max_depth, sampler *s,
                    wavelengths *lambda, bool *met) {
-  path p = {.r = r, .throughput = gray(1), .inside = inside, .chosen_at = r.origin, .chosen_alone = true};
-  while (survives(&p, s)) {
+  path p = {w, s, lambda, .r = r, .throughput = gray(1), .inside = inside, .chosen_at = r.origin, .chosen_alone = true};
+  while (survives(&p)) {
     shade_record at;
     bool found = find_hit(w, p.r, s, &at);
     double distance = found ? at.t : (double)INFINITY;
@@ -125,26 +120,27 @@ spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t ma
     bsdf b;
     bool in_medium = p.inside && scatters_before(w, p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
     if (p.depth < max_depth) p.radiance = plus(p.radiance, emission);
-    if (!in_medium && !found) add_skies(w, &p, lambda);
-    if (!in_medium && !found) break;
     if (in_medium) {
       at = (shade_record){.point = add(p.r.origin, scale(distance, p.r.direction))};
       b = phase_function(p.inside, negate(p.r.direction));
+    } else if (!found) {
+      add_skies(&p);
+      break;
     } else {
       *met = true;
-      add_met_light(&p, emitted_by_surface(w, &at, negate(p.r.direction), lambda),
-                    density_of_surface(w, &at, p.chosen_at));
+      spectrum emitted = emitted_by_surface(w, &at, negate(p.r.direction), lambda);
+      add_met_light(&p, emitted, density_of_surface(w, &at, p.chosen_at));
       const vlMaterialDef *m = material_at(w, &at, s);
       if (m->kind == VL_MATERIAL_INTERFACE) {
         p.inside = medium_beyond(w, &at, p.r.direction, p.inside);
-        p.r = ray_from(w, &at, p.r.direction, p.r.time);
+        p.r = ray_from(&p, &at, p.r.direction);
         continue;
       }
       if (p.depth < max_depth) b = make_bsdf(w, m, &at, lambda);
     }
     if (p.depth++ >= max_depth) break;
-    add_direct_light(w, &p, &b, &at, s, lambda);
-    if (!scatter(w, &p, &b, &at, s)) break;
+    add_direct_light(&p, &b, &at);
+    if (!scatter(&p, &b, &at)) break;
   }
   return p.radiance;
 }

@@ -43,12 +43,6 @@ static inline vector normalize(vector a) {
 static inline vector face_forward(vector a, vector b) {
   return dot(a, b) < 0 ? negate(a) : a;
 }
-static inline vector least(vector a, vector b) {
-  return (vector){fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z)};
-}
-static inline vector greatest(vector a, vector b) {
-  return (vector){fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z)};
-}
 /* The weighted sum of three vectors. */
 static inline vector blend(vector a, vector b, vector c, double wa, double wb, double wc) {
   return add(scale(wa, a), add(scale(wb, b), scale(wc, c)));
@@ -71,9 +65,7 @@ typedef frame matrix;
 static inline matrix load_matrix(const double m[16]) {
   return (matrix){{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
 }
-static inline matrix identity_matrix(void) {
-  return (matrix){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
-}
+static const matrix IDENTITY = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
 static inline vector transform_vector(const matrix *a, vector v) {
   return blend(a->x, a->y, a->z, v.x, v.y, v.z);
 }

@@ -1,11 +1,6 @@
 /* world.c: makes the world: every shape at each of its places, and its primitives. Instances are not shared: a group
  * that stands in ten places is stored ten times. */
-#include "world.h"
-
-#include "light.h"
 #include "more/more.h"
-#include "refuse.h"
-#include "texture.h"
 
 /* Sides follow pbrt-v4: a mirrored quadric turns its normals over, a mirrored mesh does not (its normal is defined in
  * its own space), and instances never turn normals. */
@@ -33,7 +28,6 @@ static void add_primitive(world *w, uint32_t index, uint32_t face, uint32_t corn
   }
   vector n = cross(subtract(p.corner[1], p.corner[0]), subtract(p.corner[2], p.corner[0]));
   if (corners == 3 && !(length(n) > 0)) return;
-  bound_shape(w, &p);
   w->primitives[w->primitive_count++] = p;
 }
 
@@ -49,7 +43,7 @@ static void add_shape(world *w, const vlShapeDef *def, matrix world_from_group) 
 
 /* A shape of the world itself stands in one place, that of a group in as many as the group has instances. */
 static void place_shape(world *w, const vlShapeDef *def) {
-  if (!def->group.index) add_shape(w, def, identity_matrix());
+  if (!def->group.index) add_shape(w, def, IDENTITY);
   vlInstanceInfo info;
   for (uint32_t i = 1; vl_scene_instance(w->scene, (vlInstanceId){i}, &info) == VL_OK; i++) {
     bool here = def->group.index && info.group.index == def->group.index && info.shown;
@@ -62,8 +56,6 @@ bool make_world(vlContext *context, vlScene *scene, world *w, vlError *error) {
   *w = (world){.context = context, .scene = scene, .rgb = defs->build.color == VL_COLOR_RGB};
   w->media_are_absent = defs->render.tracer == VL_TRACER_PATH;
   w->standard_material = vl_default_material_def(VL_MATERIAL_DIFFUSE);
-  w->colors = resize(NULL, 1, sizeof *w->colors);
-  *w->colors = (color_table){{NULL}};
   const vlShapeDef *def;
   for (uint32_t i = 1; (def = vl_scene_shape(scene, (vlShapeId){i})); i++) place_shape(w, def);
   make_accelerator(w);

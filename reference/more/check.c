@@ -54,13 +54,23 @@ static bool check_texture(const vlTextureDef *def, vlError *error) {
   }
 }
 
-static bool check_light(const vlLightDef *def, vlError *error) {
+/* An image of the sky is square; the octahedral map has one side. */
+static bool is_square(vlContext *context, const vlLightDef *def, vlError *error) {
+  vlImage *image = NULL;
+  if (def->path && vl_image_read_header(context, def->path, &image, error) != VL_OK) return false;
+  const vlImage *map = image ? image : def->image;
+  bool square = !map || vl_image_width(map) == vl_image_height(map);
+  vl_image_destroy(image);
+  return square || refuse(error, def->source, "an image of the sky that is not square");
+}
+
+static bool check_light(vlContext *context, const vlLightDef *def, vlError *error) {
   if (def->has_portal) return refuse(error, def->source, "a portal");
   switch (def->kind) {
     case VL_LIGHT_POINT:
     case VL_LIGHT_SPOT:
-    case VL_LIGHT_DISTANT:
-    case VL_LIGHT_INFINITE: return true;
+    case VL_LIGHT_DISTANT: return true;
+    case VL_LIGHT_INFINITE: return is_square(context, def, error);
     default: return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
   }
 }
@@ -111,7 +121,7 @@ static bool check_settings(const vlSceneDefs *defs, vlError *error) {
   return true;
 }
 
-bool check_scene(vlScene *scene, const vlCamera *camera, vlError *error) {
+bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error) {
   const vlSceneDefs *defs = vl_scene_defs(scene);
   if (!check_settings(defs, error) || !check_camera(camera, defs->camera_source, error)) return false;
   const vlShapeDef *shape;
@@ -133,7 +143,7 @@ bool check_scene(vlScene *scene, const vlCamera *camera, vlError *error) {
   }
   const vlLightDef *light;
   for (uint32_t i = 1; (light = vl_scene_light(scene, (vlLightId){i})); i++) {
-    if (!check_light(light, error)) return false;
+    if (!check_light(context, light, error)) return false;
   }
   const vlMediumDef *medium;
   for (uint32_t i = 1; (medium = vl_scene_medium(scene, (vlMediumId){i})); i++) {

@@ -4,4 +4,4 @@
 
 /* Whether the renderer has all that a scene asks for; else an error with the name and the place of the first thing that
  * it does not have. */
-bool check_scene(vlScene *scene, const vlCamera *camera, vlError *error);
+bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error);

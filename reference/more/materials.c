@@ -1,7 +1,6 @@
 /* more/materials.c: the materials of more/, by kind. */
 #include "bsdfs.h"
 #include "more.h"
-#include "texture.h"
 
 /* ---- hair -------------------------------------------------------------------------------------------------------- */
 
@@ -11,7 +10,7 @@ static const vlSpectrum pheomelanin = {.kind = VL_SPECTRUM_RGB, .scale = 1, .rgb
 
 static spectrum pigment(const world *w, vlFloatInput amount, const vlSpectrum *one, const shade_record *at,
                         const wavelengths *lambda) {
-  spectrum absorption = color_at(find_color(w->colors, one, VL_PARAMETER_UNBOUNDED), lambda);
+  spectrum absorption = color_at(find_color(one, VL_PARAMETER_UNBOUNDED), lambda);
   return scaled(fmax(0, number_at(w, amount, at)), absorption);
 }
 
@@ -36,13 +35,7 @@ static void make_hair(const world *w, const vlMaterialDef *m, const shade_record
   b->more.absorption = hair_absorption(w, m, at, b->more.beta_n, lambda);
 }
 
-/* ---- the others ---------------------------------------------------------------------------------------------------
- */
-
-static double sodium_ior(const world *w, const vlSpectrumInput *eta) {
-  wavelengths rgb = {.rgb = true};
-  return ior_of(w, eta, &rgb);
-}
+/* ---- the others -------------------------------------------------------------------------------------------------- */
 
 /* A metal's index of refraction is relative to the coat. */
 static void make_coated(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
@@ -55,7 +48,8 @@ static void make_coated(const world *w, const vlMaterialDef *m, const shade_reco
   b->more.coat_albedo = spectrum_at(w, &m->albedo, VL_PARAMETER_ALBEDO, at, lambda);
   b->more.coat_g = clamp(number_at(w, m->g, at), -0.999, 0.999);
   b->more.coat_depth = m->max_depth;
-  b->ior = sodium_ior(w, b->more.metal ? &m->coat_eta : &m->eta);
+  wavelengths rgb = {.rgb = true};
+  b->ior = ior_of(b->more.metal ? &m->coat_eta : &m->eta, &rgb);
   b->reflectance = reflectance_at(w, m, at, lambda);
   if (!b->more.metal) return;
   make_metal(w, m, at, lambda, b);
@@ -79,8 +73,8 @@ static void make_diffuse_transmission(const world *w, const vlMaterialDef *m, co
 
 static void make_thin_glass(const world *w, const vlMaterialDef *m, wavelengths *lambda, bsdf *b) {
   b->more.kind = MORE_THIN_GLASS;
-  if (find_color(w->colors, &m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
-  b->ior = ior_of(w, &m->eta, lambda);
+  if (find_color(&m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
+  b->ior = ior_of(&m->eta, lambda);
 }
 
 /* ---- all kinds --------------------------------------------------------------------------------------------------- */

@@ -1,10 +1,10 @@
 /* more/more.h: what the core asks more/ for. Where the core's own switch over kinds ends, it calls one of these
  * functions. more/check.c refuses by name what more/ does not have either. */
 #pragma once
-#include "light.h"
-#include "material.h"
-#include "medium.h"
 #include "world.h"
+
+/* more/accelerator.c: makes the tree of boxes. */
+void make_accelerator(world *w);
 
 /* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
 uint32_t more_corners(const vlShapeDef *def);
@@ -25,16 +25,22 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at);
 double more_number(const world *w, const vlTextureDef *def, const shade_record *at);
 spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
                        const wavelengths *lambda);
-/* The same image, whose integers mean what the texture says instead of the file. */
-image_map decode_otherwise(vlContext *context, const vlImage *image, const vlTextureDef *texture);
+/* A texel's scale, tint and the like. An image as one number: the channel that the texture selects, else coverage if
+ * there is one, else the mean. */
+void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]);
+double number_of_texel(const vlTextureDef *def, uint32_t channels, const double value[4]);
 
-/* more/lights.c: called for each light that is neither the sky nor a surface. Of a sample the core has set `density` to
- * that of the choice of this light, `single`, an infinite distance, and the light's colour. */
+/* more/lights.c: what a light or an emission makes of its spectrum: its scale, or its power (pbrt-v4). Of a sample of
+ * another light the core has set `density` to that of the choice of this light, `single`, an infinite distance, and the
+ * light's colour. */
 bool read_more_light(const world *w, light *l, vlError *error);
+double emission_factor(const world *w, const light *l);
 bool sample_more_light(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                        light_sample *result);
 
-/* more/media.c: media that are not the same everywhere, along a ray. As in medium.h. */
+/* more/media.c: what a homogeneous medium emits along a distance; media that are not the same everywhere, along a ray.
+ * As in medium.h. */
+spectrum emission_along(const world *w, const vlMediumDef *m, double distance, const wavelengths *lambda);
 bool is_homogeneous(const vlMediumDef *m);
 spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
                             const wavelengths *lambda);

@@ -51,15 +51,15 @@ bool meet_patch(const primitive *p, ray r, meeting *m) {
 
 /* Texture coordinates: (u, v) itself, or the corners' coordinates blended. The tangent points along the first of them.
  */
-static void patch_coordinates(const vlShapeDef *def, const mesh_corner *corners, double u, double v, vector dpdu,
-                              vector dpdv, shade_record *record) {
+static void patch_coordinates(const vlShapeDef *def, const uint32_t *face, const double *weights, double u, double v,
+                              vector dpdu, vector dpdv, shade_record *record) {
   record->u = u;
   record->v = v;
   record->tangent = dpdu;
   if (!def->uvs) return;
   double uv[4][2], du[2], dv[2];
   for (int k = 0; k < 4; k++) {
-    for (int i = 0; i < 2; i++) uv[k][i] = (double)def->uvs[2 * (size_t)corners[k].vertex + (size_t)i];
+    for (int i = 0; i < 2; i++) uv[k][i] = (double)def->uvs[2 * (size_t)face[k] + (size_t)i];
   }
   for (int i = 0; i < 2; i++) {
     du[i] = (1 - v) * (uv[1][i] - uv[0][i]) + v * (uv[3][i] - uv[2][i]);
@@ -67,8 +67,8 @@ static void patch_coordinates(const vlShapeDef *def, const mesh_corner *corners,
   }
   record->u = record->v = 0;
   for (int k = 0; k < 4; k++) {
-    record->u += corners[k].weight * uv[k][0];
-    record->v += corners[k].weight * uv[k][1];
+    record->u += weights[k] * uv[k][0];
+    record->v += weights[k] * uv[k][1];
   }
   double d = du[0] * dv[1] - du[1] * dv[0];
   if (fabs(d) > 1e-12) record->tangent = scale(1 / d, subtract(scale(dv[1], dpdu), scale(du[1], dpdv)));
@@ -77,15 +77,14 @@ static void patch_coordinates(const vlShapeDef *def, const mesh_corner *corners,
 void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
   const placement *where = &w->placements[p->placement];
   const uint32_t *face = where->def->indices + 4 * (size_t)p->face;
-  mesh_corner corners[4] = {
-      {face[0], (1 - u) * (1 - v)}, {face[1], u * (1 - v)}, {face[2], (1 - u) * v}, {face[3], u * v}};
+  double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
   vector left = mix(p->corner[0], p->corner[2], v), right = mix(p->corner[1], p->corner[3], v);
   vector low = mix(p->corner[0], p->corner[1], u), high = mix(p->corner[2], p->corner[3], u);
   vector dpdu = subtract(right, left), dpdv = subtract(high, low);
   vector by_edges = cross(dpdu, dpdv);
   record->point = mix(left, right, u);
-  mesh_normals(where, corners, 4, by_edges, record);
-  patch_coordinates(where->def, corners, u, v, dpdu, dpdv, record);
+  mesh_normals(where, face, weights, 4, by_edges, record);
+  patch_coordinates(where->def, face, weights, u, v, dpdu, dpdv, record);
   double area = length(by_edges);
   record->area_density = area > 0 ? 1 / area : 0;
 }

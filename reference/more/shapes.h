@@ -7,3 +7,6 @@ void patch_surface(const world *w, const primitive *p, double u, double v, shade
 bool meet_curve(const world *w, const primitive *p, ray r, meeting *m);
 void curve_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
 void bound_curve(const world *w, primitive *p);
+
+/* more/accelerator.c: makes the box of a primitive contain a point. */
+void include_point(primitive *p, vector point);

@@ -1,11 +1,6 @@
 /* more/textures.c: constant, mix and bilinear textures, and texture coordinates from points (pbrt book 10.2). */
 #include "more.h"
 
-#include <string.h>
-
-#include "refuse.h"
-#include "texture.h"
-
 /* ---- texture coordinates ----------------------------------------------------------------------------------------- */
 
 square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
@@ -61,19 +56,19 @@ spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole 
   return plus(scaled(1 - st.x, low), scaled(st.x, high));
 }
 
-image_map decode_otherwise(vlContext *context, const vlImage *image, const vlTextureDef *texture) {
-  static const size_t size[] = {
-      [VL_PIXEL_U8] = 1, [VL_PIXEL_U16] = 2, [VL_PIXEL_F16] = 2, [VL_PIXEL_F32] = 4, [VL_PIXEL_U32] = 4};
-  vlImageDef def = vl_default_image_def(vl_image_width(image), vl_image_height(image), vl_image_channels(image));
-  const char **names = resize(NULL, def.channels, sizeof *names);
-  for (uint32_t i = 0; i < def.channels; i++) names[i] = vl_image_channel_name(image, i);
-  def.names = names;
-  def.type = vl_image_type(image);
-  def.encoding = texture->encoding;
-  def.gamma = texture->gamma;
-  vlImage *copy = NULL;
-  vl_image_create(context, &def, &copy);
-  memcpy(vl_image_pixels(copy), vl_image_const_pixels(image),
-         (size_t)def.width * def.height * def.channels * size[def.type]);
-  return make_image_map(copy);
+void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]) {
+  for (int c = 0; c < 4; c++) {
+    bool missing = c == 3 && channels % 2 == 1; /* an image without coverage covers all */
+    double v = missing ? 1 : value[c] * (double)def->scale;
+    if (def->invert && !missing) v = 1 - v;
+    value[c] = fmax(0, v) * (double)def->tint[c];
+  }
+}
+
+double number_of_texel(const vlTextureDef *def, uint32_t channels, const double value[4]) {
+  double number = channels == 4 ? value[3] : (value[0] + value[1] + value[2]) / 3;
+  if (def->channel >= 0) number = value[def->channel];
+  number += (double)def->bias;
+  if (isnan(def->cutoff)) return number;
+  return number >= def->cutoff ? 1 : 0;
 }

@@ -1,8 +1,7 @@
-/* refuse.c: errors, and memory. */
+/* refuse.c: errors. */
 #include "refuse.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 
 bool refuse(vlError *error, vlSource source, const char *what) {
   error->code = VL_ERROR_UNSUPPORTED;
@@ -19,11 +18,4 @@ bool refuse_kind(vlError *error, vlSource source, const char *family, uint32_t k
   char what[200];
   snprintf(what, sizeof what, "%s \"%s\"", rows ? rows->thing : family, name ? name : "of this kind");
   return refuse(error, source, what);
-}
-
-void *resize(void *array, size_t count, size_t size) {
-  void *more = count < SIZE_MAX / size ? realloc(array, (count + 1) * size) : NULL;
-  if (more) return more;
-  fprintf(stderr, "velo-reference: no memory\n");
-  exit(1);
 }

@@ -133,9 +133,8 @@ const vlMaterialDef *material_at(const world *w, const shade_record *at, sampler
 bsdf make_bsdf(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda);
 spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda);
 double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at);
-/* A dielectric's index of refraction. An RGB render has one: that of catalogues, at the yellow line of sodium. */
+/* Index of refraction: of a dielectric (in RGB that of catalogues, at the yellow line of sodium); eta and k of a metal. */
 double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda);
-/* eta and k of a metal. */
 void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b);
 
 /* An input of a material or shape: its texture's value at the point, else its own (pbrt book 10). */
@@ -153,7 +152,7 @@ void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t
 /* Linear between the four pixels around (s, t), measured from the top left corner, 0 to 1 over the image. */
 void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
 
-/* ---- light.c, sky.c ---------------------------------------------------------------------------------------------- */
+/* ---- light.c, sky.c, medium.c ------------------------------------------------------------------------------------- */
 
 /* Light that arrives at a point from a sample of a light. */
 typedef struct light_sample {
@@ -179,8 +178,6 @@ bool read_sky(const world *w, light *l, vlError *error);
 spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda);
 double sky_density(const world *w, const light *l, vector direction);
 vector sample_sky(const light *l, sampler *s);
-
-/* ---- medium.c ---------------------------------------------------------------------------------------------------- */
 
 /* The medium with an id; null: vacuum. */
 const vlMediumDef *medium_of(const world *w, vlMediumId id);

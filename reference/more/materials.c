@@ -71,7 +71,7 @@ static void make_diffuse_transmission(const world *w, const vlMaterialDef *m, co
   b->more.transmittance = scaled_share((double)m->scale, t);
 }
 
-static void make_thin_glass(const world *w, const vlMaterialDef *m, wavelengths *lambda, bsdf *b) {
+static void make_thin_glass(const vlMaterialDef *m, wavelengths *lambda, bsdf *b) {
   b->more.kind = MORE_THIN_GLASS;
   if (find_color(&m->eta.value, VL_PARAMETER_UNBOUNDED)->varies) keep_first_wavelength(lambda);
   b->ior = ior_of(&m->eta, lambda);
@@ -83,7 +83,7 @@ void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at
   switch (m->kind) {
     case VL_MATERIAL_HAIR: make_hair(w, m, at, lambda, b); break;
     case VL_MATERIAL_DIFFUSE_TRANSMISSION: make_diffuse_transmission(w, m, at, lambda, b); break;
-    case VL_MATERIAL_THIN_DIELECTRIC: make_thin_glass(w, m, lambda, b); break;
+    case VL_MATERIAL_THIN_DIELECTRIC: make_thin_glass(m, lambda, b); break;
     default: make_coated(w, m, at, lambda, b);
   }
 }

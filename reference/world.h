@@ -133,7 +133,7 @@ const vlMaterialDef *material_at(const world *w, const shade_record *at, sampler
 bsdf make_bsdf(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda);
 spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda);
 double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at);
-/* Index of refraction: of a dielectric (in RGB that of catalogues, at the yellow line of sodium); eta and k of a metal. */
+/* Index of refraction: of glass (in RGB that of catalogues, at the yellow line of sodium); eta and k of a metal. */
 double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda);
 void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b);
 
@@ -152,7 +152,8 @@ void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t
 /* Linear between the four pixels around (s, t), measured from the top left corner, 0 to 1 over the image. */
 void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
 
-/* ---- light.c, sky.c, medium.c ------------------------------------------------------------------------------------- */
+/* ---- light.c, sky.c, medium.c -------------------------------------------------------------------------------------
+ */
 
 /* Light that arrives at a point from a sample of a light. */
 typedef struct light_sample {

@@ -34,11 +34,12 @@ VL_API vlUpgradeDef vl_default_upgrade_def(void);
 /** Writes the pbrt-v3 scene `from` as the pbrt-v4 scene `to`. Comments, layout and numbers stay as they are where
  * pbrt-v4 has the same statement. An included file is written beside `to` where it changes; names of files are written
  * relative to the folder of `to`. A map of an infinite or goniometric light, over longitude and latitude, becomes an
- * equal-area map beside `to` (.exr). No file of the old scene is overwritten. A name that is given a second time gets a
- * number. The new scene is read before it is written: it is an error if vl_scene_load, with `permissive`, would refuse
- * it, and then nothing is written. def may be null. Meaning of the statements: https://pbrt.org/fileformat-v3 and
- * https://pbrt.org/fileformat-v4. Errors: ARGUMENT, SCENE (syntax; a place in the new scene that would be refused),
- * MISSING, IO, MEMORY; UNSUPPORTED with `strict`. */
+ * equal-area map beside `to` (.exr). All files are written or none: they get names that no file has (room-2.pbrt), and
+ * `to` is replaced last; files of the replaced scene that had those names are then removed. No file of the old scene is
+ * overwritten. A name that is given a second time gets a number. The new scene is read before it is written: it is an
+ * error if vl_scene_load, with `permissive`, would refuse it, and then nothing is written. def may be null. Meaning of
+ * the statements: https://pbrt.org/fileformat-v3 and https://pbrt.org/fileformat-v4. Errors: ARGUMENT, SCENE (syntax; a
+ * place in the new scene that would be refused), MISSING, IO, MEMORY; UNSUPPORTED with `strict`. */
 VL_API vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, const vlUpgradeDef *def,
                                  vlError *error);
 

@@ -4,11 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "base/cookie.h"
-#include "base/file_input.h"
 #include "base/text.h"
 #include "image/image.h"
 
@@ -93,92 +90,20 @@ bool vl_export_path(vlExport *x, const char *name, char *path, size_t size) {
   return vl_path_join(x->path, name, path, size) || vl_export_fail(x, VL_ERROR_IO, "the file's name is too long");
 }
 
-static bool write_file(vlExport *x, const char *path, const void *data, size_t size) {
-  vlFileWriter writer;
-  vlResult r = vl_file_open_write(&writer, x->context, path, VL_OUTPUT_PLAIN, x->error);
-  if (r == VL_OK) {
-    vl_file_write(&writer, data, size);
-    r = vl_file_commit(&writer, x->error);
-  }
-  if (r != VL_OK && x->result == VL_OK) x->result = r;
-  return r == VL_OK;
+static bool take(vlExport *x, vlResult result) {
+  if (result != VL_OK && x->result == VL_OK) x->result = result;
+  return result == VL_OK;
 }
 
 bool vl_export_main(vlExport *x, const void *data, size_t size) {
   if (x->result != VL_OK) return false; /* whatever became of the part that failed */
-  return x->dry || write_file(x, x->path, data, size);
-}
-
-/* Whether a file has these bytes. It is not an input of the export. */
-static bool has_bytes(const char *path, const void *data, size_t size) {
-  struct stat info;
-  char block[65536];
-  if (stat(path, &info) != 0 || !S_ISREG(info.st_mode) || (uint64_t)info.st_size != size) return false;
-  FILE *file = fopen(path, "rb");
-  const char *left = data, *end = left + size;
-  for (size_t n; file && left < end && (n = fread(block, 1, sizeof block, file)) > 0; left += n)
-    if (n > (size_t)(end - left) || memcmp(left, block, n) != 0) break;
-  if (file) fclose(file);
-  return file && left == end;
-}
-
-static bool keep_path(vlExport *x, const char *path, bool made) {
-  char *copy = vl_strdup(x->context, path);
-  char **slot = !copy ? NULL : made ? VL_PUSH(x->context, &x->made) : VL_PUSH(x->context, &x->passed);
-  if (slot) {
-    *slot = copy;
-    return true;
-  }
-  vl_free(x->context, copy);
-  return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
+  return x->dry || take(x, vl_file_set_main(&x->files, data, size, x->error));
 }
 
 bool vl_export_data(vlExport *x, char name[300], const void *data, size_t size) {
-  enum { MOST = 10000 };
   if (x->dry) return true;
-  char wanted[300], path[4096];
-  struct stat info;
-  snprintf(wanted, sizeof wanted, "%s", name);
-  const char *dot = strrchr(wanted, '.');
-  for (int i = 1; i < MOST; i++) {
-    if (i > 1) snprintf(name, 300, "%.*s-%d%.20s", (int)(dot - wanted), wanted, i, dot);
-    if (!vl_export_path(x, name, path, sizeof path)) return false;
-    if (lstat(path, &info) != 0) return keep_path(x, path, true) && write_file(x, path, data, size);
-    if (has_bytes(path, data, size)) return true;
-    if (!keep_path(x, path, false)) return false;
-  }
-  return vl_export_fail(x, VL_ERROR_IO, "too many files are called like %.200s", wanted);
-}
-
-/* The bytes of the scene file that is replaced, zero-terminated; null: none. */
-static char *read_earlier(const vlExport *x, size_t *size) {
-  struct stat info;
-  *size = 0;
-  if (stat(x->path, &info) != 0 || !S_ISREG(info.st_mode)) return NULL;
-  FILE *file = fopen(x->path, "rb");
-  char *text = file ? vl_alloc(x->context, (size_t)info.st_size + 1) : NULL;
-  if (text) *size = fread(text, 1, (size_t)info.st_size, file);
-  if (file) fclose(file);
-  return text;
-}
-
-/* After a failure: removes what was written. After success: removes the files of the replaced scene that had the names
- * of the new ones and that it mentions; none that was read. */
-static void clean_up(vlExport *x, bool fine, const char *earlier, size_t size) {
-  for (size_t i = 0; i < x->made.count; i++) {
-    if (!fine) unlink(x->made.items[i]);
-    vl_free(x->context, x->made.items[i]);
-  }
-  for (size_t i = 0; i < x->passed.count; i++) {
-    const char *path = x->passed.items[i], *name = path + vl_folder_length(path);
-    char input[4096];
-    if (fine && earlier && memmem(earlier, size, name, strlen(name)) &&
-        !vl_file_is_input(x->context, path, VL_OUTPUT_PLAIN, input, sizeof input))
-      unlink(path);
-    vl_free(x->context, x->passed.items[i]);
-  }
-  VL_ARRAY_FREE(x->context, &x->made);
-  VL_ARRAY_FREE(x->context, &x->passed);
+  return take(x, vl_file_set_name(&x->files, name, 300, data, size, x->error)) &&
+         take(x, vl_file_set_write(&x->files, name, data, size, x->error));
 }
 
 vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
@@ -194,15 +119,11 @@ vlImage *vl_export_decode(vlExport *x, const vlTextureDef *t) {
 }
 
 bool vl_export_pack(vlExport *x, const vlImage *image, const char *suffix, char **data, size_t *size) {
-  char name[64], path[4096];
-  snprintf(name, sizeof name, ".velo-export-%ld%s", (long)getpid(), suffix);
-  *data = NULL;
-  if (!vl_export_path(x, name, path, sizeof path)) return false;
+  void *bytes = NULL;
   vlError error;
   vl_error_clear(&error);
-  vlResult r = vl_image_write(image, path, NULL, &error);
-  if (r == VL_OK) r = vl_file_read_given(x->context, path, false, data, size, &error);
-  unlink(path);
+  vlResult r = vl_image_write_memory(image, suffix, NULL, &bytes, size, &error);
+  *data = bytes;
   return r == VL_OK || vl_export_fail(x, r, "%s", error.message);
 }
 
@@ -285,13 +206,11 @@ vlResult vl_scene_save(const vlScene *scene, const char *path, const vlSaveDef *
                             x->loss_count);
   }
   if (fine) {
-    size_t size;
-    char *earlier = read_earlier(x, &size);
+    vl_file_set_begin(&x->files, x->context, x->path);
     start(x, false);
     fine = pbrt ? vl_export_pbrt(x) : vl_export_gltf(x);
     finish(x);
-    clean_up(x, fine, earlier, size);
-    vl_free(x->context, earlier);
+    vl_file_set_end(&x->files, fine);
   }
   for (uint32_t i = 0; i < x->loss_count && x->def->lost; i++)
     x->def->lost(x->def->lost_user, x->losses[i].text, x->losses[i].count);

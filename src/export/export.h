@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include "base/file.h"
+#include "base/file_set.h"
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "velo/export.h"
@@ -51,9 +51,8 @@ typedef struct vlExport {
   bool dry; /* nothing is written; only losses are collected */
   vlLoss losses[VL_EXPORT_LOSSES];
   uint32_t loss_count;
-  VL_ARRAY(char *) made;   /* paths of the files beside the scene file that were written */
-  VL_ARRAY(char *) passed; /* paths of other files that had their names */
-  char stem[200];          /* the scene's file name without suffix; names of further files start with it */
+  vlFileSet files;
+  char stem[200]; /* the scene's file name without suffix; names of further files start with it */
   VL_ARRAY(vlExportImage) images;
   /* glTF */
   bool binary;

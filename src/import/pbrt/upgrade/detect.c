@@ -62,12 +62,17 @@ static void look(vlOldScene *found, char *data, size_t size) {
   }
 }
 
-vlOldScene vl_old_scene(vlContext *context, const char *path) {
+vlOldScene vl_old_scene_text(char *text, size_t size) {
   vlOldScene found = {0};
+  look(&found, text, size);
+  return found;
+}
+
+vlOldScene vl_old_scene(vlContext *context, const char *path) {
   char *data;
   size_t size;
-  if (vl_file_read_given(context, path, true, &data, &size, NULL) != VL_OK) return found;
-  look(&found, data, size);
+  if (vl_file_read_given(context, path, true, &data, &size, NULL) != VL_OK) return (vlOldScene){0};
+  const vlOldScene found = vl_old_scene_text(data, size);
   vl_free(context, data);
   return found;
 }

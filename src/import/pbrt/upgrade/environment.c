@@ -67,7 +67,7 @@ static bool read_pixels(vlUpgrade *u, const vlOldMap *map, const vlImage *from, 
   return vl_image_to_float(from, channel, 3, pixels) == VL_OK || vl_old_fail_memory(u);
 }
 
-static bool convert(vlUpgrade *u, const vlOldMap *map, const vlImage *from, const char *path) {
+static bool convert(vlUpgrade *u, vlOldMap *map, const vlImage *from) {
   double side = sqrt((double)from->width * from->height);
   uint32_t even = 2 * (uint32_t)(side / 2 + 0.5);
   vlImageDef def = vl_default_image_def(even < LEAST_SIDE ? LEAST_SIDE : even > MOST_SIDE ? MOST_SIDE : even, 0, 3);
@@ -80,7 +80,7 @@ static bool convert(vlUpgrade *u, const vlOldMap *map, const vlImage *from, cons
   if (fine) {
     Work work = {pixels, from->width, from->height, map->factor, image};
     vl_parallel_for(u->context, def.height, fill_row, &work);
-    u->result = vl_image_write(image, path, NULL, &u->error);
+    u->result = vl_image_write_memory(image, ".exr", NULL, &map->data, &map->size, &u->error);
     fine = u->result == VL_OK;
   }
   vl_image_destroy(image);
@@ -88,17 +88,19 @@ static bool convert(vlUpgrade *u, const vlOldMap *map, const vlImage *from, cons
   return fine;
 }
 
-/* "sky-equiarea.exr"; a number is added where the name is taken by another image of this scene. */
-static void make_name(vlUpgrade *u, const char *name, char *result, size_t size) {
-  const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name, *dot = strrchr(base, '.');
+/* Makes the new image, and names it: "sky-equiarea.exr", or with a number where another file has the name. */
+static bool make_map(vlUpgrade *u, vlOldMap *map, const char *old, char *name, size_t size) {
+  vlImage *from = NULL;
+  u->result = vl_image_read_named(u->context, NULL, map->from, &from, &u->error);
+  bool fine = u->result == VL_OK && convert(u, map, from);
+  vl_image_destroy(from);
+  if (!fine) return false;
+  const char *slash = strrchr(old, '/'), *base = slash ? slash + 1 : old, *dot = strrchr(base, '.');
   int stem = dot ? (int)(dot - base) : (int)strlen(base);
-  snprintf(result, size, "%.*s-equiarea.exr", stem, base);
-  for (uint32_t k = 2; k < 1000; k++) {
-    bool taken = false;
-    for (size_t i = 0; i < u->maps.count; i++) taken = taken || strcmp(u->maps.items[i].name, result) == 0;
-    if (!taken) return;
-    snprintf(result, size, "%.*s-equiarea-%u.exr", stem, base, k);
-  }
+  snprintf(name, size, "%.*s-equiarea.exr", stem, base);
+  u->result = vl_file_set_name(&u->files, name, size, map->data, map->size, &u->error);
+  map->name = vl_strdup(u->context, name);
+  return u->result == VL_OK && (map->name || vl_old_fail_memory(u));
 }
 
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
@@ -117,27 +119,8 @@ bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const 
     if (strcmp(map->from, path) == 0 && memcmp(map->factor, factor, sizeof map->factor) == 0)
       return snprintf(result, size, "%s", map->name) > 0;
   }
-  make_name(u, name, result, size);
   vlOldMap *map = VL_PUSH(u->context, &u->maps);
   if (!map) return vl_old_fail_memory(u);
-  *map = (vlOldMap){vl_strdup(u->context, path), vl_strdup(u->context, result), {factor[0], factor[1], factor[2]}};
-  return (map->from && map->name) || vl_old_fail_memory(u);
-}
-
-bool vl_old_convert_maps(vlUpgrade *u) {
-  for (size_t i = 0; i < u->maps.count; i++) {
-    const vlOldMap *map = &u->maps.items[i];
-    char to[8300];
-    vlImage *from = NULL;
-    u->result = vl_image_read_named(u->context, NULL, map->from, &from, &u->error);
-    if (u->result != VL_OK) return false;
-    snprintf(to, sizeof to, "%s/%s", u->to_folder, map->name);
-    bool fine = convert(u, map, from, to);
-    vl_image_destroy(from);
-    if (!fine) return false;
-    vlError place = {0};
-    vl_fail_at(&place, VL_OK, to, 0, 0, "%s", "");
-    if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "the light's image, equal-area");
-  }
-  return true;
+  *map = (vlOldMap){.from = vl_strdup(u->context, path), .factor = {factor[0], factor[1], factor[2]}};
+  return map->from ? make_map(u, map, name, result, size) : vl_old_fail_memory(u);
 }

@@ -93,33 +93,6 @@ static bool new_name(vlUpgrade *u, const char *name, const char *path, char *res
   return n > 0 && (size_t)n < size;
 }
 
-void vl_old_make_folders(const vlUpgrade *u, const char *path) {
-  char folder[PATH_MAX + 4200];
-  snprintf(folder, sizeof folder, "%s", path);
-  size_t base = strlen(u->to_folder) + 1;
-  for (char *slash = strchr(folder + base, '/'); slash; slash = strchr(slash + 1, '/')) {
-    *slash = 0;
-    mkdir(folder, 0777); /* writing the file reports a failure */
-    *slash = '/';
-  }
-}
-
-static bool is_output(const vlUpgrade *u, const char *name) {
-  for (size_t i = 0; i < u->outputs.count; i += 2)
-    if (strcmp(u->outputs.items[i], name) == 0) return true;
-  return false;
-}
-
-/* Adds a number to the name where another file to be written has it. */
-static bool make_unique(const vlUpgrade *u, char *name, size_t size) {
-  char plain[4096];
-  const int stem = (int)strlen(name) - (vl_ends_with(name, ".pbrt") ? 5 : 0);
-  snprintf(plain, sizeof plain, "%s", name);
-  for (uint32_t k = 2; is_output(u, name); k++)
-    if (snprintf(name, size, "%.*s-%u%s", stem, plain, k, plain + stem) >= (int)size) return false;
-  return true;
-}
-
 /* Keeps a file to be written at the end. Takes the text. */
 static bool keep_output(vlUpgrade *u, const char *name, char *text) {
   char **slot = VL_PUSH(u->context, &u->outputs), *copy = vl_strdup(u->context, name);
@@ -141,6 +114,16 @@ static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const
     if (strcmp(n->path, path) == 0 && (n->text && text ? strcmp(n->text, text) == 0 : n->text == text)) return n;
   }
   return NULL;
+}
+
+/* The name of the new file; a number is added where another file has it. */
+static bool choose_name(vlOldFile *file, const vlOldStatement *s, const char *path, const char *text, char *name,
+                        size_t size) {
+  vlUpgrade *u = file->u;
+  if (!new_name(u, s->name[0], path, name, size))
+    return vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
+  u->result = vl_file_set_name(&u->files, name, size, text, strlen(text), &u->error);
+  return u->result == VL_OK;
 }
 
 /* Upgrades the file, and names the new one. first: it was not included before. Null after an error. */
@@ -167,9 +150,8 @@ static const vlOldInclude *read_include(vlOldFile *file, const vlOldStatement *s
     return known;
   }
   if (!text && !vl_old_file_name(file, s->line, s->name[0], name, sizeof name)) return NULL;
-  if (text && (!new_name(u, s->name[0], path, name, sizeof name) || !make_unique(u, name, sizeof name))) {
+  if (text && !choose_name(file, s, path, text, name, sizeof name)) {
     vl_free(u->context, text);
-    vl_old_fail(file, VL_ERROR_SCENE, s->line, s->column, "file name too long");
     return NULL;
   }
   if (text && !keep_output(u, name, text)) return NULL;

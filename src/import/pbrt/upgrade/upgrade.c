@@ -118,7 +118,11 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
   bool fine = file.words || vl_old_fail_memory(u);
   if (fine) {
     memcpy(file.words, data, file.size + 1);
-    if (!u->depth) u->subsurface = strstr(data, "subsurface\"") != NULL;
+    if (!u->depth) {
+      u->subsurface = strstr(data, "subsurface\"") != NULL;
+      u->is_old = vl_old_scene_text(file.words, file.size).version != 0;
+      memcpy(file.words, data, file.size + 1);
+    }
     fine = read_all(&file);
   }
   *changed = file.edits.count > 0;
@@ -132,20 +136,32 @@ bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *chan
   return fine;
 }
 
-static bool write_text(vlUpgrade *u, const char *path, const char *text) {
-  vlFileWriter writer;
-  vlResult r = vl_file_open_write(&writer, u->context, path, VL_OUTPUT_PLAIN, &u->error);
-  if (r == VL_OK) {
-    vl_file_write(&writer, text, strlen(text));
-    r = vl_file_commit(&writer, &u->error);
-  }
-  if (r != VL_OK) {
-    u->result = r;
-    return false;
-  }
+static void tell_written(const vlUpgrade *u, const char *path, const char *what) {
   vlError place = {0};
   vl_fail_at(&place, VL_OK, path, 0, 0, "%s", "");
-  if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, "a pbrt-v4 file");
+  if (u->def->report) u->def->report(u->def->report_user, VL_UPGRADE_WROTE, &place, what);
+}
+
+/* Writes all files, or none. */
+static bool write_files(vlUpgrade *u, const char *text) {
+  char path[PATH_MAX + 4200];
+  for (size_t i = 0; i < u->maps.count && u->result == VL_OK; i++)
+    u->result =
+        vl_file_set_write(&u->files, u->maps.items[i].name, u->maps.items[i].data, u->maps.items[i].size, &u->error);
+  for (size_t i = 0; i + 1 < u->outputs.count && u->result == VL_OK; i += 2)
+    u->result = vl_file_set_write(&u->files, u->outputs.items[i], u->outputs.items[i + 1],
+                                  strlen(u->outputs.items[i + 1]), &u->error);
+  if (u->result == VL_OK) u->result = vl_file_set_main(&u->files, text, strlen(text), &u->error);
+  if (u->result != VL_OK) return false;
+  for (size_t i = 0; i < u->maps.count; i++) {
+    snprintf(path, sizeof path, "%s/%s", u->to_folder, u->maps.items[i].name);
+    tell_written(u, path, "the light's image, equal-area");
+  }
+  for (size_t i = 0; i + 1 < u->outputs.count; i += 2) {
+    snprintf(path, sizeof path, "%s/%s", u->to_folder, u->outputs.items[i]);
+    tell_written(u, path, "a pbrt-v4 file");
+  }
+  tell_written(u, u->to, "a pbrt-v4 file");
   return true;
 }
 
@@ -185,6 +201,7 @@ static void release(vlUpgrade *u) {
   for (size_t i = 0; i < u->maps.count; i++) {
     vl_free(c, u->maps.items[i].from);
     vl_free(c, u->maps.items[i].name);
+    vl_free(c, u->maps.items[i].data);
   }
   VL_ARRAY_FREE(c, &u->textures);
   VL_ARRAY_FREE(c, &u->includes);
@@ -203,14 +220,7 @@ static bool run(vlUpgrade *u) {
                            "%u statements have no counterpart in pbrt-v4; nothing is written", u->lost);
     return false;
   }
-  bool fine = vl_old_check(u, text) && vl_old_convert_maps(u);
-  for (size_t i = 0; fine && i + 1 < u->outputs.count; i += 2) {
-    char path[PATH_MAX + 4200];
-    snprintf(path, sizeof path, "%s/%s", u->to_folder, u->outputs.items[i]);
-    vl_old_make_folders(u, path);
-    fine = write_text(u, path, u->outputs.items[i + 1]);
-  }
-  fine = fine && write_text(u, u->to, text);
+  bool fine = vl_old_check(u, text) && write_files(u, text);
   vl_free(u->context, text);
   return fine;
 }
@@ -236,8 +246,8 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
                  .plain_path = true};
   if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
   u.same_folder = folder_of(from, u.from_folder) && strcmp(u.from_folder, u.to_folder) == 0;
-  u.is_old = vl_old_scene(context, from).version != 0;
-  run(&u);
+  vl_file_set_begin(&u.files, context, to);
+  vl_file_set_end(&u.files, run(&u));
   release(&u);
   if (error && u.result != VL_OK) *error = u.error;
   return u.result;

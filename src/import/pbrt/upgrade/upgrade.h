@@ -5,7 +5,7 @@
 #ifndef IMPORT_PBRT_UPGRADE_UPGRADE_H
 #define IMPORT_PBRT_UPGRADE_UPGRADE_H
 
-#include "base/array.h"
+#include "base/file_set.h"
 #include "velo/scene.h"
 #include "velo/upgrade.h"
 
@@ -71,10 +71,12 @@ typedef struct vlOldInclude {
   bool makes, refers; /* names */
 } vlOldInclude;
 
-/* An image of a light that is converted at the end. */
+/* An image of a light. */
 typedef struct vlOldMap {
   char *from, *name; /* path of the old image; name of the new one, beside the new scene */
   double factor[3];
+  void *data; /* bytes of the new file */
+  size_t size;
 } vlOldMap;
 
 typedef struct vlUpgrade {
@@ -94,6 +96,7 @@ typedef struct vlUpgrade {
   VL_ARRAY(vlOldTexture) textures;
   VL_ARRAY(vlOldInclude) includes;
   VL_ARRAY(char *) outputs; /* pairs: name, relative to the new scene's folder, and text of the files to write */
+  vlFileSet files;          /* the new scene's */
   uint32_t missing;         /* files that were not found */
   VL_ARRAY(vlOldMap) maps;
   uint32_t depth;
@@ -255,14 +258,11 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */
 bool vl_old_upgrade_file(vlUpgrade *u, const char *path, char **text, bool *changed);
-/* The name of the equal-area image that an image over longitude and latitude becomes, times the factor.
- * vl_old_convert_maps makes all of them. */
+/* The name of the equal-area image that an image over longitude and latitude becomes, times the factor. The image is
+ * made, and written at the end. */
 bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const double factor[3], char *result,
                         size_t size);
-bool vl_old_convert_maps(vlUpgrade *u);
 /* Reads the new scene as velo reads scenes; false: it is wrong. Nothing is written before (check.c). */
 bool vl_old_check(vlUpgrade *u, const char *text);
-/* Makes the folders of a file that is to be written, below the new scene's folder. */
-void vl_old_make_folders(const vlUpgrade *u, const char *path);
 
 #endif

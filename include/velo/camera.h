@@ -37,6 +37,7 @@ typedef enum vlProjection {
 #define VL_KIND(NAME, name) VL_PROJECTION_##NAME,
   VL_PROJECTION_KINDS(VL_KIND)
 #undef VL_KIND
+      VL_PROJECTION_OWN /**< functions of the caller's: vlCameraDef.own. Scene files and camera files cannot have it */
 } vlProjection;
 
 /** "perspective", "equidistant fisheye", ...; a constant string; "unknown" for another number. */
@@ -158,6 +159,11 @@ typedef struct vlCameraDef {
 
   vlStereo stereo;  /**< default none */
   vlEye stereo_eye; /**< the eye that vl_camera_make makes; default BOTH */
+
+  /** A camera of one's own (velo/own.h); must outlive the def and its cameras. It replaces projection, lens,
+   * distortion, focal length and principal point, whose members are then ignored. Size, pose, time, planes (as
+   * distances from the rays' origins), exposure_time and stereo keep their meanings. Default null: none. */
+  const struct vlOwnCamera *own;
 } vlCameraDef;
 
 /** The default def for an image of this size, in pixels: a pinhole camera at the origin that looks along -z. */
@@ -205,6 +211,10 @@ typedef struct vlCamera {
   double outside;             /**< share of the image, 0 to 1, that is outside the camera's domain */
   double eye_circle; /**< omnidirectional stereo: radius of the circle of eyes, scene units; positive for the right eye,
                         negative for the left; 0: a single eye point */
+  const struct vlOwnCamera *own; /**< the projection OWN: its functions; else null */
+  double own_size[2]; /**< OWN: width and height of the image whose pixels its functions count. (x_cam, y_cam) is a film
+                         point in these pixels: fx, fy are 1 and cx, cy 0 unless the camera was resized */
+  double own_pixel[2]; /**< OWN: the side of that image's central pixel: angle, radians; width, units of camera space */
 } vlCamera;
 
 /** Compiles a def. Errors: ARGUMENT with a message (fov out of range, eye = lookat, parameters that disagree, NaN,

@@ -5,6 +5,7 @@
 #ifndef VELO_FILM_H
 #define VELO_FILM_H
 
+#include "velo/own.h"
 #include "velo/receipt.h"
 #include "velo/render.h"
 
@@ -95,6 +96,11 @@ VL_API vlResult vl_film_file_next(vlFilmFile *file, bool check, vlFilmBlock *blo
  * vl_film_spectrum. Errors: ARGUMENT, MISSING, IO, MEMORY, UNSUPPORTED; SCENE: the file is not a film file, is damaged,
  * has no samples, or (without `partial`) has pixels without samples or with other first samples. */
 VL_API vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm **film, vlError *error);
+
+/** The name of the code of one's own (velo/own.h) of this kind that made the film's samples; null: none. Film files
+ * keep it. vl_render refuses to add samples made by code of another name, and vl_film_merge to join them. The string
+ * lives until the film changes. */
+VL_API const char *vl_film_own(const vlFilm *film, vlOwnKind kind);
 
 /** How to merge films. */
 typedef struct vlFilmMergeDef {

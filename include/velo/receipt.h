@@ -6,6 +6,7 @@
 #define VELO_RECEIPT_H
 
 #include "velo/camera.h"
+#include "velo/own.h"
 #include "velo/render.h"
 #include "velo/scene.h"
 
@@ -67,12 +68,15 @@ VL_API double vl_receipt_noise(const vlReceipt *receipt);
 VL_API float vl_receipt_exposure(const vlReceipt *receipt);
 /** Recorded file `index`, from 0: fills *record and returns it; null past the end. */
 VL_API const vlFileRecord *vl_receipt_file(const vlReceipt *receipt, uint32_t index, vlFileRecord *record);
+/** The name of the code of one's own of this kind that makes the image; null: none. A receipt has only the name: the
+ * program with that code makes the image again. */
+VL_API const char *vl_receipt_own(const vlReceipt *receipt, vlOwnKind kind);
 /** The version of velo and the commit that the program was built from, each "" if it is not in the receipt. */
 VL_API const char *vl_receipt_version(const vlReceipt *receipt, const char **commit);
 /** The camera as its file or scene describes it, with the image size of that description; every number is exact. size:
  * width and height of the rendered image in pixels (vl_camera_resize fits the camera to it). crop: as in vlFilmDef.
  * Both may be null. Errors: SCENE: the contents are wrong; UNSUPPORTED: the camera has a lens of many elements or an
- * image as its aperture, of which the receipt has only digests. */
+ * image as its aperture, of which the receipt has only digests, or it is a camera of one's own. */
 VL_API vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32_t size[2], uint32_t crop[4],
                                   vlError *error);
 

@@ -7,6 +7,7 @@
 #include "velo/base.h"
 #include "velo/camera.h"
 #include "velo/image.h"
+#include "velo/own.h"
 #include "velo/scene.h"
 
 #ifdef __cplusplus
@@ -230,6 +231,9 @@ typedef struct vlRenderDef {
   /** Of several calls that run at once in a context, those with the highest priority get all workers; the others wait
    * between two batches, except for one batch each 50 ms. Default 0. */
   int priority;
+  /** A sampler of one's own (velo/own.h), in place of `sampler` for all paths that begin at the camera. Must outlive
+   * the call. `sampler` then still gives the numbers of light paths and the length of the sequence. Default null. */
+  const vlOwnSampler *own_sampler;
 } vlRenderDef;
 /** The default def. */
 VL_API vlRenderDef vl_default_render_def(void);
@@ -241,6 +245,7 @@ typedef struct vlRenderStats {
   uint32_t blocks, noisy_blocks; /**< number of blocks; of those not below vlRenderDef.noise */
   uint64_t paths, camera_rays, bounce_rays, shadow_rays; /**< counts */
   uint64_t not_finite;       /**< number of samples discarded because they were not finite or above 2^40 */
+  uint64_t own_numbers;      /**< numbers of vlRenderDef.own_sampler that were not in [0, 1), and were replaced */
   double seconds;            /**< duration of the call */
   uint32_t worst_x, worst_y; /**< a pixel where a sample was discarded */
 } vlRenderStats;

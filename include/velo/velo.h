@@ -21,6 +21,7 @@
 #include "velo/focus.h"
 #include "velo/group.h"
 #include "velo/image.h"
+#include "velo/own.h"
 #include "velo/paths.h"
 #include "velo/receipt.h"
 #include "velo/render.h"

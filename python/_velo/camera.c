@@ -22,6 +22,7 @@ PyObject *camera_object(const vlCameraDef *def, PyObject *keep) {
   const char *warning = NULL;
   vlError error = {0};
   vlResult done = vl_camera_make(def, &compiled, &warning, &error);
+  if (!own_check(def->own ? def->own->user : NULL)) return NULL;
   if (done != VL_OK) return raise_result(done, &error);
   return camera_wrap(def, &compiled, warning, keep);
 }
@@ -121,6 +122,10 @@ static int set_special(vlCameraDef *def, PyObject *keep, const char *name, PyObj
   } else if (strcmp(name, "world_from_camera_close") == 0) {
     def->has_matrix_close = true;
     fine = numbers_copy(value, name, 16, def->world_from_camera_close);
+  } else if (strcmp(name, "own") == 0) {
+    Own *own = value == Py_None ? NULL : own_read(value, VL_OWN_CAMERA, name);
+    fine = value == Py_None || (own && keep_object(keep, value));
+    if (fine) def->own = own ? &own->camera : NULL;
   } else if (strcmp(name, "pose_times") == 0) {
     fine = numbers_copy(value, name, 2, def->pose_times);
   } else if (strcmp(name, "focus_pixel") == 0) {
@@ -153,6 +158,7 @@ static const char *const special_names[] = {"K",
                                             "distortion_coefficients",
                                             "shutter",
                                             "colmap",
+                                            "own",
                                             NULL};
 
 static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
@@ -222,6 +228,7 @@ static PyObject *camera_replace(Camera *self, PyObject *keywords) {
 /* ---- changes of the compiled camera ------------------------------------------------------------------------------ */
 
 static PyObject *with_compiled(Camera *self, vlResult done, const vlCamera *made, const vlError *error) {
+  if (!own_check(own_of_camera(&self->camera))) return NULL;
   if (done != VL_OK) return raise_result(done, error);
   vlCameraDef def = self->def;
   def.width = made->width, def.height = made->height;
@@ -308,7 +315,10 @@ static PyObject *camera_project(Camera *self, PyObject *points) {
     PyEval_RestoreThread(thread);
   }
   numbers_release(&n);
-  return Py_BuildValue("(NNN)", pixels, z, valid);
+  PyObject *result = Py_BuildValue("(NNN)", pixels, z, valid);
+  if (own_check(own_of_camera(&self->camera))) return result;
+  Py_XDECREF(result);
+  return NULL;
 }
 
 /* _unproject(pixels): origins, directions, valid as bytearrays. */
@@ -325,7 +335,10 @@ static PyObject *camera_unproject(Camera *self, PyObject *pixels) {
     PyEval_RestoreThread(thread);
   }
   numbers_release(&n);
-  return Py_BuildValue("(NNN)", origins, directions, valid);
+  PyObject *result = Py_BuildValue("(NNN)", origins, directions, valid);
+  if (own_check(own_of_camera(&self->camera))) return result;
+  Py_XDECREF(result);
+  return NULL;
 }
 
 static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
@@ -334,7 +347,8 @@ static PyObject *camera_solid_angle(Camera *self, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "OO:solid_angle", &point[0], &point[1]) || !read_finite(point[0], "x", &x) ||
       !read_finite(point[1], "y", &y))
     return NULL;
-  return PyFloat_FromDouble(vl_camera_solid_angle(&self->camera, x, y));
+  double angle = vl_camera_solid_angle(&self->camera, x, y);
+  return own_check(own_of_camera(&self->camera)) ? PyFloat_FromDouble(angle) : NULL;
 }
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */

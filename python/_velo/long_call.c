@@ -141,6 +141,20 @@ static void forget(Waiting *w) {
   if (*place) *place = w->next;
 }
 
+bool long_call_fail(const Own *own, PyObject *error) {
+  bool any = false;
+  for (Waiting *w = running; w; w = w->next)
+    for (size_t i = 0; i < sizeof w->call->own / sizeof *w->call->own; i++) {
+      if (w->call->own[i] != own) continue;
+      if (!w->call->error) Py_INCREF(error), w->call->error = error;
+      vl_cancel_request(w->call->cancel);
+      any = true;
+      break;
+    }
+  if (any) Py_DECREF(error);
+  return any;
+}
+
 bool long_call_begin(LongCall *call, const Context *context, PyObject *callback) {
   *call = (LongCall){.callback = callback == Py_None ? NULL : callback};
   if (!context_check(context)) return false;
@@ -189,6 +203,10 @@ bool long_call_run(LongCall *c, bool *busy, LongBody *body, void *user, vlResult
   sem_destroy(&w.answered);
   if (shutting_down) wait_for_the_end();
   *result = w.result;
+  if (c->error) {
+    if (!PyErr_Occurred()) PyErr_SetObject((PyObject *)Py_TYPE(c->error), c->error);
+    Py_CLEAR(c->error);
+  }
   if (!started) raise_result(VL_ERROR_MEMORY, NULL);
   return !PyErr_Occurred();
 }

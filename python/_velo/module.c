@@ -4,8 +4,8 @@
 #include <string.h>
 
 PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
-static const char *const type_names[TYPE_COUNT] = {"Context", "Scene",  "World",    "Film",  "Image",
-                                                   "Plane",   "Camera", "Settings", "Handle"};
+static const char *const type_names[TYPE_COUNT] = {"Context", "Scene",  "World",    "Film",   "Image",
+                                                   "Plane",   "Camera", "Settings", "Handle", "Own"};
 
 void *make_object(int type) {
   allocfunc allocate = (allocfunc)PyType_GetSlot(types[type], Py_tp_alloc);
@@ -118,8 +118,8 @@ static struct PyModuleDef module_def = {PyModuleDef_HEAD_INIT, .m_name = "velo._
                                         .m_methods = functions};
 
 PyMODINIT_FUNC PyInit__velo(void) {
-  PyType_Spec *specs[TYPE_COUNT] = {&context_spec, &scene_spec,  &world_spec,    &film_spec,  &image_spec,
-                                    &plane_spec,   &camera_spec, &settings_spec, &handle_spec};
+  PyType_Spec *specs[TYPE_COUNT] = {&context_spec, &scene_spec,  &world_spec,    &film_spec,   &image_spec,
+                                    &plane_spec,   &camera_spec, &settings_spec, &handle_spec, &own_spec};
   PyObject *module = PyModule_Create(&module_def);
   if (!module) return NULL;
   for (int i = 0; i < TYPE_COUNT; i++) {
@@ -129,7 +129,8 @@ PyMODINIT_FUNC PyInit__velo(void) {
     Py_INCREF(type);
     types[i] = (PyTypeObject *)type;
   }
-  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions, render_functions, world_functions};
+  PyMethodDef *tables[] = {camera_functions, film_functions,  image_functions,
+                           render_functions, world_functions, own_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
     if (PyModule_AddFunctions(module, tables[i]) < 0) return NULL;
   return module;

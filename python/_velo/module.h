@@ -66,6 +66,16 @@ typedef struct Settings {
   PyObject *keep; /* list */
 } Settings;
 
+/* Code of one's own: Python functions that the library's threads call. velo/own.py has the classes around it. */
+typedef struct Own {
+  PyObject_HEAD vlOwnKind kind;
+  char name[VL_OWN_NAME];
+  PyObject *function, *pixels; /* of velo/own.py; pixels may be null */
+  PyObject *error;             /* the first exception outside of a long call; null: none */
+  vlOwnCamera camera;
+  vlOwnSampler sampler;
+} Own;
+
 /* The id of a texture, material, medium, emission, shape or group in a scene. */
 typedef struct Handle {
   PyObject_HEAD Scene *scene;
@@ -84,11 +94,12 @@ enum {
   TYPE_CAMERA,
   TYPE_SETTINGS,
   TYPE_HANDLE,
+  TYPE_OWN,
   TYPE_COUNT
 };
 extern PyTypeObject *base_types[TYPE_COUNT], *types[TYPE_COUNT];
 extern PyType_Spec context_spec, scene_spec, world_spec, film_spec, image_spec, plane_spec, camera_spec, settings_spec,
-    handle_spec;
+    handle_spec, own_spec;
 
 /* A new object of a class, all zero; null with an exception. */
 void *make_object(int type);
@@ -120,6 +131,8 @@ typedef struct LongCall {
   PyObject *callback; /* null: none */
   Film *film;         /* which the callback may read after a pass; may be null */
   Waiting *waiting;
+  const Own *own[6]; /* whose functions it calls; null: none */
+  PyObject *error;   /* the first exception of these functions; null: none */
 } LongCall;
 typedef vlResult LongBody(void *user);
 /* callback: a callable, or None. False: an exception is set. True: long_call_end must follow. */
@@ -131,6 +144,8 @@ void long_call_end(LongCall *call);
 /* The callbacks for the def of a call; user is the LongCall. */
 bool long_call_progress(void *user, const vlProgress *progress);
 bool long_call_step(void *user, const vlStep *step);
+/* Ends the long calls that call this code, with an exception (taken). False: there are none. */
+bool long_call_fail(const Own *own, PyObject *error);
 /* The film that this thread may read, although a render runs: inside a callback after a pass. */
 extern _Thread_local const Film *open_film;
 /* shut_down(): stops the calls of other threads, and waits for them; later ones are errors. */
@@ -234,6 +249,14 @@ bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject
 /* Kind `name` of a family; -1 with an exception. thing: what messages call it. */
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name);
 
+/* The code of one's own behind a def's pointers; null: none. */
+const Own *own_of_camera(const vlCamera *camera);
+const Own *own_of_sampler(const vlRenderDef *def);
+/* An Own of this kind from a Python value; null with an exception. */
+Own *own_read(PyObject *value, vlOwnKind kind, const char *what);
+/* Raises the exception that its function left outside of a long call, if any. False: raised. own may be null. */
+bool own_check(const Own *own);
+
 /* ---- functions of the files -------------------------------------------------------------------------------------- */
 
 PyObject *image_object(Context *context, vlImage *image); /* takes the image, also when it fails */
@@ -257,6 +280,7 @@ PyObject *scene_handles(Scene *self, PyObject *family);
 PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
-extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[];
+extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[],
+    own_functions[];
 
 #endif

@@ -55,7 +55,12 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
     int kind = find_kind(vl_kind_family_find("tracers"), "tracer", value);
     if (kind < 0) return NULL;
     self->defs.render.tracer = (vlTracer)kind;
+  } else if (strcmp(row->member, "render.sampler") == 0 && is_object(value, TYPE_OWN)) {
+    Own *own = own_read(value, VL_OWN_SAMPLER, "sampler");
+    if (!own || !keep_object(self->keep, value)) return NULL;
+    self->defs.render.own_sampler = &own->sampler;
   } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.sampler") == 0) {
+    self->defs.render.own_sampler = NULL;
     int kind = find_kind(vl_kind_family_find("samplers"), "sampler", value);
     if (kind < 0) return NULL;
     self->defs.render.sampler = (vlSamplerKind)kind;
@@ -200,6 +205,7 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   LongCall call;
   if (!long_call_begin(&call, world->context, callback)) return NULL;
   call.film = film;
+  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(&settings->defs.render);
   Rendering r = {.world = world->world, .camera = &camera->camera, .film = film->film, .def = settings->defs.render};
   r.def.cancel = call.cancel;
   r.def.progress = call.callback ? long_call_progress : NULL;
@@ -213,11 +219,11 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   if (done == VL_CANCELLED) Py_RETURN_NONE;
   if (done != VL_OK) return raise_result(done, &r.error);
   const vlRenderStats s = r.stats;
-  return Py_BuildValue("{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp, "paths",
+  return Py_BuildValue("{s:I,s:d,s:K,s:K,s:K,s:K,s:K,s:K,s:d,s:I,s:I}", "spp", s.spp, "mean_spp", s.mean_spp, "paths",
                        (unsigned long long)s.paths, "camera_rays", (unsigned long long)s.camera_rays, "bounce_rays",
                        (unsigned long long)s.bounce_rays, "shadow_rays", (unsigned long long)s.shadow_rays,
-                       "not_finite", (unsigned long long)s.not_finite, "seconds", s.seconds, "blocks", s.blocks,
-                       "noisy_blocks", s.noisy_blocks);
+                       "not_finite", (unsigned long long)s.not_finite, "own_numbers", (unsigned long long)s.own_numbers,
+                       "seconds", s.seconds, "blocks", s.blocks, "noisy_blocks", s.noisy_blocks);
 }
 
 typedef struct Choosing {
@@ -261,6 +267,7 @@ static PyObject *choose_tracer(PyObject *module, PyObject *arguments) {
   if (!world->world) return raise_usage("the world is closed");
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None)) return NULL;
+  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(&settings->defs.render);
   Choosing c = {
       .world = world->world, .camera = &camera->camera, .film = settings->defs.film, .def = settings->defs.render};
   c.def.spp = spp, c.def.cancel = call.cancel;
@@ -341,6 +348,8 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None)) return NULL;
   def->cancel = call.cancel;
+  call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(def->render);
+  call.own[2] = own_of_camera(def->forward), call.own[3] = own_of_camera(def->backward);
   world->users++;
   vlResult done;
   bool fine = long_call_run(&call, film == Py_None ? NULL : &((Film *)film)->busy, run_channels, &t, &done);
@@ -425,6 +434,7 @@ static PyObject *boxes(PyObject *module, PyObject *arguments) {
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None)) return PyMem_Free(list), NULL;
   b.def.cancel = call.cancel;
+  call.own[0] = own_of_camera(&camera->camera);
   world->users++;
   vlResult done;
   bool fine = long_call_run(&call, NULL, run_boxes, &b, &done);
@@ -455,6 +465,7 @@ static PyObject *autofocus(PyObject *module, PyObject *arguments) {
   vlError error = {0};
   vlResult done = vl_autofocus(world->world, &camera->camera, x, y, &distance, &error);
   call_end(&call);
+  if (!own_check(own_of_camera(&camera->camera))) return NULL;
   return done == VL_OK ? PyFloat_FromDouble(distance) : raise_result(done, &error);
 }
 

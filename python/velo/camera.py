@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Optional, Sequence, Union
 from velo import _arrays, _check, _velo
 from velo._context import context_or_default
 from velo.image import Path
+from velo.own import bare
 
 
 class Projection(NamedTuple):
@@ -38,11 +39,12 @@ class Camera(_velo.Camera):
     world_from_camera, camera_from_world: 4 x 4; the camera's x points right, y down, z forward.
     colmap: (model, parameters), one of COLMAP's camera models.
     shutter: pairs of time (0 to 1) and opening.
+    own: a velo.OwnCamera, in place of projection and lens.
 
     Without keywords it is a pinhole camera at the origin that looks along -z, with 90 degrees across the smaller side."""
 
     def __new__(cls, width: int, height: int, **keywords: Any) -> "Camera":
-        return _velo.camera_new(width, height, keywords)
+        return _velo.camera_new(width, height, {name: bare(value) for name, value in keywords.items()})
 
     @property
     def width(self) -> int:
@@ -76,7 +78,7 @@ class Camera(_velo.Camera):
 
     def replace(self, **keywords: Any) -> "Camera":
         """This camera with other parameters. A given focal length replaces all that were given before."""
-        return self._replace(keywords)
+        return self._replace({name: bare(value) for name, value in keywords.items()})
 
     def resize(self, width: int, height: int) -> "Camera":
         """This camera for another image size. Focal length and principal point scale with the smaller side."""

@@ -10,10 +10,12 @@ from velo._errors import Progress, Step, UsageError, unknown, wrong_value
 from velo.camera import Camera
 from velo.film import Film
 from velo.image import Image, Path, join
+from velo.own import OwnCamera, bare
 
 Handle = _velo.Handle
 Callback = Callable[[Progress], Optional[bool]]
 StepCallback = Callable[[Step], Optional[bool]]
+AnyCamera = Union[Camera, OwnCamera, None]
 
 # Keywords of vlLoadDef; the other keywords of load() are those of vlCompleteDef.
 _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
@@ -259,7 +261,7 @@ class Scene(_velo.Scene):
         if crop is not None:
             settings.set_crop(*_check.tuple_of(crop, 4, "crop", "(x0, y0, x1, y1), four whole numbers"))
         for name, value in keywords.items():
-            settings.set(name, value)
+            settings.set(name, bare(value))
         return settings
 
     def world(self, *, previous: Optional[World] = None, progress: Optional[StepCallback] = None, **keywords: Any) -> World:
@@ -293,12 +295,12 @@ class Scene(_velo.Scene):
         """The film of the last render. After a KeyboardInterrupt it has the finished passes."""
         return self._film
 
-    def render(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+    def render(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), progress: Optional[Callback] = None,
                film: Optional[Film] = None, denoise: bool = False, **keywords: Any) -> Image:
         """Renders an image: linear R G B A, float32.
 
-        camera: default the scene's. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
+        camera: default the scene's; a velo.OwnCamera takes its place and its size. resolution: (width, height), pixels. crop: x0, y0, x1, y1, pixels, exclusive.
         channels: ground truth of the pixels' centres as further channels: "Z", "P", "N", "uv", "albedo", "id.object",
         "id.instance", ... (velo.channel_names(), docs/ground-truth.md).
         progress: called about ten times a second with a velo.Progress; False ends the render after its finished passes.
@@ -306,7 +308,7 @@ class Scene(_velo.Scene):
         denoise: denoises the colours.
         Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,
         max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()). tracer="auto": the
-        tracer that choose_tracer names.
+        tracer that choose_tracer names. sampler may be a velo.OwnSampler.
 
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
         denoise = _check.flag(denoise, "denoise")
@@ -318,7 +320,7 @@ class Scene(_velo.Scene):
         _velo.render(world, view, target, settings, progress)
         return self._develop(world, view, target, settings, channels, denoise)
 
-    def passes(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+    def passes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                crop: Optional[Sequence[int]] = None, channels: Sequence[str] = (), film: Optional[Film] = None,
                coarse: Sequence[int] = (), **keywords: Any) -> Iterator[Image]:
         """Renders and yields the images so far: at 1, 2, 4, ... and finally spp samples per pixel. The last one has the bits
@@ -365,10 +367,14 @@ class Scene(_velo.Scene):
     def _context_of(self) -> Any:
         return self.context
 
-    def _prepare(self, camera: Optional[Camera], resolution: Optional[tuple[int, int]], crop: Optional[Sequence[int]],
+    def _prepare(self, camera: AnyCamera, resolution: Optional[tuple[int, int]], crop: Optional[Sequence[int]],
                  channels: Sequence[str], film: Optional[Film], denoise: bool,
                  keywords: dict[str, Any]) -> tuple[Any, Camera]:
         channels = _check.names(channels, "channels")
+        if isinstance(camera, OwnCamera):
+            size = film.resolution if film is not None else resolution
+            base = self.camera if size is None else self.camera.resize(*size)
+            camera = base.replace(own=camera)
         _check.instance(camera, Camera, "camera", optional=True)
         _check.instance(film, Film, "film", optional=True)
         if film is not None:
@@ -391,7 +397,7 @@ class Scene(_velo.Scene):
         for name, value in chosen.items():
             settings.set(name, value)
 
-    def choose_tracer(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+    def choose_tracer(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                       **keywords: Any) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         """A short race of tracers (docs/tracers.md): (the keywords of render with which it has the least error for the same
         time, the trials). A trial has tracer, light_paths, error, missing, cost, and work: error times cost over that of the
@@ -410,7 +416,7 @@ class Scene(_velo.Scene):
         more = _velo.channels(world, view, film, settings, list(channels), {}, None, None) if channels else ()
         return join(image.denoise(), more)
 
-    def ground_truth(self, channels: Sequence[str], *, camera: Optional[Camera] = None,
+    def ground_truth(self, channels: Sequence[str], *, camera: AnyCamera = None,
                      resolution: Optional[tuple[int, int]] = None, crop: Optional[Sequence[int]] = None,
                      film: Optional[Film] = None, forward: Optional[Camera] = None, backward: Optional[Camera] = None,
                      mode: str = "centre", ranks: int = 6, time: Optional[float] = None, **keywords: Any) -> Image:
@@ -427,7 +433,7 @@ class Scene(_velo.Scene):
                                                  forward, backward) if part is not None]
         return join(parts[0], parts[1:])
 
-    def boxes(self, *, camera: Optional[Camera] = None, resolution: Optional[tuple[int, int]] = None,
+    def boxes(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
               crop: Optional[Sequence[int]] = None, **keywords: Any) -> dict[str, list[dict[str, Any]]]:
         """Bounding boxes of "object" and "instance" ids, that of id 1 first: seen and all (pixels: visible, and with what
         occludes it away), seen_box and all_box (x0, y0, x1, y1; exclusive), outline, space (velo/boxes.h)."""

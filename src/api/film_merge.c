@@ -75,6 +75,13 @@ static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
     vl_receipt_destroy(then);
     vl_receipt_destroy(now);
   }
+  vlOwnKind kind = vl_film_own_differs(&r->shape.own, &first->shape.own);
+  if (result == VL_OK && kind < VL_OWN_KINDS) {
+    const char *now_name = r->shape.own.name[kind], *then_name = first->shape.own.name[kind];
+    result =
+        vl_fail(m->error, VL_ERROR_SCENE, "%s and %s are of different renders: own %s is \"%s\", was \"%s\"", r->path,
+                first->path, vl_own_words[kind], vl_short_text(now_name).text, vl_short_text(then_name).text);
+  }
   if (result == VL_OK && !same_film(&r->shape, &first->shape))
     result = vl_fail(m->error, VL_ERROR_SCENE,
                      "%s and %s are of different renders: their films differ (size, crop, "

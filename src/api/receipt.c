@@ -80,6 +80,7 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
  * of the image. */
 static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   vlCameraRecord record = {.camera = *camera};
+  if (camera->own) record.camera.projection = VL_PROJECTION_OWN;
   vlCameraText text = {.context = context};
   vl_camera_put_velo(&record, &text);
   /* reads all numbers as reals, which keeps -0; the counts become integers below */
@@ -103,8 +104,10 @@ static bool put_digest(json_t *object, const char *key, const uint8_t digest[16]
   return vl_receipt_put(object, key, json_string(text));
 }
 
-/* Adds digests of what camera files cannot hold: the aperture's image and a lens of many elements. */
+/* Adds digests of what camera files cannot hold: the aperture's image and a lens of many elements; and the name of a
+ * camera of one's own. */
 static bool put_optics(json_t *camera, const vlCameraDef *def) {
+  if (def->own && !vl_receipt_put(camera, "own", json_string(def->own->name))) return false;
   uint8_t digest[16];
   if (def->lens.aperture) {
     vl_aperture_digest(def->lens.aperture, digest);
@@ -245,6 +248,13 @@ const char *vl_receipt_output(const vlReceipt *receipt, uint32_t index) {
   return json_string_value(json_array_get(json_object_get(receipt->tree, "outputs"), index));
 }
 
+const char *vl_receipt_own(const vlReceipt *receipt, vlOwnKind kind) {
+  static const char *const places[VL_OWN_KINDS][2] = {
+      {"camera", "own"}, {"render", "own_sampler"}, {"render", "own_tracer"}};
+  if ((unsigned)kind >= VL_OWN_KINDS) return NULL;
+  return json_string_value(json_object_get(json_object_get(receipt->tree, places[kind][0]), places[kind][1]));
+}
+
 /* Returns an integer from 0 to 2^32 - 1, or 0 if the value is anything else. */
 static uint32_t count_of(const json_t *value) {
   json_int_t number = json_integer_value(value);
@@ -296,6 +306,10 @@ vlResult vl_receipt_camera(const vlReceipt *receipt, vlCameraDef *camera, uint32
     return vl_fail(error, VL_ERROR_SCENE, "receipt: there is no camera");
   if (json_object_get(tree, "optics_digest") || json_object_get(tree, "aperture_digest"))
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: it does not hold the camera's lens, the scene does");
+  const char *own = vl_receipt_own(receipt, VL_OWN_CAMERA);
+  if (own)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "receipt: it does not hold the own camera \"%s\", only its name",
+                   vl_short_text(own).text);
   uint32_t window[4], whole[2] = {count_of(json_object_get(film, "width")), count_of(json_object_get(film, "height"))};
   for (size_t i = 0; i < 4; i++) window[i] = count_of(json_array_get(json_object_get(film, "crop"), i));
   if (!(window[0] < window[2] && window[1] < window[3] && window[2] <= whole[0] && window[3] <= whole[1]))

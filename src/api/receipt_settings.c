@@ -186,7 +186,9 @@ static bool put_build(json_t *tree, const vlBuildDef *build) {
 /* Adds the render settings. A default length of the sequence is replaced by its number. */
 static bool put_render(json_t *tree, vlRenderDef render) {
   if (!render.sequence) render.sequence = vl_sampler_sequence(render.sampler, render.spp);
+  const char *sampler = render.own_sampler ? render.own_sampler->name : NULL;
   return put_def(tree, "render", render_fields, &render) &&
+         (!sampler || vl_receipt_put(json_object_get(tree, "render"), "own_sampler", json_string(sampler))) &&
          (!(render.noise > 0) || put_def(json_object_get(tree, "render"), "adaptive", noise_fields, &render));
 }
 

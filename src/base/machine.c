@@ -97,6 +97,21 @@ unsigned vl_machine_flush_denormals(void) {
 #endif
 }
 
+unsigned vl_machine_keep_denormals(void) {
+#if defined(__SSE__)
+  unsigned state = _mm_getcsr();
+  _mm_setcsr(state & ~0x8040u);
+  return state;
+#elif defined(__aarch64__)
+  uint64_t state;
+  __asm__ volatile("mrs %0, fpcr" : "=r"(state));
+  __asm__ volatile("msr fpcr, %0" ::"r"(state & ~(UINT64_C(1) << 24)));
+  return (unsigned)state;
+#else
+  return 0;
+#endif
+}
+
 void vl_machine_restore_denormals(unsigned state) {
 #if defined(__SSE__)
   _mm_setcsr(state);

@@ -20,5 +20,7 @@ void vl_machine_large_pages(void *block, size_t size);
  * previous state for vl_machine_restore_denormals. */
 unsigned vl_machine_flush_denormals(void);
 void vl_machine_restore_denormals(unsigned state);
+/* Ends that mode while the caller's own code runs. Returns the previous state, as vl_machine_flush_denormals. */
+unsigned vl_machine_keep_denormals(void);
 
 #endif

@@ -3,6 +3,7 @@
 #include "camera/eyes.h"
 #include "camera/lens.h"
 #include "camera/orthographic.h"
+#include "camera/own.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/rays.h"
@@ -172,8 +173,68 @@ static void optics_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
   }
 }
 
+/* A ray that is not finite, or whose weight is negative, stands for a sample that is left out: weight NaN. */
+static void own_place_loop(const vlCameraCompiled *camera, uint32_t count, const vlOwnRows *rows, const vlCameraRays *r,
+                           uint32_t first, float *valid, float *weight) {
+  const vlCameraCompiled copy = *camera, *c = &copy;
+  float *ox = r->ox + first, *oy = r->oy + first, *oz = r->oz + first;
+  float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
+  float *t_min = r->t_min + first, *t_max = r->t_max + first;
+  const double near_plane = c->near_plane, far_plane = c->far_plane;
+  /* must vectorise */
+  VL_SIMD for (uint32_t i = 0; i < count; i++) {
+    double x = rows->dx[i], y = rows->dy[i], z = rows->dz[i], factor = rows->weight[i];
+    double length = vl_length3(x, y, z);
+    vlWorldRay w = vl_own_place(c, rows->ox[i], rows->oy[i], rows->oz[i], x, y, z);
+    double sum = w.ox + w.oy + w.oz + length + factor;
+    int none = length == 0.0, bad = !(sum - sum == 0.0) || !(factor >= 0.0);
+    int good = !none && !bad;
+    ox[i] = (float)(good ? w.ox : 0.0);
+    oy[i] = (float)(good ? w.oy : 0.0);
+    oz[i] = (float)(good ? w.oz : 0.0);
+    dx[i] = (float)(good ? w.dx * w.inv_length : 0.0);
+    dy[i] = (float)(good ? w.dy * w.inv_length : 0.0);
+    dz[i] = (float)(good ? w.dz * w.inv_length : 1.0);
+    t_min[i] = (float)(good ? near_plane / length * w.length : 0.0);
+    t_max[i] = (float)(good && factor > 0.0 ? far_plane / length * w.length : -1.0);
+    valid[i] = none ? 0.0f : 1.0f;
+    weight[i] = (float)(bad ? (double)__builtin_nan("") : factor);
+  }
+}
+
+/* Rays of a camera of one's own. n is not padded: its functions get the samples alone. */
+static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
+  vlOwnRows rows;
+  float valid[VL_OWN_BATCH], weight[VL_OWN_BATCH];
+  for (uint32_t first = 0; first < n; first += VL_OWN_BATCH) {
+    uint32_t m = n - first < VL_OWN_BATCH ? n - first : VL_OWN_BATCH, count = VL_PAD(m);
+    const float *film_x = s->film_x + first, *film_y = s->film_y + first, *time = s->time + first;
+    const int32_t *pixel_x = s->pixel_x + first, *pixel_y = s->pixel_y + first;
+    /* must vectorise */
+    VL_SIMD for (uint32_t i = 0; i < count; i++) {
+      rows.x[i] = ((double)pixel_x[i] - c->cx + (double)film_x[i]) * c->inv_fx;
+      rows.y[i] = ((double)pixel_y[i] - c->cy + (double)film_y[i]) * c->inv_fy;
+      rows.lens_u[i] = (double)s->lens_u[first + i], rows.lens_v[i] = (double)s->lens_v[first + i];
+    }
+    for (uint32_t i = 0; i < count; i++) {
+      double seconds = c->when.timed ? vl_camera_seconds(c, pixel_x[i], pixel_y[i], time[i])
+                                     : c->shutter_open + c->shutter_time * (double)time[i];
+      r->time[first + i] = (float)seconds;
+      rows.time[i] = c->own_from + c->own_clock * seconds;
+    }
+    vl_own_rays(c, m, &rows);
+    own_place_loop(c, count, &rows, r, first, valid, weight);
+    for (uint32_t i = 0; r->valid && i < count; i++) r->valid[first + i] = valid[i];
+    for (uint32_t i = 0; r->weight && i < count; i++) r->weight[first + i] = weight[i];
+  }
+}
+
 static void still_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSamples *s, const vlCameraRays *r) {
   uint32_t count = VL_PAD(n);
+  if (c->own) {
+    own_rays(c, n, s, r);
+    return;
+  }
   if (c->optics) {
     optics_rays(c, count, s, r);
     return;

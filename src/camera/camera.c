@@ -4,6 +4,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "camera/kinds.h"
+#include "camera/own.h"
 #include "camera/parts.h"
 
 vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
@@ -99,6 +100,10 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (warning) *warning = NULL;
   if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: def or camera is null");
   if (def->cookie != VL_COOKIE_CAMERA) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: " VL_BAD_COOKIE);
+  if (def->projection == VL_PROJECTION_OWN && !def->own)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the projection OWN needs own");
+  vlCameraDef own;
+  if (def->own) own = vl_camera_own_def(def), def = &own;
   vlCamera made = {
       .projection = def->projection,
       .width = def->width,
@@ -117,6 +122,7 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (result == VL_OK) result = vl_camera_pose(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_time_part(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_lens(def, &made, error);
+  if (result == VL_OK) result = vl_camera_own(def, &made, error);
   if (result == VL_OK) result = vl_camera_domain(def, &made, warning, error);
   if (result == VL_OK) result = vl_camera_eye(&made, &def->stereo, def->stereo_eye, &made, error);
   if (result == VL_OK) *camera = made;

@@ -19,6 +19,13 @@ static double central_spread(const vlCameraCompiled *c) {
   return row->spread ? row->spread(c->shape) * size : size;
 }
 
+/* The factor by which a pose scales lengths: its mean over all directions. */
+static double scale_of(const double m[16]) {
+  double det =
+      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return vl_precise_cbrt(fabs(det));
+}
+
 static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   const vlLens *l = &camera->lens;
   c->ahead = vl_camera_sees_ahead(camera->projection);
@@ -78,19 +85,21 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   c->limit2 = camera->limit * camera->limit;
   c->distortion = camera->distortion;
   c->eye_circle = camera->eye_circle;
+  c->own = camera->own;
+  for (int i = 0; i < 2; i++) c->own_size[i] = (uint32_t)camera->own_size[i];
+  c->own_from = 0.0, c->own_clock = 1.0;
   compile_lens(camera, c);
   vl_camera_compile_time(camera, &c->when);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);
-  if (!perspective && !orthographic) {
-    c->pixel_spread = (float)central_spread(c);
-    return;
-  }
   double size = 1.0 / sqrt(camera->fx * camera->fy); /* a pixel's side at z = 1, or its width in camera units */
   if (perspective) {
     c->pixel_spread = (float)size;
+  } else if (orthographic) {
+    c->pixel_width = (float)(size * scale_of(m));
+  } else if (c->own) {
+    c->pixel_spread = (float)(size * camera->own_pixel[0]);
+    c->pixel_width = (float)(size * camera->own_pixel[1] * scale_of(m));
   } else {
-    double det =
-        m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-    c->pixel_width = (float)(size * vl_precise_cbrt(fabs(det)));
+    c->pixel_spread = (float)central_spread(c);
   }
 }

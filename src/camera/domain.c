@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "camera/kinds.h"
 #include "camera/optics.h"
+#include "camera/own.h"
 #include "camera/parts.h"
 #include "camera/points.h"
 #include "math/elementary.h"
@@ -178,6 +179,7 @@ static double share_outside(const vlCamera *camera) {
   vl_camera_compile(camera, &c);
   if (c.plain) return 0.0;
   if (c.optics) return dark_share(camera, &c);
+  if (c.own) return vl_own_outside(camera);
   uint32_t outside = 0;
   for (int i = 0; i < GRID * GRID; i++) {
     double x = camera->width * (i % GRID + 0.5) / GRID, y = camera->height * (i / GRID + 0.5) / GRID;

@@ -262,7 +262,8 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
   camera->fx = vl_is_unset(g.fx.value) ? g.fy.value : g.fx.value;
   camera->fy = vl_is_unset(g.fy.value) ? g.fx.value : g.fy.value;
   camera->skew = vl_is_unset(d->skew) ? 0.0 : d->skew;
-  double centre = d->projection == VL_PROJECTION_CUBE ? 0.0 : 0.5; /* the faces start at the corner */
+  /* the faces of a cube start at the corner, and so do the film points of a camera of one's own */
+  double centre = d->projection == VL_PROJECTION_CUBE || d->projection == VL_PROJECTION_OWN ? 0.0 : 0.5;
   camera->cx = vl_is_unset(g.cx.value) ? centre * d->width : g.cx.value;
   camera->cy = vl_is_unset(g.cy.value) ? centre * d->height : g.cy.value;
   /* outside of these limits the rays' arithmetic would overflow or underflow */

@@ -31,6 +31,12 @@ static void whole_cube(const vlCameraDef *d, const vlCamera *camera, double foca
   focal[0] = d->width / (cross ? 4.0 : 6.0), focal[1] = d->height / (cross ? 3.0 : 1.0);
 }
 
+/* The plane's unit is a pixel. */
+static void one_pixel(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
+  (void)d, (void)camera;
+  focal[0] = focal[1] = 1.0;
+}
+
 /* ---- the central pixel ------------------------------------------------------------------------------------------- */
 
 static double cube_spread(const double shape[2]) {
@@ -90,8 +96,12 @@ VL_PROJECTION_ROW(DOUBLE_SPHERE, double_sphere, .name = "double sphere", .key = 
 VL_PROJECTION_ROW(OPTICS, optics, .name = "optics",
                   .traits = VL_PROJECTION_AHEAD | VL_PROJECTION_CIRCLE | VL_PROJECTION_RADIAL);
 
+VL_PROJECTION_ROW(OWN, own, .name = "own",
+                  .traits = VL_PROJECTION_STRETCHED | VL_PROJECTION_NO_FOV | VL_PROJECTION_NO_DISTORTION,
+                  .standard_focal = one_pixel);
+
 #define ROW(NAME, name) [VL_PROJECTION_##NAME] = &vl_projection_##name,
-static const vlProjectionRow *const rows[] = {VL_PROJECTION_KINDS(ROW)};
+static const vlProjectionRow *const rows[] = {VL_PROJECTION_KINDS(ROW) ROW(OWN, own)};
 
 const vlProjectionRow *vl_projection_row(vlProjection kind) {
   return (uint32_t)kind < sizeof rows / sizeof *rows ? rows[kind] : NULL;

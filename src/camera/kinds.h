@@ -47,6 +47,7 @@ typedef struct vlProjectionRow {
 /* Declares the row of each kind. kinds.c or a file of the kind's own defines it. */
 #define VL_PROJECTION_DECLARE(NAME, name) extern const vlProjectionRow vl_projection_##name;
 VL_PROJECTION_KINDS(VL_PROJECTION_DECLARE)
+VL_PROJECTION_DECLARE(OWN, own)
 #undef VL_PROJECTION_DECLARE
 
 /* Returns the row of a kind, or null for an unknown kind. */

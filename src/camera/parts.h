@@ -32,6 +32,9 @@ vlResult vl_camera_pose_matrix(const double world_from_camera[16], vlCamera *cam
 vlResult vl_camera_lens(const vlCameraDef *def, vlCamera *camera, vlError *error);
 /* Returns whether near, far and focus surfaces are planes of constant z. Otherwise they are spheres around the eye. */
 bool vl_camera_sees_ahead(vlProjection kind);
+/* Checks the name of code of one's own (velo/own.h) and that it has a function; what: "camera", "sampler", "tracer". In
+ * own.c. */
+vlResult vl_own_check(const char *what, const char *name, bool has_function, vlError *error);
 /* Computes the focus distance at which a world-space point is in focus. Returns false if the point lies behind the
  * camera. */
 bool vl_camera_focus_at(const vlCamera *camera, const double point[3], double *distance);

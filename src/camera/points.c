@@ -3,11 +3,20 @@
 
 #include "camera/optics.h"
 #include "camera/orthographic.h"
+#include "camera/own.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/points.h"
 
 vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
+  if (c->own) {
+    vlOwnRows rows;
+    vlWorldRay w;
+    double film_x = x + c->cx, film_y = y + c->cy;
+    vl_own_chief_rays(c, 1, &film_x, &film_y, &rows);
+    double valid = vl_own_ray_at(c, &rows, 0, &w) ? 1.0 : 0.0;
+    return (vlDirection){rows.dx[0], rows.dy[0], rows.dz[0], valid};
+  }
   if (c->optics) {
     vlCameraLocal r = {0.0, 0.0, 0.0, 0.0, 1.0};
     bool valid = vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r);
@@ -28,6 +37,12 @@ vlDirection vl_camera_direction(const vlCameraCompiled *c, double x, double y) {
 }
 
 vlPlanePoint vl_camera_film_point(const vlCameraCompiled *c, double x, double y, double z) {
+  if (c->own) {
+    vlPlanePoint film;
+    vl_own_pixels(c, 1, &x, &y, &z, &film.x, &film.y);
+    film.valid = film.x == film.x ? 1.0 : 0.0;
+    return film;
+  }
   if (c->optics) {
     double film[2] = {0.0, 0.0};
     bool valid = vl_optics_project(c->optics, x, y, z, film);
@@ -64,11 +79,18 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
   if (!camera || !isfinite(x) || !isfinite(y)) return false;
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
-  double valid;
-  vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
-  if (valid == 0.0) return false;
-  vlWorldRay w = vl_camera_place(&c, r);
-  if (c.eye_circle != 0.0) w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
+  vlWorldRay w;
+  if (c.own) {
+    vlOwnRows rows;
+    vl_own_chief_rays(&c, 1, &x, &y, &rows);
+    if (!vl_own_ray_at(&c, &rows, 0, &w)) return false;
+  } else {
+    double valid;
+    vlCameraLocal r = local_ray(&c, x - c.cx, y - c.cy, &valid);
+    if (valid == 0.0) return false;
+    w = vl_camera_place(&c, r);
+    if (c.eye_circle != 0.0) w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
+  }
   origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
   direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
   return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);

@@ -5,6 +5,7 @@
 #include "camera/stages.h"
 
 #include "camera/orthographic.h"
+#include "camera/own.h"
 #include "camera/perspective.h"
 #include "camera/place.h"
 #include "camera/points.h"
@@ -58,6 +59,7 @@ void vl_camera_directions(const vlCameraCompiled *c, uint32_t count, vlDirection
   case VL_PROJECTION_##NAME: plane_loop(VL_PROJECTION_##NAME, c, count, d); break;
     VL_PROJECTION_KINDS(PLANE_LOOP)
 #undef PLANE_LOOP
+    case VL_PROJECTION_OWN: break;
   }
 }
 
@@ -97,9 +99,25 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
   }
 }
 
+static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out) {
+  vlOwnRows rows;
+  vl_own_chief_rays(c, n, in->x, in->y, &rows);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    vlWorldRay w;
+    int good = vl_own_ray_at(c, &rows, i, &w);
+    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->x[i] = good ? w.dx * w.inv_length : 0.0;
+    out->y[i] = good ? w.dy * w.inv_length : 0.0;
+    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    out->valid[i] = good ? 1.0 : 0.0;
+  }
+}
+
 void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCameraPixels *in, vlCameraPoints *out) {
   uint32_t count = VL_PAD(n);
-  if (c->optics) {
+  if (c->own) {
+    own_unproject(c, n, in, out);
+  } else if (c->optics) {
     vl_optics_unproject_chunk(c, count, in, out);
   } else if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) {
     plain_loop(1, c, count, in, out);
@@ -138,10 +156,30 @@ static inline __attribute__((always_inline)) void project_loop(vlProjection kind
   }
 }
 
+static void own_project(const vlCameraCompiled *c, uint32_t n, const vlCameraPoints *in, vlCameraPixels *out) {
+  const double *m = c->camera_from_world;
+  double x[VL_CAMERA_CHUNK] = {0}, y[VL_CAMERA_CHUNK] = {0}, z[VL_CAMERA_CHUNK] = {0};
+  for (uint32_t i = 0; i < n; i++) {
+    double wx = in->x[i], wy = in->y[i], wz = in->z[i];
+    x[i] = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y[i] = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
+    z[i] = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
+  }
+  vl_own_pixels(c, n, x, y, z, out->x, out->y);
+  for (uint32_t i = 0; i < n; i++) {
+    int seen = out->x[i] == out->x[i];
+    out->x[i] = seen ? out->x[i] : 0.0, out->y[i] = seen ? out->y[i] : 0.0, out->z[i] = seen ? z[i] : 0.0;
+    out->valid[i] = seen ? 1.0 : 0.0;
+  }
+}
+
 void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const vlCameraPoints *in,
                              vlCameraPixels *out) {
   const vlCameraCompiled copy = *camera, *c = &copy;
   uint32_t count = VL_PAD(n);
+  if (c->own) {
+    own_project(c, n, in, out);
+    return;
+  }
   if (c->optics) {
     vl_optics_project_chunk(c, count, in, out);
     return;
@@ -155,7 +193,10 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const v
   if (c->eye_circle != 0.0) {
     VL_ROUND_PROJECTIONS(EYES_LOOP)
   } else {
-    switch (c->projection) { VL_PROJECTION_KINDS(PROJECT_LOOP) }
+    switch (c->projection) {
+      VL_PROJECTION_KINDS(PROJECT_LOOP)
+      case VL_PROJECTION_OWN: break;
+    }
   }
 #undef EYES_LOOP
 #undef PROJECT_LOOP

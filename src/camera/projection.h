@@ -47,7 +47,8 @@ VL_PROJECTION_FUNCTIONS(unified, vl_unified_unproject(a[0], x, y), vl_unified_pr
 VL_PROJECTION_FUNCTIONS(eucm, vl_eucm_unproject(a[0], a[1], x, y), vl_eucm_project(a[0], a[1], x, y, z))
 VL_PROJECTION_FUNCTIONS(double_sphere, vl_double_sphere_unproject(a[0], a[1], x, y),
                         vl_double_sphere_project(a[0], a[1], x, y, z))
-/* These two only fill the table: rays of a lens of many elements are traced by optics.hot.c. */
+/* These only fill the table: rays of a lens of many elements are traced by optics.hot.c, and those of a camera of one's
+ * own by own.c. */
 VL_PROJECTION_FUNCTIONS(optics, ((vlDirection){x, y, 1.0, 0.0}), ((vlPlanePoint){x, y, 0.0}))
 
 VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCameraCompiled *c, double face, double x,
@@ -58,6 +59,7 @@ VL_CAMERA_INLINE vlDirection vl_plane_unproject(vlProjection kind, const vlCamer
   case VL_PROJECTION_##NAME: d = vl_unproject_##name(c, face, x, y); break;
     VL_PROJECTION_KINDS(VL_UNPROJECT_CASE)
 #undef VL_UNPROJECT_CASE
+    case VL_PROJECTION_OWN: d.valid = 0.0; break;
   }
   d.valid = x * x + y * y <= c->limit2 ? d.valid : 0.0;
   return d;
@@ -72,6 +74,7 @@ VL_CAMERA_INLINE vlPlanePoint vl_plane_project(vlProjection kind, const vlCamera
   case VL_PROJECTION_##NAME: p = vl_project_##name(c, x, y, z); break;
     VL_PROJECTION_KINDS(VL_PROJECT_CASE)
 #undef VL_PROJECT_CASE
+    case VL_PROJECTION_OWN: break;
   }
   p.valid = p.x * p.x + p.y * p.y <= c->limit2 ? p.valid : 0.0;
   return p;

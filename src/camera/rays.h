@@ -12,6 +12,7 @@
 #include "camera/aperture.h"
 #include "camera/time.h"
 #include "velo/camera.h"
+#include "velo/own.h"
 
 /* Number of points in each chunk of the double arrays below. */
 enum { VL_CAMERA_CHUNK = 256 };
@@ -58,6 +59,9 @@ typedef struct vlCameraCompiled {
   double pitch;           /* with optics: side of a pixel on the film, scene units */
   double eye_circle;      /* omnidirectional stereo: radius of the eye circle, < 0 for the left eye; 0: none */
   vlCameraTime when;
+  const vlOwnCamera *own;     /* the camera's own functions make its rays (own.h); else null */
+  uint32_t own_size[2];       /* size of the image whose pixels they count */
+  double own_from, own_clock; /* they get seconds: own_from + own_clock * time of a ray */
 } vlCameraCompiled;
 
 /* All arrays hold VL_PAD(n) elements. Elements past n may hold anything; the results for them are undefined. A film
@@ -76,7 +80,8 @@ typedef struct vlCameraSamples {
  * time is in seconds. valid (may be null) is 1, or 0 if the film point lies outside the camera's domain. An invalid ray
  * has t_max = -1, so that it hits nothing, and an arbitrary unit vector d. weight (may be null) is a factor on the
  * radiance along the ray; it is written only if vl_camera_weighted. If weight is 0 and valid is 1, a part of the lens
- * blocks the ray; then t_max is -1 too. */
+ * blocks the ray; then t_max is -1 too. A weight of NaN (and valid 1, t_max -1) stands for a sample that must be left
+ * out. */
 typedef struct vlCameraRays {
   float *ox, *oy, *oz, *dx, *dy, *dz;
   float *t_min, *t_max;
@@ -108,7 +113,14 @@ VL_KERNEL_TABLE(vlCameraKernels, vl_camera)
 
 /* Returns whether rays may have weights other than 1. */
 static inline bool vl_camera_weighted(const vlCameraCompiled *c) {
-  return c->vignetting || c->optics;
+  return c->vignetting || c->optics || c->own;
+}
+
+/* The time of a ray of a camera whose `when` is timed. share: of the exposure, 0 to 1. */
+static inline double vl_camera_seconds(const vlCameraCompiled *c, int32_t pixel_x, int32_t pixel_y, float share) {
+  const vlCameraTime *t = &c->when;
+  double late = ((double)pixel_x - t->first_column) * t->per_column + ((double)pixel_y - t->first_row) * t->per_row;
+  return c->shutter_open + late + c->shutter_time * vl_shutter_share(t, (double)share);
 }
 
 void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c);

@@ -163,4 +163,6 @@ void vl_camera_retime(vlCameraCompiled *c, double origin, double scale) {
   t->per_row *= scale;
   t->pose_open = (t->pose_open - origin) * scale;
   t->pose_rate /= scale;
+  c->own_from += c->own_clock * origin;
+  c->own_clock /= scale;
 }

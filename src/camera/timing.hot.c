@@ -50,9 +50,7 @@ void vl_camera_time_rays(const vlCameraCompiled *c, uint32_t count, const vlCame
     uint32_t n = count - first < VL_CAMERA_CHUNK ? count - first : VL_CAMERA_CHUNK;
     for (uint32_t i = 0; i < n; i++) {
       uint32_t k = first + i;
-      double late = ((double)s->pixel_x[k] - t->first_column) * t->per_column +
-                    ((double)s->pixel_y[k] - t->first_row) * t->per_row;
-      when[i] = c->shutter_open + late + c->shutter_time * vl_shutter_share(t, (double)s->time[k]);
+      when[i] = vl_camera_seconds(c, s->pixel_x[k], s->pixel_y[k], s->time[k]);
       r->time[k] = (float)when[i];
     }
     if (t->moves) move_chunk(t, n, when, r, first);

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "camera_files/formats.h"
 #include "camera_files/trajectory.h"
+#include "velo/own.h"
 
 const char *vl_camera_dialect_name(vlCameraDialect dialect) {
   if ((uint32_t)dialect >= VL_CAMERA_DIALECT_COUNT) return NULL;
@@ -198,6 +199,9 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   vlResult result = begin(context, path, &def, &standard, error);
   if (result != VL_OK) return result;
   if (!record) return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: record is null");
+  if (record->camera.own)
+    return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: none can hold a camera of one's own, \"%s\"",
+                   vl_short_text(record->camera.own->name).text);
   vlCameraDialect dialect = def->dialect ? def->dialect : dialect_of_name(path);
   if (!dialect)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera file: the name \"%.200s\" does not say which dialect to write",

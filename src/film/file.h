@@ -40,6 +40,7 @@ enum { VL_FILM_BLOCK_MAGIC = 0x4b4c4256 }; /* "VBLK" */
 typedef struct vlFilmShape {
   vlFilmDef def; /* its crop is that of the whole render */
   uint32_t sequence;
+  vlFilmOwn own;
 } vlFilmShape;
 
 enum { VL_FILM_OLD_MEAN = 16 }; /* bytes of a pixel's mean, which blocks of format 2 with a comparison have */

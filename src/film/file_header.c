@@ -55,6 +55,17 @@ static json_t *field_value(const vlFilmDef *def, const Field *field) {
   return NULL;
 }
 
+/* {"camera": name, ...}: of the kinds that have names; none: nothing is put. */
+static bool put_own(json_t *film, const vlFilmOwn *own) {
+  json_t *names = NULL;
+  for (int i = 0; i < VL_OWN_KINDS; i++) {
+    if (!own->name[i][0]) continue;
+    if (!names && !put(film, "own", names = json_object())) return false;
+    if (!put(names, vl_own_words[i], json_string(own->name[i]))) return false;
+  }
+  return true;
+}
+
 static json_t *film_tree(const vlFilmShape *shape) {
   const vlFilmDef *def = &shape->def;
   json_t *film = json_object();
@@ -67,7 +78,7 @@ static json_t *film_tree(const vlFilmShape *shape) {
          put(film, "filter", json_string(vl_kind_family_find("filters")->rows[def->filter.kind]->name)) &&
          put(film, "space", json_string(spaces[def->space])) &&
          put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
-         put(film, "sequence", json_integer(shape->sequence));
+         put(film, "sequence", json_integer(shape->sequence)) && put_own(film, &shape->own);
   if (!good) json_decref(film), film = NULL;
   return film;
 }
@@ -138,6 +149,17 @@ static bool take_names(const json_t *film, vlFilmDef *def) {
   return found[0] && found[1] && found[2];
 }
 
+static bool take_own(const json_t *names, vlFilmOwn *own) {
+  memset(own, 0, sizeof *own);
+  for (int i = 0; i < VL_OWN_KINDS; i++) {
+    const json_t *value = json_object_get(names, vl_own_words[i]);
+    const char *name = json_string_value(value);
+    if (value && (!name || strlen(name) >= VL_OWN_NAME)) return false;
+    if (name) memcpy(own->name[i], name, strlen(name) + 1);
+  }
+  return !names || json_is_object(names);
+}
+
 static vlResult take_film(const char *path, const json_t *film, vlFilmShape *shape, vlError *error) {
   vlFilmDef *def = &shape->def;
   *def = vl_default_film_def(1, 1);
@@ -149,6 +171,7 @@ static vlResult take_film(const char *path, const json_t *film, vlFilmShape *sha
   if (!take_names(film, def)) return wrong(path, "filter, space or sensor", error);
   if (!count_of(json_object_get(film, "sequence"), &shape->sequence) || !shape->sequence)
     return wrong(path, "sequence", error);
+  if (!take_own(json_object_get(film, "own"), &shape->own)) return wrong(path, "own", error);
   return VL_OK;
 }
 

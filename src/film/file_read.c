@@ -131,7 +131,8 @@ vlResult vl_film_read(vlContext *context, const char *path, bool partial, vlFilm
   if (result == VL_OK) result = fill(&reader, made, blocks_differ, error);
   if (result == VL_OK) {
     if (!blocks_differ) vl_film_set_spp(made, (uint32_t)extent.least);
-    vl_film_set_sequence(made, (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.joined});
+    vl_film_set_sequence(made,
+                         (vlFilmSequence){reader.shape.sequence, extent.range.first, !extent.joined, reader.shape.own});
   } else {
     vl_film_destroy(made);
     made = NULL;

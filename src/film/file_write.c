@@ -173,7 +173,7 @@ vlResult vl_film_write_begin(const vlFilm *film, const vlFilmWriteDef *def, cons
   vlResult result = check(film, def, path, window, error);
   if (result == VL_OK) result = check_receipt(def->receipt, path, error);
   if (result != VL_OK) return result;
-  vlFilmShape shape = {film->def, film->sequence.length};
+  vlFilmShape shape = {film->def, film->sequence.length, film->sequence.own};
   memcpy(shape.def.crop, window, sizeof shape.def.crop);
   vlFilmWriter *made = vl_alloc_zero(film->context, 1, sizeof *made);
   char *header = make_header(film->context, &shape, def);

@@ -6,6 +6,7 @@
 
 #include "base/isa.h"
 #include "color/color.h"
+#include "velo/own.h"
 #include "velo/render.h"
 
 /* A batch of samples. Channels are linear, in the film's colour space: red, green, blue, alpha. Pixel coordinates are
@@ -87,11 +88,21 @@ double vl_film_block_noise(const vlFilm *film, uint32_t block, vlView view, floa
 /* Sets the block's vlComparedNoise to the above. After vl_film_compared. Different blocks at the same time. */
 void vl_film_compare_block(vlFilm *film, uint32_t block, vlView view, float exposure, float scale, double correlation);
 
+/* The names of the code of one's own (velo/own.h) that made a film's samples, by vlOwnKind; empty: velo's own. */
+typedef struct vlFilmOwn {
+  char name[VL_OWN_KINDS][VL_OWN_NAME];
+} vlFilmOwn;
+/* "camera", "sampler", "tracer". */
+extern const char *const vl_own_words[VL_OWN_KINDS];
+/* The first kind whose names differ; VL_OWN_KINDS: none. */
+vlOwnKind vl_film_own_differs(const vlFilmOwn *a, const vlFilmOwn *b);
+
 /* The sequence that a film's samples are from: its length, and the index of the film's first sample. Set before the
  * first sample; a film without samples has length 0. */
 typedef struct vlFilmSequence {
   uint32_t length, first;
   bool uneven; /* a film read from a file whose pixels have different samples: it can only be developed */
+  vlFilmOwn own;
 } vlFilmSequence;
 vlFilmSequence vl_film_sequence(const vlFilm *film);
 void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence);

@@ -3,6 +3,7 @@
 #include "color/sensor.h"
 #include "film/sums.h"
 #include "film/white.h"
+#include "velo/film.h"
 
 #include <math.h>
 #include <string.h>
@@ -108,8 +109,22 @@ void vl_film_set_spp(vlFilm *film, uint32_t spp) {
   vl_free(film->context, film->block_spp);
   film->block_spp = NULL;
 }
+const char *const vl_own_words[VL_OWN_KINDS] = {"camera", "sampler", "tracer"};
+
+vlOwnKind vl_film_own_differs(const vlFilmOwn *a, const vlFilmOwn *b) {
+  int kind = 0;
+  while (kind < VL_OWN_KINDS && strcmp(a->name[kind], b->name[kind]) == 0) kind++;
+  return (vlOwnKind)kind;
+}
+
+const char *vl_film_own(const vlFilm *film, vlOwnKind kind) {
+  if (!film || (unsigned)kind >= VL_OWN_KINDS || !film->spp) return NULL;
+  const char *name = film->sequence.own.name[kind];
+  return *name ? name : NULL;
+}
+
 vlFilmSequence vl_film_sequence(const vlFilm *film) {
-  return film->spp || film->sequence.uneven ? film->sequence : (vlFilmSequence){0, 0, false};
+  return film->spp || film->sequence.uneven ? film->sequence : (vlFilmSequence){0};
 }
 void vl_film_set_sequence(vlFilm *film, vlFilmSequence sequence) {
   film->sequence = sequence;
@@ -186,7 +201,7 @@ void vl_film_clear(vlFilm *film) {
   if (!film || film->in_pass) return;
   vl_film_set_spp(film, 0);
   vl_film_forget_compared(film);
-  film->sequence = (vlFilmSequence){0, 0, false};
+  film->sequence = (vlFilmSequence){0};
   film->end = 0;
   if (film->front && film->back) {
     vl_free(film->context, film->front);

@@ -75,10 +75,10 @@ static void clear_invalid(uint32_t n, const float *valid, float *alpha, float *c
 }
 
 /* Multiplies radiance by the camera ray's weight. Alpha stays 1 where the lens blocks a part of the light: vignetting
- * is black, not transparent. */
+ * is black, not transparent. A weight of NaN makes the film leave the sample out. */
 static void weigh(uint32_t n, const float *weight, const float *valid, float *alpha, float *const radiance[4]) {
   for (uint32_t i = 0; i < n; i++) {
-    for (int c = 0; c < 4; c++) radiance[c][i] = weight[i] > 0.0f ? radiance[c][i] * weight[i] : 0.0f;
+    for (int c = 0; c < 4; c++) radiance[c][i] = weight[i] <= 0.0f ? 0.0f : radiance[c][i] * weight[i];
     alpha[i] = weight[i] > 0.0f || !(valid[i] > 0.0f) ? alpha[i] : 1.0f;
   }
 }

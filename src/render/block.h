@@ -59,6 +59,7 @@ typedef struct vlRenderRun {
   uint32_t first_sample, pass_samples;
   vlAdaptive adaptive;
   vlRenderWorker *workers;
+  _Atomic uint64_t own_bad; /* numbers of the caller's own sampler that were replaced */
   atomic_uint blocks_done;
   vlStop stop;
   vlLoopDef loop;

@@ -44,16 +44,23 @@ void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, con
 
 /* Lists the pixels of the tile inside the crop window that have a camera ray. */
 static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t tile) {
-  uint32_t n = 0, x, y;
+  uint32_t count = 0, n = 0, x, y;
   vlGroundTruthBatch *b = w->batch;
+  double film[VL_TILE_PIXELS][2], o[VL_TILE_PIXELS][3], d[VL_TILE_PIXELS][3];
+  uint8_t valid[VL_TILE_PIXELS];
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
-    double o[3], d[3];
-    if (!vl_camera_unproject(&p->camera, (double)x + (double)w->film_x[k], (double)y + (double)w->film_y[k], o, d))
-      continue;
-    for (int i = 0; i < 3; i++) b->o[i][n] = o[i], b->d[i][n] = d[i];
-    w->x[n] = x, w->y[n] = y;
-    w->lane_x[n] = w->film_x[k], w->lane_y[n] = w->film_y[k];
+    film[count][0] = (double)x + (double)w->film_x[k], film[count][1] = (double)y + (double)w->film_y[k];
+    w->x[count] = x, w->y[count] = y;
+    w->lane_x[count] = w->film_x[k], w->lane_y[count] = w->film_y[k];
+    count++;
+  }
+  vl_camera_unproject_batch(&p->camera, count, film[0], o[0], d[0], valid);
+  for (uint32_t k = 0; k < count; k++) {
+    if (!valid[k]) continue;
+    for (int i = 0; i < 3; i++) b->o[i][n] = o[k][i], b->d[i][n] = d[k][i];
+    w->x[n] = w->x[k], w->y[n] = w->y[k];
+    w->lane_x[n] = w->lane_x[k], w->lane_y[n] = w->lane_y[k];
     n++;
   }
   return b->n = n;

@@ -247,6 +247,7 @@ static void prepare_counting(vlChannelPass *p, const vlCamera *camera, vlIsa isa
   vlSampler sampler;
   vl_sampler_init(&sampler, def->render->sampler, def->render->seed, film->width, film->height,
                   vl_film_sequence(def->film).length);
+  sampler.own = def->render->own_sampler;
   vl_film_rays_init(&p->image, camera, vl_film_filter(def->film), &sampler, isa);
   vl_film_rays_init(&p->choice, &p->camera, vl_film_filter(def->film), &sampler, isa);
   p->choice.middle = true;

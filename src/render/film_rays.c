@@ -44,7 +44,7 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->camera_kernels = vl_camera_kernels(isa);
   f->sampler_kernels = vl_sampler_kernels(isa);
   f->filter_kernels = vl_filter_kernels(isa);
-  f->lens = camera->lens_radius > 0;
+  f->lens = camera->lens_radius > 0 || (camera->own && camera->own->lens);
   f->middle = f->moves = f->centred = f->uniform = false;
   f->shared = -1.0f;
   f->groups = 0, f->turn = 0.0f;

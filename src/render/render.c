@@ -7,6 +7,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "camera/parts.h"
 #include "render/block.h"
 #include "render/support.h"
 #include "velo/focus.h"
@@ -50,6 +51,14 @@ static bool ask_to_stop(void *user) {
   return !vl_render_report(r, false, r->work_done + share * r->work_pass);
 }
 
+/* The names of the caller's own code; all are checked. */
+static vlFilmOwn own_names(const vlCamera *camera, const vlRenderDef *def) {
+  vlFilmOwn own = {0};
+  if (camera->own) memcpy(own.name[VL_OWN_CAMERA], camera->own->name, strlen(camera->own->name));
+  if (def->own_sampler) memcpy(own.name[VL_OWN_SAMPLER], def->own_sampler->name, strlen(def->own_sampler->name));
+  return own;
+}
+
 vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                          vlError *error) {
   if (!world || !camera || !film) return vl_fail(error, VL_ERROR_ARGUMENT, "render: world, camera or film is null");
@@ -64,7 +73,17 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (def->sequence && length && def->sequence != length)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of a sequence of %u, not of %u", length,
                    def->sequence);
-  if (vl_film_sequence(film).uneven)
+  vlResult result = VL_OK;
+  if (def->own_sampler)
+    result = vl_own_check("sampler", def->own_sampler->name, def->own_sampler->numbers != NULL, error);
+  if (result != VL_OK) return result;
+  vlFilmOwn own = own_names(camera, def);
+  vlFilmSequence sequence = vl_film_sequence(film);
+  vlOwnKind kind = length ? vl_film_own_differs(&sequence.own, &own) : VL_OWN_KINDS;
+  if (kind < VL_OWN_KINDS)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's samples are of the own %s \"%s\", not of \"%s\"",
+                   vl_own_words[kind], vl_short_text(sequence.own.name[kind]).text, vl_short_text(own.name[kind]).text);
+  if (sequence.uneven)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: the film's pixels do not all have the same samples");
   if (!(def->noise >= 0) || (def->noise > 0 && (!f->errors || !(def->noise_scale > 0) || def->first_sample)))
     return vl_fail(error, VL_ERROR_ARGUMENT,
@@ -149,6 +168,8 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
   vlIsa isa = vl_context_isa(world->context);
   vlSampler sampler;
   vl_sampler_init(&sampler, r->def->sampler, r->def->seed, f->width, f->height, r->sequence.length);
+  sampler.own = r->def->own_sampler;
+  sampler.own_bad = &r->own_bad;
   vl_film_rays_init(&r->film_rays, camera, vl_film_filter(r->film), &sampler, isa);
   vl_film_rays_clock(&r->film_rays, world);
   r->film_rays.centred = r->def->centred;
@@ -207,6 +228,7 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
     stats->shadow_rays += w->shadow_rays;
   }
   stats->camera_rays = stats->paths;
+  stats->own_numbers = atomic_load(&r->own_bad);
   if (!r->two_way) return;
   vlTwoWayCounts more = vl_two_way_counts(r->two_way);
   stats->paths += more.paths;
@@ -302,6 +324,7 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   if (!r->sequence.length) {
     r->sequence.length = def->sequence ? def->sequence : vl_sampler_sequence(def->sampler, def->spp);
     r->sequence.first = def->first_sample;
+    r->sequence.own = own_names(camera, def);
   }
   vl_film_set_sequence(film, r->sequence);
   vlCamera focused = *camera;

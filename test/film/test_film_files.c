@@ -116,7 +116,7 @@ static vlFilm *make_film(vlContext *own, int kind, const uint32_t tiles[4], uint
       }
   vl_film_commit_pass(film);
   vl_film_set_spp(film, last - first);
-  vl_film_set_sequence(film, (vlFilmSequence){256, first, false});
+  vl_film_set_sequence(film, (vlFilmSequence){.length = 256, .first = first});
   return film;
 }
 

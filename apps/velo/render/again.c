@@ -55,6 +55,18 @@ static int check_samples(const Again *again) {
                         again->path, samples, planned);
 }
 
+/* An image that a program's own code has made is made again by that program. */
+static int check_own(const Again *again) {
+  static const char *const words[VL_OWN_KINDS] = {"camera", "sampler", "tracer"};
+  for (int i = 0; i < VL_OWN_KINDS; i++) {
+    const char *name = vl_receipt_own(again->receipt, (vlOwnKind)i);
+    if (!name) continue;
+    return report_failure(STATUS_SCENE, "%s was made with the own %s \"%s\" of another program: only it has that code",
+                          again->path, words[i], vl_short_text(name).text);
+  }
+  return -1;
+}
+
 static void tell_version(Again *again) {
   const char *commit, *version = vl_receipt_version(again->receipt, &commit);
   again->is_ours = strcmp(version, vl_version()->text) == 0 && strcmp(commit, velo_commit) == 0;
@@ -82,6 +94,7 @@ int again_open(Again *again, const Arguments **arguments) {
   status = result == VL_OK ? receipt_of_image(again->context, image, again->path, &again->receipt)
                            : report_error(&error, result, again->path);
   vl_image_destroy(image);
+  if (status < 0) status = check_own(again);
   if (status < 0) status = receipt_parse_command(again->receipt, again->path, &again->arguments);
   if (status < 0) status = check_samples(again);
   if (status < 0) status = take_options(again, given);

@@ -59,6 +59,10 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
     for (int i = 8; i < 12; i++) record.camera.world_from_camera[i] *= -1;
   }
   if (record.camera.has_matrix) square_up(record.camera.world_from_camera);
+  if (record.camera.own) {
+    vl_export_lose(x, "the camera's own functions: a perspective camera in its place");
+    record.camera.own = NULL, record.camera.projection = VL_PROJECTION_PERSPECTIVE;
+  }
   char name[64], path[4096];
   snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
   if (!vl_export_path(x, name, path, sizeof path)) return false;

@@ -77,6 +77,10 @@ static void halton_2d(INPUT, float *u, float *v) {
 }
 
 static void get_1d(INPUT, float *u) {
+  if (s->own) {
+    vl_own_numbers(s, n, px, py, index, dimension, u, NULL);
+    return;
+  }
   uint32_t count = VL_PAD(n);
 #define CASE(K, k) \
   case VL_SAMPLER_##K: k##_1d(s, count, px, py, index, dimension, u); return;
@@ -85,6 +89,10 @@ static void get_1d(INPUT, float *u) {
 }
 
 static void get_2d(INPUT, float *u, float *v) {
+  if (s->own) {
+    vl_own_numbers(s, n, px, py, index, dimension, u, v);
+    return;
+  }
   uint32_t count = VL_PAD(n);
 #define CASE(K, k) \
   case VL_SAMPLER_##K: k##_2d(s, count, px, py, index, dimension, u, v); return;
@@ -93,7 +101,7 @@ static void get_2d(INPUT, float *u, float *v) {
 }
 
 static void get_2d_with(INPUT, uint32_t with, float *u, float *v) {
-  if (s->kind != VL_SAMPLER_SOBOL && s->kind != VL_SAMPLER_ZSOBOL) {
+  if (s->own || (s->kind != VL_SAMPLER_SOBOL && s->kind != VL_SAMPLER_ZSOBOL)) {
     get_2d(s, n, px, py, index, dimension, u, v);
     return;
   }

@@ -20,7 +20,10 @@
 #ifndef TRACE_SAMPLER_SAMPLER_H
 #define TRACE_SAMPLER_SAMPLER_H
 
+#include <stdatomic.h>
+
 #include "base/isa.h"
+#include "velo/own.h"
 #include "velo/scene.h"
 
 /* Version of the samples, which vl_sample_sequence returns. It is increased whenever a change of the code gives other
@@ -30,15 +33,17 @@ enum { VL_SAMPLE_SEQUENCE = 2 };
 typedef struct vlSampler {
   vlSamplerKind kind;
   uint32_t seed;
-  uint32_t spp;            /* length of the sequence, samples per pixel */
-  uint32_t width, height;  /* size of the whole image, pixels */
-  uint32_t set;            /* number of samples in a set of the kinds with cells: spp, at most 2^20 */
-  uint32_t log2_spp;       /* log2(spp), rounded up; zsobol: number of index bits below the Morton code */
-  uint32_t morton_bits;    /* number of bits of the image's Morton codes */
-  uint32_t grid_x, grid_y; /* number of columns and rows; the last grid_y - wide rows have grid_x - 1 cells, so there
-                              are `set` cells in all */
-  uint32_t wide;           /* number of rows with grid_x cells */
-  uint32_t jitter_bits;    /* number of random bits below a cell's number; a float holds both exactly */
+  uint32_t spp;              /* length of the sequence, samples per pixel */
+  uint32_t width, height;    /* size of the whole image, pixels */
+  uint32_t set;              /* number of samples in a set of the kinds with cells: spp, at most 2^20 */
+  uint32_t log2_spp;         /* log2(spp), rounded up; zsobol: number of index bits below the Morton code */
+  uint32_t morton_bits;      /* number of bits of the image's Morton codes */
+  uint32_t grid_x, grid_y;   /* number of columns and rows; the last grid_y - wide rows have grid_x - 1 cells, so there
+                                are `set` cells in all */
+  uint32_t wide;             /* number of rows with grid_x cells */
+  const vlOwnSampler *own;   /* gives the numbers in place of kind; null: none. vl_sampler_init makes it null */
+  _Atomic uint64_t *own_bad; /* counts its numbers outside [0, 1); may be null */
+  uint32_t jitter_bits;      /* number of random bits below a cell's number; a float holds both exactly */
 } vlSampler;
 
 /* Initialises a sampler. spp: the length of the sequence; every kind accepts any spp >= 1, and 0 counts as 1. Images
@@ -65,5 +70,9 @@ typedef struct vlSamplerKernels {
                       uint32_t dimension, uint32_t with, float *u, float *v);
 } vlSamplerKernels;
 VL_KERNEL_TABLE(vlSamplerKernels, vl_sampler)
+
+/* The numbers of sampler->own; v null: 1-D. In own.c. */
+void vl_own_numbers(const vlSampler *sampler, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
+                    uint32_t dimension, float *u, float *v);
 
 #endif

@@ -1,0 +1,160 @@
+/* _velo/own.c: code of one's own (velo/own.h): the library's threads call Python functions of velo/own.py. Each call
+ * takes the GIL once. An exception ends the call of the library that needs the function, and is raised there. */
+#include <math.h>
+#include <string.h>
+
+#include "module.h"
+
+/* ---- calls ------------------------------------------------------------------------------------------------------- */
+
+/* An argument: `count` numbers of `size` bytes. */
+static PyObject *view_of(const void *data, uint32_t count, size_t size, bool written) {
+  return PyMemoryView_FromMemory((char *)(uintptr_t)data, (Py_ssize_t)(count * size),
+                                 written ? PyBUF_WRITE : PyBUF_READ);
+}
+
+/* Calls function(*arguments), whose first `plain` are done and the rest views of `columns`; steals arguments. */
+typedef struct Column {
+  const void *data;
+  size_t size;
+  bool written;
+} Column;
+static bool call_columns(Own *own, PyObject *function, uint32_t count, const long *plain, Py_ssize_t plain_count,
+                         const Column *columns, Py_ssize_t column_count) {
+  PyObject *arguments = PyTuple_New(plain_count + column_count), *result = NULL;
+  bool good = arguments != NULL;
+  for (Py_ssize_t i = 0; i < plain_count && good; i++) {
+    PyObject *number = PyLong_FromLong(plain[i]);
+    good = number && PyTuple_SetItem(arguments, i, number) == 0;
+  }
+  for (Py_ssize_t i = 0; i < column_count && good; i++) {
+    PyObject *view = columns[i].data ? view_of(columns[i].data, count, columns[i].size, columns[i].written)
+                                     : (Py_INCREF(Py_None), Py_None);
+    good = view && PyTuple_SetItem(arguments, plain_count + i, view) == 0;
+  }
+  if (good) result = PyObject_CallObject(function, arguments);
+  Py_XDECREF(arguments);
+  if (result) {
+    Py_DECREF(result);
+    return true;
+  }
+  PyObject *type, *value, *trace;
+  PyErr_Fetch(&type, &value, &trace);
+  PyErr_NormalizeException(&type, &value, &trace);
+  if (trace) PyException_SetTraceback(value, trace);
+  Py_XDECREF(type), Py_XDECREF(trace);
+  if (!long_call_fail(own, value)) {
+    if (own->error)
+      Py_XDECREF(value);
+    else
+      own->error = value;
+  }
+  return false;
+}
+
+static void rays(void *user, const vlOwnFilmPoints *p, const vlOwnRays *r) {
+  Own *own = user;
+  PyGILState_STATE state = PyGILState_Ensure();
+  const size_t d = sizeof(double);
+  const Column columns[] = {{p->x, d, false},    {p->y, d, false}, {p->lens_u, d, false}, {p->lens_v, d, false},
+                            {p->time, d, false}, {r->ox, d, true}, {r->oy, d, true},      {r->oz, d, true},
+                            {r->dx, d, true},    {r->dy, d, true}, {r->dz, d, true},      {r->weight, d, true}};
+  const long plain[] = {p->width, p->height};
+  if (!call_columns(own, own->function, p->count, plain, 2, columns, sizeof columns / sizeof *columns))
+    for (uint32_t i = 0; i < p->count; i++) r->dx[i] = (double)NAN;
+  PyGILState_Release(state);
+}
+
+static void pixels(void *user, const vlOwnSpacePoints *p) {
+  Own *own = user;
+  PyGILState_STATE state = PyGILState_Ensure();
+  const size_t d = sizeof(double);
+  const Column columns[] = {
+      {p->x, d, false}, {p->y, d, false}, {p->z, d, false}, {p->film_x, d, true}, {p->film_y, d, true}};
+  const long plain[] = {p->width, p->height};
+  if (!call_columns(own, own->pixels, p->count, plain, 2, columns, sizeof columns / sizeof *columns))
+    for (uint32_t i = 0; i < p->count; i++) p->film_x[i] = (double)NAN;
+  PyGILState_Release(state);
+}
+
+static void numbers(void *user, const vlOwnSamples *s) {
+  Own *own = user;
+  PyGILState_STATE state = PyGILState_Ensure();
+  const size_t n = sizeof(float);
+  const Column columns[] = {{s->x, n, false}, {s->y, n, false}, {s->index, n, false}, {s->u, n, true}, {s->v, n, true}};
+  const long plain[] = {s->dimension, s->seed};
+  call_columns(own, own->function, s->count, plain, 2, columns, sizeof columns / sizeof *columns);
+  PyGILState_Release(state);
+}
+
+/* ---- objects ----------------------------------------------------------------------------------------------------- */
+
+static void own_dealloc(Own *self) {
+  Py_XDECREF(self->function);
+  Py_XDECREF(self->pixels);
+  Py_XDECREF(self->error);
+  free_object((PyObject *)self);
+}
+
+/* own_new(kind, name, function, pixels or None, lens) */
+static PyObject *own_new(PyObject *module, PyObject *arguments) {
+  (void)module;
+  static const char *const kinds[] = {"camera", "sampler", NULL};
+  PyObject *kind, *name, *function, *other;
+  int lens;
+  if (!PyArg_ParseTuple(arguments, "OOOOp:own_new", &kind, &name, &function, &other, &lens)) return NULL;
+  int found = find_choice(kinds, "kind of own code", kind);
+  if (found < 0) return NULL;
+  PyObject *keep = PyList_New(0);
+  const char *text = keep ? keep_text(keep, name, "name") : NULL;
+  bool fits = text && strlen(text) > 0 && strlen(text) < VL_OWN_NAME;
+  Own *self = fits ? make_object(TYPE_OWN) : NULL;
+  if (text && !fits) raise_value("name", name, "a text of 1 to %d bytes", VL_OWN_NAME - 1);
+  if (self) {
+    memcpy(self->name, text, strlen(text) + 1);
+    self->kind = (vlOwnKind)found;
+    Py_INCREF(function);
+    self->function = function;
+    if (other != Py_None) Py_INCREF(other), self->pixels = other;
+    self->camera = (vlOwnCamera){self->name, rays, self->pixels ? pixels : NULL, lens, self};
+    self->sampler = (vlOwnSampler){self->name, numbers, self};
+  }
+  Py_XDECREF(keep);
+  return (PyObject *)self;
+}
+
+Own *own_read(PyObject *value, vlOwnKind kind, const char *what) {
+  static const char *const classes[] = {"velo.OwnCamera", "velo.OwnSampler", "velo.OwnTracer"};
+  if (is_object(value, TYPE_OWN) && ((Own *)value)->kind == kind) return (Own *)value;
+  raise_value(what, value, "a %s", classes[kind]);
+  return NULL;
+}
+
+const Own *own_of_camera(const vlCamera *camera) {
+  return camera && camera->own ? camera->own->user : NULL;
+}
+
+const Own *own_of_sampler(const vlRenderDef *def) {
+  return def && def->own_sampler ? def->own_sampler->user : NULL;
+}
+
+bool own_check(const Own *own) {
+  if (!own || !own->error) return true;
+  Own *self = (Own *)(uintptr_t)own;
+  PyErr_SetObject((PyObject *)Py_TYPE(self->error), self->error);
+  Py_CLEAR(self->error);
+  return false;
+}
+
+static PyType_Slot own_slots[] = {
+    {Py_tp_doc, "Code of one's own."},
+    {Py_tp_dealloc, own_dealloc},
+    {0, NULL},
+};
+PyType_Spec own_spec = {"velo._velo.Own", sizeof(Own), 0, Py_TPFLAGS_DEFAULT | Py_TPFLAGS_DISALLOW_INSTANTIATION,
+                        own_slots};
+
+PyMethodDef own_functions[] = {
+    {"own_new", own_new, METH_VARARGS, "Code of one's own."},
+    {NULL, NULL, 0, NULL},
+};

@@ -41,7 +41,7 @@ bool nearest_of(const world *w, uint32_t first, uint32_t count, ray *r, sampler 
   for (uint32_t i = first; i < first + count; i++) {
     meeting m;
     for (ray rest = *r; meet_shape(w, &w->primitives[i], rest, &m); rest.t_min = m.t) {
-      shade_record record = {.t = m.t, .arrival = r->direction};
+      shade_record record = {.t = m.t, .a = m.a, .b = m.b, .arrival = r->direction};
       shape_surface(w, &w->primitives[i], m.a, m.b, &record);
       double alpha = number_at(w, record.where->def->alpha, &record);
       if (alpha < 1 && next_number(s) >= alpha) continue;

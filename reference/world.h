@@ -40,6 +40,7 @@ typedef struct shade_record {
   vector tangent;        /* along u */
   double u, v;
   double area_density; /* with which sample_shape draws this point, per area */
+  double a, b;         /* the point in the primitive's own two coordinates */
   vector arrival;      /* direction of the ray that met the point */
   double thickness;    /* of a curve, else 0: how far off the surface a new ray starts */
   const primitive *what;

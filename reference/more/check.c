@@ -22,7 +22,6 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
 static bool check_material(const vlMaterialDef *def, vlError *error) {
   bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
   if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
-  if (def->displacement.texture.index || def->displacement.value != 0) return refuse(error, def->source, "a bump map");
   if (def->normal_map) return refuse(error, def->source, "a normal map");
   switch (def->kind) {
     case VL_MATERIAL_DIFFUSE:
@@ -49,7 +48,13 @@ static bool check_texture(const vlTextureDef *def, vlError *error) {
     case VL_TEXTURE_MIX:
     case VL_TEXTURE_CHECKERBOARD:
     case VL_TEXTURE_IMAGE:
-    case VL_TEXTURE_BILERP: return true;
+    case VL_TEXTURE_BILERP:
+    case VL_TEXTURE_DIRECTION_MIX:
+    case VL_TEXTURE_FBM:
+    case VL_TEXTURE_WRINKLED:
+    case VL_TEXTURE_WINDY:
+    case VL_TEXTURE_MARBLE:
+    case VL_TEXTURE_DOTS: return true;
     default: return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
   }
 }

@@ -105,9 +105,3 @@ bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result)
     default: return sample_coated(b, wo, s, result);
   }
 }
-
-void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
-  (void)w;
-  (void)m;
-  (void)at;
-}

@@ -17,7 +17,7 @@ void bound_more(const world *w, primitive *p);
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b);
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* Changes the shading normal: bump and normal maps. Called before any BSDF is made. */
+/* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. */
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at);
 
 /* more/textures.c */

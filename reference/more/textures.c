@@ -1,7 +1,13 @@
-/* more/textures.c: constant, mix and bilinear textures, and texture coordinates from points (pbrt book 10.2). */
+/* more/textures.c: mixtures, bilinear and procedural textures, and texture coordinates from points (pbrt book 10.2). */
 #include "more.h"
+#include "noise.h"
 
 /* ---- texture coordinates ----------------------------------------------------------------------------------------- */
+
+static vector in_texture_space(const vlTextureDef *def, const shade_record *at) {
+  matrix texture_from_world = load_matrix(def->texture_from_world);
+  return transform_point(&texture_from_world, at->point);
+}
 
 square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
   if (def->st_from_uv_given) {
@@ -9,8 +15,7 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
     return (square_point){(double)m[0] * at->u + (double)m[1] * at->v + (double)m[2],
                           (double)m[3] * at->u + (double)m[4] * at->v + (double)m[5]};
   }
-  matrix texture_from_world = load_matrix(def->texture_from_world);
-  vector p = transform_point(&texture_from_world, at->point);
+  vector p = in_texture_space(def, at);
   double phi = atan2(p.y, p.x);
   switch (def->mapping) {
     case VL_MAPPING_SPHERICAL: {
@@ -27,10 +32,24 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
+/* The share of the second input in a mixture of two. */
+static double share_of_second(const world *w, const vlTextureDef *def, const shade_record *at) {
+  switch (def->kind) {
+    case VL_TEXTURE_MIX: return number_at(w, def->amount, at);
+    case VL_TEXTURE_DIRECTION_MIX: /* the first where the normal is along the direction */
+      return 1 - fabs(dot(at->normal, normalize(from_floats(def->direction))));
+    case VL_TEXTURE_DOTS: return is_in_dot(texture_coordinates(def, at)) ? 1 : 0;
+    default: return 0;
+  }
+}
+
 double more_number(const world *w, const vlTextureDef *def, const shade_record *at) {
-  if (def->kind == VL_TEXTURE_CONSTANT) return number_at(w, def->float_a, at);
-  if (def->kind == VL_TEXTURE_MIX) {
-    double share = number_at(w, def->amount, at);
+  vector p = in_texture_space(def, at);
+  if (def->kind == VL_TEXTURE_FBM) return fbm(p, (double)def->omega, def->octaves);
+  if (def->kind == VL_TEXTURE_WRINKLED) return turbulence(p, (double)def->omega, def->octaves);
+  if (def->kind == VL_TEXTURE_WINDY) return windy_waves(p);
+  if (def->kind != VL_TEXTURE_BILERP) {
+    double share = share_of_second(w, def, at);
     return (1 - share) * number_at(w, def->float_a, at) + share * number_at(w, def->float_b, at);
   }
   square_point st = texture_coordinates(def, at);
@@ -41,11 +60,16 @@ double more_number(const world *w, const vlTextureDef *def, const shade_record *
 
 spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
                        const wavelengths *lambda) {
+  if (def->kind == VL_TEXTURE_MARBLE) {
+    double rgb[3];
+    vector p = scale((double)def->scale, in_texture_space(def, at));
+    marble(p, (double)def->omega, def->octaves, (double)def->variation, rgb);
+    return texel_spectrum(VL_SPACE_SRGB, rgb, role, lambda);
+  }
   spectrum a = spectrum_at(w, &def->spectrum_a, role, at, lambda);
-  if (def->kind == VL_TEXTURE_CONSTANT) return a;
   spectrum b = spectrum_at(w, &def->spectrum_b, role, at, lambda);
-  if (def->kind == VL_TEXTURE_MIX) {
-    double share = number_at(w, def->amount, at);
+  if (def->kind != VL_TEXTURE_BILERP) {
+    double share = share_of_second(w, def, at);
     return plus(scaled(1 - share, a), scaled(share, b));
   }
   square_point st = texture_coordinates(def, at);

@@ -67,8 +67,8 @@ static const vlParameter mix_parameters[] = {
 VL_KIND_ROW(mix, .name = "mix", .description = "linear interpolation between two textures")
 
 static const vlParameter direction_mix_parameters[] = {
-    INPUT("tex1", a, "texture where the surface normal is perpendicular to dir", 0),
-    INPUT("tex2", b, "texture where the surface normal is parallel to dir", 1),
+    INPUT("tex1", a, "texture where the surface normal is parallel to dir", 0),
+    INPUT("tex2", b, "texture where the surface normal is perpendicular to dir", 1),
     VECTOR("dir", direction, "the direction with which the normal is compared; its length has no effect",
            VL_DEFAULT(0, 1, 0)),
 };

@@ -100,6 +100,13 @@ def coated_and_thin_materials_agree_with_velo():
 
 
 @case
+def procedural_textures_and_bumps_agree_with_velo():
+    path, size = os.path.join(SOURCE, "scenes/reference/textures.pbrt"), ("--resolution", "32x24")
+    z = worst_z(render_velo(path, "velo_textures.exr", 1024, *size), render(path, "textures.exr", 512, *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
 def tubes_seen_obliquely_agree_with_velo():
     """The normals of a tube turn about its axis, also where the ray is not perpendicular to that."""
     path = scene("tube.pbrt", 'WorldBegin\nLightSource "distant" "point3 from" [ 1 .5 -1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 2 2 2 ]\n'

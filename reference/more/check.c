@@ -90,7 +90,8 @@ static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vl
 
 static bool check_medium(const vlMediumDef *def, vlError *error) {
   if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
-  if (def->kind == VL_MEDIUM_HOMOGENEOUS) return true;
+  if (def->temperature || def->rgb_emission) return refuse(error, def->source, "this emission of a medium");
+  if (def->kind <= VL_MEDIUM_RGB_GRID) return true;
   return refuse_kind(error, def->source, "media", (uint32_t)def->kind);
 }
 

@@ -1,7 +1,7 @@
 /* more/curve.c: hairs and blades of grass: cubic Bezier curves with a width (pbrt book 6.7). A curve is a strip that
  * turns to face each ray: the ray meets it where, in the plane across the ray, the foot of the perpendicular to the
  * curve lies within half of the width. All of this happens in the space of the shape. */
-#include "shapes.h"
+#include "more.h"
 
 enum { DEGREE = 5 };
 

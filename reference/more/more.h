@@ -12,6 +12,13 @@ bool meet_more(const world *w, const primitive *p, ray r, meeting *m);
 void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
 void bound_more(const world *w, primitive *p);
 
+/* more/patch.c, more/curve.c */
+bool meet_patch(const primitive *p, ray r, meeting *m);
+void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
+bool meet_curve(const world *w, const primitive *p, ray r, meeting *m);
+void curve_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
+void bound_curve(const world *w, primitive *p);
+
 /* more/materials.c: a material becomes a BSDF of kind BSDF_MORE; directions are local. Sampling chooses wi, and the
  * weight of a specular one; of others the core asks for value and density. */
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b);
@@ -25,6 +32,12 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at);
 double more_number(const world *w, const vlTextureDef *def, const shade_record *at);
 spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
                        const wavelengths *lambda);
+/* more/noise.c */
+double fbm(vector p, double omega, uint32_t octaves);
+double turbulence(vector p, double omega, uint32_t octaves);
+double windy_waves(vector p);
+bool is_in_dot(square_point st);
+void marble(vector p, double omega, uint32_t octaves, double variation, double rgb[3]);
 /* A texel's scale, tint and the like. An image as one number: the channel that the texture selects, else coverage if
  * there is one, else the mean. */
 void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]);

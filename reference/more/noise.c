@@ -1,6 +1,6 @@
 /* more/noise.c: noise and what is made of it: waves, marble, random dots (pbrt book 10.6; pbrt-v4's tables, so that the
  * patterns are the same). */
-#include "noise.h"
+#include "more.h"
 
 /* A permutation of 0 to 255 (Perlin 2002). */
 static const unsigned char permutation[256] = {
@@ -36,7 +36,7 @@ static double between(double a, double b, double t) {
 }
 
 /* Between the eight points around, their planes are blended. */
-double noise(vector p) {
+static double noise(vector p) {
   long i = (long)floor(p.x), j = (long)floor(p.y), k = (long)floor(p.z);
   double x = p.x - floor(p.x), y = p.y - floor(p.y), z = p.z - floor(p.z), layer[2];
   for (int dz = 0; dz < 2; dz++) {

@@ -1,5 +1,5 @@
 /* more/patch.c: bilinear patches, p(u, v) between four corners p00, p10, p01, p11 (pbrt book 6.6). */
-#include "shapes.h"
+#include "more.h"
 
 static vector mix(vector a, vector b, double t) {
   return add(scale(1 - t, a), scale(t, b));

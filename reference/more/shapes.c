@@ -1,6 +1,4 @@
 /* more/shapes.c: the shapes of more/, by kind. */
-#include "shapes.h"
-
 #include "more.h"
 
 uint32_t more_corners(const vlShapeDef *def) {

@@ -1,7 +1,5 @@
 /* more/textures.c: mixtures, bilinear and procedural textures, and texture coordinates from points (pbrt book 10.2). */
 #include "more.h"
-#include "noise.h"
-
 /* ---- texture coordinates ----------------------------------------------------------------------------------------- */
 
 static vector in_texture_space(const vlTextureDef *def, const shade_record *at) {

@@ -107,6 +107,13 @@ def procedural_textures_and_bumps_agree_with_velo():
 
 
 @case
+def media_on_grids_agree_with_velo():
+    path, size = os.path.join(SOURCE, "scenes/reference/media.pbrt"), ("--resolution", "32x24")
+    z = worst_z(render_velo(path, "velo_media.exr", 512, *size), render(path, "media.exr", 256, *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
 def tubes_seen_obliquely_agree_with_velo():
     """The normals of a tube turn about its axis, also where the ray is not perpendicular to that."""
     path = scene("tube.pbrt", 'WorldBegin\nLightSource "distant" "point3 from" [ 1 .5 -1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 2 2 2 ]\n'

@@ -7,36 +7,31 @@
 #include <stdio.h>
 #include <string.h>
 
-static void set_place(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column) {
+static void set_error(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column,
+                      const char *format, va_list args) {
   error->code = code;
   error->line = line;
   error->column = column;
   snprintf(error->file, sizeof error->file, "%s", file ? file : "");
   vl_make_printable(error->file);
+  vsnprintf(error->message, sizeof error->message, format, args);
+  vl_make_printable(error->message);
 }
 
 vlResult vl_fail(vlError *error, vlResult code, const char *format, ...) {
-  if (error) {
-    set_place(error, code, NULL, 0, 0);
-    va_list args;
-    va_start(args, format);
-    vsnprintf(error->message, sizeof error->message, format, args);
-    va_end(args);
-    vl_make_printable(error->message);
-  }
+  va_list args;
+  va_start(args, format);
+  if (error) set_error(error, code, NULL, 0, 0, format, args);
+  va_end(args);
   return code;
 }
 
 vlResult vl_fail_at(vlError *error, vlResult code, const char *file, uint32_t line, uint32_t column, const char *format,
                     ...) {
-  if (error) {
-    set_place(error, code, file, line, column);
-    va_list args;
-    va_start(args, format);
-    vsnprintf(error->message, sizeof error->message, format, args);
-    va_end(args);
-    vl_make_printable(error->message);
-  }
+  va_list args;
+  va_start(args, format);
+  if (error) set_error(error, code, file, line, column, format, args);
+  va_end(args);
   return code;
 }
 

@@ -1,5 +1,5 @@
 /* import/import.h: importers read files of other formats into scenes. This is the interface of the room. The scene
- * keeps the first error with its place in the file; warnings go to the context's log. */
+ * keeps the first error with its line in the file; warnings go to the context's log. */
 #ifndef IMPORT_IMPORT_H
 #define IMPORT_IMPORT_H
 

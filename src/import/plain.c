@@ -139,8 +139,8 @@ vlResult vl_import_ply(vlScene *scene, const char *path, const vlLoadDef *load, 
     vl_ply_free(context, &mesh);
   }
   if (r != VL_OK) {
-    vlSource place = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
-    vl_scene_fail(scene, r, place, "%s", r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
+    vlSource source = {inside.file[0] ? inside.file : NULL, inside.line, inside.column};
+    vl_scene_fail(scene, r, source, "%s", r == VL_ERROR_MEMORY ? "out of memory" : inside.message);
     return vl_scene_result(scene, error);
   }
   vl_free(context, mesh.quad_indices);

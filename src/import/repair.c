@@ -115,10 +115,10 @@ static const char *plural(uint64_t count) {
 }
 
 void vl_repairs_report(vlContext *context, const vlRepairs *r, const char *file) {
-  vlError place = {0};
-  snprintf(place.file, sizeof place.file, "%s", file);
+  vlError where = {0};
+  snprintf(where.file, sizeof where.file, "%s", file);
   if (r->shapes) {
-    vlError first = place;
+    vlError first = where;
     if (r->file[0]) {
       snprintf(first.file, sizeof first.file, "%s", r->file);
       first.line = r->line;
@@ -129,9 +129,9 @@ void vl_repairs_report(vlContext *context, const vlRepairs *r, const char *file)
            (unsigned long long)r->shapes, plural(r->shapes));
   }
   if (r->images)
-    vl_log(context, VL_LOG_WARNING, &place, "%u image%s missing: done without", r->images,
+    vl_log(context, VL_LOG_WARNING, &where, "%u image%s missing: done without", r->images,
            r->images == 1 ? " is" : "s are");
   if (r->includes)
-    vl_log(context, VL_LOG_WARNING, &place, "repaired: %u include%s beyond the limits left out", r->includes,
+    vl_log(context, VL_LOG_WARNING, &where, "repaired: %u include%s beyond the limits left out", r->includes,
            plural(r->includes));
 }

@@ -273,10 +273,16 @@ static inline float vl_roulette_survival(float carried, uint32_t depth) {
 /* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Each kind of tracer has one function. A kind without it is a link error. */
-#define VL_TRACER_FUNCTION(K, k) void vl_trace_##k(vlTracing *t);
-VL_TRACER_KINDS(VL_TRACER_FUNCTION)
-#undef VL_TRACER_FUNCTION
+/* Each kind of tracer has one function (tracer/tracers.hot.c calls it). */
+void vl_trace_path(vlTracing *t);
+void vl_trace_raycast(vlTracing *t);
+void vl_trace_ambient_occlusion(vlTracing *t);
+void vl_trace_volpath(vlTracing *t);
+void vl_trace_bidirectional(vlTracing *t);
+void vl_trace_merging(vlTracing *t);
+void vl_trace_sppm(vlTracing *t);
+void vl_trace_light_path(vlTracing *t);
+void vl_trace_random_walk(vlTracing *t);
 void vl_path_tracer(vlTracing *t);
 void vl_volume_tracer(
     vlTracing *t); /* in volume.hot.c: path tracer with participating media and subsurface materials */
@@ -419,6 +425,11 @@ static inline float vl_power_heuristic(float a, float b) {
 
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
+}
+static inline void vl_set_lane3(float *x, float *y, float *z, uint32_t i, vlVec3 v) {
+  x[i] = v.x;
+  y[i] = v.y;
+  z[i] = v.z;
 }
 /* Axes (full widths) of the ellipse in which a cone around a ray of direction d meets a surface with normal g. width:
  * the cone's width there. The axis along the ray is at most 64 times as long as the axis across the ray. */

@@ -23,8 +23,8 @@ typedef struct Off {
 } Off;
 
 static bool fail(Off *s, const char *what, const char *word) {
-  vlSource place = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, VL_ERROR_SCENE, place, "OFF: %s%s%s%s", what, word ? " \"" : "", word ? word : "",
+  vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
+  vl_scene_fail(s->scene, VL_ERROR_SCENE, source, "OFF: %s%s%s%s", what, word ? " \"" : "", word ? word : "",
                 word ? "\"" : "");
   return false;
 }

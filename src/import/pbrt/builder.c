@@ -67,13 +67,13 @@ static Rule rule_of(vlDirective d) {
 /* Records a directive that precedes WorldBegin. The last directive of a kind counts. */
 static bool choose(vlImport *import, const vlStatement *s, vlChoice *choice) {
   if (choice->given)
-    vl_import_remark(import, s->place, "%s a second time: this one counts", rule_of(s->directive).name);
+    vl_import_remark(import, s->source, "%s a second time: this one counts", rule_of(s->directive).name);
   vl_param_list_free(import->context, &choice->params);
   choice->given = true;
-  choice->place = s->place;
+  choice->source = s->source;
   choice->space = import->state.space;
   choice->kind = vl_import_keep(import, s->names[0]);
-  return choice->kind && vl_scene_copy_source(import->scene, &choice->place) &&
+  return choice->kind && vl_scene_copy_source(import->scene, &choice->source) &&
          vl_import_keep_params(import, s, &choice->params);
 }
 
@@ -83,13 +83,13 @@ static bool camera(vlImport *import, const vlStatement *s) {
   memcpy(import->camera_from_world, import->state.ctm, sizeof import->state.ctm);
   if (!vl_mat4_inverse(import->state.ctm[0], &world_from_camera[0]) ||
       !vl_mat4_inverse(import->state.ctm[1], &world_from_camera[1]))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Camera: the current transform is singular");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Camera: the current transform is singular");
   for (size_t i = 0; i < import->medium_links.count;) /* a later camera replaces the media of the earlier one */
     if (import->medium_links.items[i].target == 'c')
       import->medium_links.items[i] = import->medium_links.items[--import->medium_links.count];
     else
       i++;
-  if (!vl_import_note_media(import, 'c', 0, s->place)) return false;
+  if (!vl_import_note_media(import, 'c', 0, s->source)) return false;
   return vl_import_name_system(import, "camera", world_from_camera);
 }
 
@@ -101,7 +101,7 @@ static bool medium_interface(vlImport *import, const vlStatement *s) {
 
 static bool color_space(vlImport *import, const vlStatement *s) {
   if (vl_import_color_space(s->names[0], &import->state.space)) return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+  return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                         "unknown colour space \"%s\" (known: srgb, dci-p3, rec2020, aces2065-1)",
                         vl_short_text(s->names[0]).text);
 }
@@ -127,11 +127,11 @@ static bool in_right_part(vlImport *import, const vlStatement *s) {
     case OPTIONS:
       if (!import->in_world) return true;
       if (s->directive == VL_DIR_WORLD_BEGIN)
-        return vl_import_fail(import, VL_ERROR_SCENE, s->place, "WorldBegin a second time");
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come before WorldBegin", rule.name);
+        return vl_import_fail(import, VL_ERROR_SCENE, s->source, "WorldBegin a second time");
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come before WorldBegin", rule.name);
     case WORLD:
       return import->in_world ||
-             vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s must come after WorldBegin", rule.name);
+             vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s must come after WorldBegin", rule.name);
   }
   return true;
 }
@@ -141,17 +141,17 @@ static bool obey(vlImport *import, const vlStatement *s) {
   switch (s->directive) {
     case VL_DIR_ATTRIBUTE_BEGIN:
     case VL_DIR_TRANSFORM_BEGIN:
-      return vl_import_push(import, 'a', s->place); /* pbrt-v4: both save the whole graphics state */
+      return vl_import_push(import, 'a', s->source); /* pbrt-v4: both save the whole graphics state */
     case VL_DIR_ATTRIBUTE_END:
-    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', rule_of(s->directive).name, s->place);
-    case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->place);
+    case VL_DIR_TRANSFORM_END: return vl_import_pop(import, 'a', rule_of(s->directive).name, s->source);
+    case VL_DIR_IMPORT_BEGIN: return vl_import_push(import, 'i', s->source);
     case VL_DIR_IMPORT_END: {
       const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
       if (top->kind == 'i') {
         vl_import_restore(import);
         return true;
       }
-      return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
+      return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
                             top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
     }
     case VL_DIR_ACTIVE_ALL: import->state.active = 3; return true;
@@ -213,8 +213,8 @@ static bool statement(void *user, const vlStatement *s) {
   return name && (vl_names_add(import->context, &import->media, name, 0) || vl_import_fail_memory(import));
 }
 
-static void parse_error(void *user, vlResult code, vlSource place, const char *message) {
-  vl_import_fail(user, code, place, "%s", message);
+static void parse_error(void *user, vlResult code, vlSource source, const char *message) {
+  vl_import_fail(user, code, source, "%s", message);
 }
 
 static bool recover(void *user) {
@@ -222,11 +222,11 @@ static bool recover(void *user) {
 }
 
 /* Permissive: a file beyond the limits is left out. */
-static bool skip_include(void *user, vlSource place) {
+static bool skip_include(void *user, vlSource source) {
   vlImport *import = user;
   if (!import->permissive) return false;
   if (!import->repairs.includes++)
-    vl_import_warn(import, VL_LOG_WARNING, place, "this file and others beyond the limits of Include are left out");
+    vl_import_warn(import, VL_LOG_WARNING, source, "this file and others beyond the limits of Include are left out");
   return true;
 }
 

@@ -28,7 +28,7 @@ typedef struct vlGraphicsState {
   vlColorSpace space;
   uint32_t material;         /* 1 + index in import->materials; 0: material_name, or the default */
   const char *material_name; /* named material, resolved at the end; may be null */
-  vlSource material_place;
+  vlSource material_source;
   vlEmissionId emission;
   bool emission_given;
   const char *inside, *outside;       /* names of the media inside and outside of shapes */
@@ -37,7 +37,7 @@ typedef struct vlGraphicsState {
 
 typedef struct vlStackEntry {
   char kind; /* the block: 'a' attribute, 't' transform, 'o' object, 'i' import */
-  vlSource place;
+  vlSource source;
   vlGraphicsState state;
 } vlStackEntry;
 
@@ -51,7 +51,7 @@ typedef struct vlPending {
   const char *name; /* null for unnamed materials */
   const char *kind; /* null: given by the parameter "type" (MakeNamedMaterial) */
   bool spectrum;    /* textures only */
-  vlSource place;
+  vlSource source;
   vlColorSpace space;
   vlMat4 ctm; /* textures only */
   vlParamList params;
@@ -65,17 +65,17 @@ typedef struct vlShapeLink {
   uint32_t shape; /* index in scene->shapes */
   uint32_t material;
   const char *material_name;
-  vlSource material_place;
+  vlSource material_source;
   const char *alpha; /* name of a float texture */
-  vlSource alpha_place;
+  vlSource alpha_source;
   const char *displacement; /* name of a float texture */
-  vlSource displacement_place;
+  vlSource displacement_source;
 } vlShapeLink;
 
 /* A mesh file that is read at the end (meshes.c). `shape` is the placeholder for its shape. */
 typedef struct vlMeshFile {
   const char *path;
-  vlSource place;
+  vlSource source;
   vlShapeDef def;
   vlShapeLink link;
   uint32_t shape;
@@ -85,7 +85,7 @@ typedef struct vlObject {
   const char *name;
   vlGroupId group;
   bool defined;
-  vlSource place; /* of the first directive that uses the file */
+  vlSource source; /* of the first directive that uses the file */
 } vlObject;
 
 /* Media that are looked up at the end. target: 's' shape (index in scene->shapes), 'l' light, 'c' camera. */
@@ -93,7 +93,7 @@ typedef struct vlMediumLink {
   char target;
   uint32_t index;
   const char *inside, *outside; /* empty: vacuum */
-  vlSource place;
+  vlSource source;
 } vlMediumLink;
 
 /* Successive curves that become one shape. */
@@ -134,14 +134,14 @@ typedef struct vlSphereRun {
 typedef struct vlMovingGroup {
   vlGroupId group, object; /* object: the object that contains the group; 0: none */
   vlMat4 ctm[2];
-  vlSource place;
+  vlSource source;
 } vlMovingGroup;
 
 /* A directive before WorldBegin, kept until WorldBegin. */
 typedef struct vlChoice {
   bool given;
   const char *kind;
-  vlSource place;
+  vlSource source;
   vlColorSpace space;
   vlParamList params;
 } vlChoice;
@@ -190,34 +190,34 @@ struct vlImport {
 enum { VL_IMPORT_DEPTH = 200, VL_IMPORT_PROBLEMS = 1000 };
 
 /* ---- errors, warnings, copies (report.c) ------------------------------------------------------------------------- */
-bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...)
+bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 bool vl_import_fail_memory(vlImport *import);
-void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...)
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 /* While diagnosing (vl_scene_diagnose): reports the scene's error and clears it. False when not diagnosing or when the
  * error is fatal. */
 bool vl_import_recover(vlImport *import);
 /* While diagnosing: reports a note on valid input that is probably unintended. */
-void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void vl_import_remark(vlImport *import, vlSource source, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /* Reports valid pbrt that velo does not support: as an error, or, when permissive, as a warning; it then returns
  * true. */
-bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...)
+bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* Reports a kind that is not among `known`. `later` holds kinds of pbrt that velo does not support. */
-bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
+bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count);
 /* Like vl_import_unknown; the known names are the kinds of the family. */
 /* The name of a kind for messages. Names that velo does not know are shortened. */
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name);
-bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name);
+bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family, const char *name);
 const char *vl_import_keep(vlImport *import,
                            const char *text); /* copy that lives until the end of the import; null when out of memory */
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space, const vlParamList *own,
                       const vlParamList *attributes);
 /* Looks for a file that the file `naming` names (find.h), and notes the first that is in the current folder only. */
-vlFound vl_import_find(vlImport *import, vlSource place, const char *name, char *path, size_t size);
-void vl_import_note_elsewhere(void *user, vlSource place, const char *path);
+vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path, size_t size);
+void vl_import_note_elsewhere(void *user, vlSource source, const char *path);
 /* Writes the path of the file that a string parameter names. Returns false after an error: the file is not readable or
  * the path too long. */
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size);
@@ -234,17 +234,17 @@ const vlParamList *vl_import_attributes(vlImport *import, vlAttributeTarget targ
 bool vl_import_transform(vlImport *import, const vlStatement *s); /* Translate, LookAt, Transform, ... */
 bool vl_import_name_system(vlImport *import, const char *name, const vlMat4 m[2]);
 bool vl_import_use_system(vlImport *import, const vlStatement *s);
-bool vl_import_push(vlImport *import, char kind, vlSource place);
-bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place);
+bool vl_import_push(vlImport *import, char kind, vlSource source);
+bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource source);
 void vl_import_restore(vlImport *import);
 /* Motion (motion.c). vl_import_ctm returns the current transform for something that cannot move and warns when the
  * start and end transforms differ. */
-bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm);
+bool vl_import_ctm(vlImport *import, vlSource source, vlMat4 *ctm);
 bool vl_import_times(vlImport *import, const vlStatement *s); /* TransformTimes */
 bool vl_import_moves(const vlImport *import);                 /* whether the start and end transforms differ */
 /* The group for a shape under the current, animated transform. The shape's own transform becomes the identity. */
-bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group);
-bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place);
+bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group);
+bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource source);
 bool vl_import_finish_motion(vlImport *import); /* places moving groups inside objects, once all instances are known */
 
 /* ---- parts ------------------------------------------------------------------------------------------------------ */
@@ -269,16 +269,17 @@ bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool sp
 /* Whether the file gives the parameter. The name must be one of the row's parameters. */
 bool vl_import_given(const vlKindRow *row, const bool *given, const char *name);
 
-bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id);
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id);
 bool vl_import_finish_texture(vlImport *import,
                               uint32_t index); /* first resolves the textures that this one refers to */
 bool vl_import_finish_material(vlImport *import, uint32_t index);
 /* Absorption and scattering per millimetre of the substance named by parameter `name` (scattering.h). */
 bool vl_import_scattering_preset(vlDict *dict, const char *name, vlSpectrum *absorption, vlSpectrum *scattering,
                                  bool *given);
-bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface);
+bool vl_import_material_id(vlImport *import, const char *name, vlSource source, vlMaterialId *id, bool *is_interface);
 
-/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file names of their places. */
+/* Takes over the parameters of a statement, so that they outlive it. The scene keeps the file names of their sources.
+ */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to);
 bool vl_import_attribute(vlImport *import, const vlStatement *s);
 bool vl_import_object_begin(vlImport *import, const vlStatement *s);
@@ -293,7 +294,7 @@ bool vl_import_finish(vlImport *import); /* resolves everything after the last s
 bool vl_import_light(vlImport *import, const vlStatement *s);
 bool vl_import_area_light(vlImport *import, const vlStatement *s);
 bool vl_import_shape(vlImport *import, const vlStatement *s);
-bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source, const vlShapeDef *def,
                          const vlShapeLink *link);
 bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
 /* Adds a shape. The scene takes ownership of the def's arrays. */
@@ -314,7 +315,7 @@ bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b);
 bool vl_import_same_text(const char *a, const char *b); /* null equals the empty string */
 bool vl_import_medium(vlImport *import, const vlStatement *s);
 /* Records the media of the current state for a shape ('s'), a light ('l') or the camera ('c'). */
-bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place);
+bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source);
 bool vl_import_finish_media(vlImport *import);
 
 #endif

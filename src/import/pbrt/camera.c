@@ -16,7 +16,7 @@ static const double degrees = 0.017453292519943295;
 static bool pose_from(vlImport *import, const vlMat4 *ctm, double pose[16]) {
   vlMat4 m;
   if (!vl_mat4_inverse(*ctm, &m))
-    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "Camera: the current transform is singular");
+    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source, "Camera: the current transform is singular");
   for (int row = 0; row < 3; row++) {
     for (int column = 0; column < 4; column++)
       pose[4 * row + column] = m.m[4 * row + column] * (column == 1 ? -1.0 : 1.0);
@@ -47,7 +47,7 @@ static bool check_shutter(vlDict *dict, vlCameraDef *def) {
   bool instant = def->shutter_close == def->shutter_open && def->readout > 0.0;
   if (instant || def->shutter_close > def->shutter_open || dict->import->scene->error.code != VL_OK)
     return dict->import->scene->error.code == VL_OK;
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
                         "%s: the shutter does not open: it closes at %g, opens at %g", dict->what, def->shutter_close,
                         def->shutter_open);
 }
@@ -59,7 +59,7 @@ static bool read_pbrt(vlDict *dict, vlCameraDef *def, bool flat) {
   double frame = (double)def->width / def->height, window[4], focus = 1e6;
   bool given = vl_dict_double(dict, "frameaspectratio", &frame);
   if (given && !(frame > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"frameaspectratio\" must be above 0", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"frameaspectratio\" must be above 0", dict->what);
   double x = frame > 1.0 ? frame : 1.0, y = frame > 1.0 ? 1.0 : 1.0 / frame;
   double standard[4] = {-x, x, -y, y};
   memcpy(window, standard, sizeof window);
@@ -111,14 +111,14 @@ static bool read_curve(vlDict *dict, vlCameraDef *def) {
   vlParam *points = vl_dict_find(dict, "shutterpoints", VL_BIT_FLOAT);
   if (dict->import->scene->error.code != VL_OK) return false;
   if (risen && (curve != 2 || !(rise > 0.0 && rise <= 0.5)))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
                           "%s: \"shutterrise\" is the share, above 0 and at most 0.5, in which a trapezoid rises and "
                           "falls",
                           dict->what);
   if (points) {
     size_t n = vl_param_count(points);
     if (curve || n % 2 || n < 4 || n > 2 * VL_SHUTTER_POINTS)
-      return vl_import_fail(dict->import, VL_ERROR_SCENE, points->place,
+      return vl_import_fail(dict->import, VL_ERROR_SCENE, points->source,
                             "%s: \"shutterpoints\" are 2 to %d pairs (share of the time, how far open), instead of "
                             "\"shuttercurve\"",
                             dict->what, (int)VL_SHUTTER_POINTS);
@@ -140,7 +140,7 @@ static bool read_coefficients(vlDict *dict, const char *name, double *values, ui
   if (!p) return false;
   size_t n = vl_param_count(p);
   if (n > 14)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
                           "%s: \"%s\" has %zu numbers; at most 14 have a meaning", dict->what, name, n);
   for (size_t i = 0; i < n; i++) values[i] = p->exact[i];
   *count = (uint32_t)n;
@@ -167,7 +167,7 @@ static bool read_colmap(vlDict *dict, vlCameraDef *def) {
   if (dict->import->scene->error.code != VL_OK) return false;
   if (vl_camera_def_colmap(def, model, values, count, &error) == VL_OK) return true;
   vl_shorten_quoted(&error, model);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s", dict->what,
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s", dict->what,
                         error.message + strlen("camera: "));
 }
 
@@ -209,7 +209,7 @@ static bool read_lecture(vlDict *dict, vlCameraDef *def, vlCameraKind kind, cons
   const vlMat4 identity = vl_mat4_identity();
   for (int i = 0; i < 16; i++)
     if (import->camera_from_world[0].m[i] != identity.m[i] || import->camera_from_world[1].m[i] != identity.m[i])
-      return vl_import_fail(import, VL_ERROR_SCENE, dict->place,
+      return vl_import_fail(import, VL_ERROR_SCENE, dict->source,
                             "%s: its pose is given by eye, lookat and up; transforms before it have no meaning",
                             dict->what);
   return true;
@@ -222,14 +222,14 @@ static bool check(vlImport *import, const char *what, const vlCameraDef *def) {
   const char *warning = NULL;
   if (vl_camera_make(def, &camera, &warning, &error) != VL_OK) {
     const char *text = strncmp(error.message, "camera: ", 8) == 0 ? error.message + 8 : error.message;
-    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.place, "%s: %s", what, text);
+    return vl_import_fail(import, VL_ERROR_SCENE, import->camera.source, "%s: %s", what, text);
   }
   if (warning && camera.outside > 0.0)
-    vl_import_warn(import, VL_LOG_WARNING, import->camera.place,
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.source,
                    "%s: the lens folds or its model ends inside the image: %.2g %% of it sees nothing (alpha 0)", what,
                    100.0 * camera.outside);
   else if (warning)
-    vl_import_warn(import, VL_LOG_WARNING, import->camera.place, "%s", warning);
+    vl_import_warn(import, VL_LOG_WARNING, import->camera.source, "%s", warning);
   return true;
 }
 
@@ -274,14 +274,14 @@ bool vl_import_camera(vlImport *import) {
   char what[96];
   snprintf(what, sizeof what, "Camera \"%s\"",
            vl_import_kind_text(&vl_camera_family, choice->given ? choice->kind : "perspective").text);
-  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   vlCameraDef def = vl_default_camera_def(defs->film.width, defs->film.height);
   int kind = choice->given ? vl_kind_find(&vl_camera_family, choice->kind) : (int)VL_CAMERA_PBRT_PERSPECTIVE;
   const vlKindRow *row = vl_kind_row(&vl_camera_family, kind);
   for (int i = 0; i < 2 && !choice->given; i++) import->camera_from_world[i] = vl_mat4_identity();
-  defs->camera_source = choice->place;
+  defs->camera_source = choice->source;
   if (!row) { /* permissive: pbrt's perspective camera at the same pose replaces it */
-    if (!vl_import_unknown_kind(import, choice->place, &vl_camera_family, choice->kind)) return false;
+    if (!vl_import_unknown_kind(import, choice->source, &vl_camera_family, choice->kind)) return false;
     vl_dict_skip(&dict);
     def.fov = 90.0 * degrees;
     if (!pose_from_ctm(import, &def)) return false;

@@ -88,7 +88,7 @@ static bool append(vlImport *import, const Curve *c) {
   vlCurveRun *run = &import->curves;
   size_t n = c->segments;
   if (run->widths.count / 2 + n > 0x1fffffff)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->place, "too many segments of curves");
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "too many segments of curves");
   if (!VL_RESERVE(import->context, &run->points, 12 * n) || !VL_RESERVE(import->context, &run->widths, 2 * n) ||
       (c->normals && !VL_RESERVE(import->context, &run->normals, 6 * n)))
     return vl_import_fail_memory(import);
@@ -116,21 +116,21 @@ static bool read_points(vlDict *dict, Curve *c) {
   vlImport *import = dict->import;
   if (!(c->points = vl_dict_find(dict, "P", 1u << VL_PARAM_POINT3))) {
     if (import->scene->error.code != VL_OK || !vl_dict_done(dict)) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"point3 P\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing", dict->what);
   }
   size_t numbers = c->points->floats.count, n = numbers / 3;
   if (numbers % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->place, "%s: \"P\" holds %zu numbers, not a multiple of 3",
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "%s: \"P\" holds %zu numbers, not a multiple of 3",
                           dict->what, numbers);
   if (n < c->degree + 1 || (!c->spline && (n - 1) % c->degree))
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source,
                           c->spline ? "%s: %zu points, but a B-spline of degree %u needs at least %u"
                                     : "%s: %zu points, but Bezier curves of degree %u need %u, or that and a multiple "
                                       "of the degree",
                           dict->what, n, c->degree, c->degree + 1);
   c->segments = c->spline ? n - c->degree : (n - 1) / c->degree;
   if (!finite(c->points))
-    return vl_import_fail(import, VL_ERROR_SCENE, c->points->place, "%s: a point is not finite", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, c->points->source, "%s: a point is not finite", dict->what);
   return true;
 }
 
@@ -140,15 +140,15 @@ static bool read_normals(vlDict *dict, vlCurveKind kind, Curve *c) {
   if (import->scene->error.code != VL_OK) return false;
   if (kind != VL_CURVE_RIBBON) {
     if (c->normals)
-      vl_import_warn(import, VL_LOG_WARNING, c->normals->place, "%s: only ribbons have normals: they are ignored",
+      vl_import_warn(import, VL_LOG_WARNING, c->normals->source, "%s: only ribbons have normals: they are ignored",
                      dict->what);
     c->normals = NULL;
     return true;
   }
   if (!c->normals)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: ribbons need \"normal N\"", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: ribbons need \"normal N\"", dict->what);
   if (c->normals->floats.count == 3 * (c->segments + 1) && finite(c->normals)) return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, c->normals->place,
+  return vl_import_fail(import, VL_ERROR_SCENE, c->normals->source,
                         "%s: \"N\" holds %zu numbers; %zu segments need %zu finite ones, 3 for each of their ends",
                         dict->what, c->normals->floats.count, c->segments, 3 * (c->segments + 1));
 }
@@ -174,13 +174,14 @@ bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link) {
   }
   c.spline = basis == 1;
   if (c.degree > 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: the degree must be 2 or 3, not %u", dict->what,
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: the degree must be 2 or 3, not %u", dict->what,
                           c.degree);
   if (!(c.width[0] >= 0.0f) || !(c.width[1] >= 0.0f) || c.width[0] > 1e30f || c.width[1] > 1e30f)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: a width must not be negative", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: a width must not be negative", dict->what);
   if (!read_points(dict, &c) || !read_normals(dict, def->curve, &c) || !vl_dict_done(dict)) return false;
   if (def->emission.index) {
-    vl_import_warn(import, VL_LOG_WARNING, dict->place, "curves cannot be area lights (nor can pbrt's): it gives none");
+    vl_import_warn(import, VL_LOG_WARNING, dict->source,
+                   "curves cannot be area lights (nor can pbrt's): it gives none");
     def->emission.index = 0;
   }
   if (!continues(&import->curves, def, link, &import->state)) {

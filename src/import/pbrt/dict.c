@@ -84,7 +84,7 @@ static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *nam
     } else if (!p->optional && !found) {
       char types[160];
       p->used = true;
-      vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: parameter \"%s\" must be of type %s, not \"%s\"",
+      vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" must be of type %s, not \"%s\"",
                      dict->what, name, wanted_types(bits, types, sizeof types), vl_param_type_name(p->type));
       return NULL;
     }
@@ -100,7 +100,7 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
   if (dict->attributes && dict->import->scene->error.code == VL_OK)
     found = find_in(dict, dict->attributes, name, bits, found);
   if (found && vl_param_count(found) == 0) {
-    vl_import_fail(dict->import, VL_ERROR_SCENE, found->place, "%s: parameter \"%s\" has no value", dict->what, name);
+    vl_import_fail(dict->import, VL_ERROR_SCENE, found->source, "%s: parameter \"%s\" has no value", dict->what, name);
     return NULL;
   }
   return found;
@@ -109,7 +109,7 @@ vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
 static vlParam *find_counted(vlDict *dict, const char *name, vlParamType type, size_t count) {
   vlParam *p = vl_dict_find(dict, name, 1u << type);
   if (p && vl_param_count(p) != count) {
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: parameter \"%s\" takes %zu value%s, found %zu",
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" takes %zu value%s, found %zu",
                    dict->what, name, count, count == 1 ? "" : "s", vl_param_count(p));
     return NULL;
   }
@@ -139,7 +139,7 @@ bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *valu
   if (!p) return false;
   int32_t v = p->integers.items[0];
   if (v < least)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: parameter \"%s\" must be at least %d, it is %d",
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" must be at least %d, it is %d",
                           dict->what, name, least, v);
   *value = (uint32_t)v;
   return true;
@@ -186,10 +186,10 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
     n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? ", " : "", names[i]);
   const char *near = vl_nearest_name(text, names, count);
   if (near)
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%s\" (did you mean \"%s\"?)",
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: \"%s\" cannot be \"%s\" (did you mean \"%s\"?)",
                    dict->what, name, vl_short_text(text).text, near);
   else
-    vl_import_fail(dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" cannot be \"%s\" (known: %s)", dict->what, name,
+    vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: \"%s\" cannot be \"%s\" (known: %s)", dict->what, name,
                    vl_short_text(text).text, all);
   return false;
 }
@@ -206,9 +206,9 @@ bool vl_dict_done(vlDict *dict) {
     if (p->used || p->optional) continue;
     const char *near = vl_nearest_name(p->name, dict->asked, dict->asked_count);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%s\" (did you mean \"%s\"?)",
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: unknown parameter \"%s\" (did you mean \"%s\"?)",
                             dict->what, vl_short_text(p->name).text, near);
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: unknown parameter \"%s\"", dict->what,
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: unknown parameter \"%s\"", dict->what,
                           vl_short_text(p->name).text);
   }
   return true;

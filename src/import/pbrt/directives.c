@@ -13,16 +13,16 @@ static bool take_string(vlParserFile *file, const char *directive, const char *w
     *text = token.text;
     return true;
   }
-  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
-  return vl_parse_fail(file, vl_parse_place(file, &token), "%s: expected %s in quotes, found %s", directive, what,
+  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+  return vl_parse_fail(file, vl_parse_source(file, &token), "%s: expected %s in quotes, found %s", directive, what,
                        vl_parse_show(&token).text);
 }
 
 static bool take_number(vlParserFile *file, const char *directive, double *value) {
   vlToken token = vl_parse_take(file);
   if (token.kind == VL_TOKEN_WORD && vl_number_parse(token.text, token.length, value)) return true;
-  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
-  return vl_parse_fail(file, vl_parse_place(file, &token), "%s: expected a number, found %s", directive,
+  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+  return vl_parse_fail(file, vl_parse_source(file, &token), "%s: expected a number, found %s", directive,
                        vl_parse_show(&token).text);
 }
 
@@ -90,12 +90,12 @@ static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   const char *near = vl_nearest_name(text, names, KEYWORDS);
   double number;
   if (vl_number_parse(token->text, token->length, &number))
-    return vl_parse_fail(file, vl_parse_place(file, token), "expected a directive, found the number %s",
+    return vl_parse_fail(file, vl_parse_source(file, token), "expected a directive, found the number %s",
                          vl_parse_show(token).text);
   if (near)
-    return vl_parse_fail(file, vl_parse_place(file, token), "unknown directive %s (did you mean %s?)",
+    return vl_parse_fail(file, vl_parse_source(file, token), "unknown directive %s (did you mean %s?)",
                          vl_parse_show(token).text, near);
-  return vl_parse_fail(file, vl_parse_place(file, token), "unknown directive %s", vl_parse_show(token).text);
+  return vl_parse_fail(file, vl_parse_source(file, token), "unknown directive %s", vl_parse_show(token).text);
 }
 
 static bool send(vlParserFile *file, const vlStatement *statement) {
@@ -104,23 +104,23 @@ static bool send(vlParserFile *file, const vlStatement *statement) {
 
 static bool read_matrix(vlParserFile *file, const Keyword *k, vlStatement *s) {
   vlToken open = vl_parse_take(file);
-  if (open.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &open), "%s", open.message);
+  if (open.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &open), "%s", open.message);
   if (open.kind != VL_TOKEN_OPEN)
-    return vl_parse_fail(file, vl_parse_place(file, &open), "%s: expected [ and 16 numbers, found %s", k->name,
+    return vl_parse_fail(file, vl_parse_source(file, &open), "%s: expected [ and 16 numbers, found %s", k->name,
                          vl_parse_show(&open).text);
   for (uint32_t i = 0; i < 16; i++) {
     vlToken token = vl_parse_peek(file);
     if (token.kind == VL_TOKEN_CLOSE)
-      return vl_parse_fail(file, vl_parse_place(file, &token), "%s: 16 numbers needed, found %u", k->name, i);
+      return vl_parse_fail(file, vl_parse_source(file, &token), "%s: 16 numbers needed, found %u", k->name, i);
     if (token.kind == VL_TOKEN_END)
-      return vl_parse_fail(file, vl_parse_place(file, &open), "unclosed [ of %s: the file ends before the ]", k->name);
+      return vl_parse_fail(file, vl_parse_source(file, &open), "unclosed [ of %s: the file ends before the ]", k->name);
     if (!take_number(file, k->name, &s->numbers[i])) return false;
   }
   vlToken close = vl_parse_take(file);
   if (close.kind == VL_TOKEN_CLOSE) return true;
   if (close.kind == VL_TOKEN_END)
-    return vl_parse_fail(file, vl_parse_place(file, &open), "unclosed [ of %s: the file ends before the ]", k->name);
-  return vl_parse_fail(file, vl_parse_place(file, &close), "%s: expected ] after 16 numbers, found %s", k->name,
+    return vl_parse_fail(file, vl_parse_source(file, &open), "unclosed [ of %s: the file ends before the ]", k->name);
+  return vl_parse_fail(file, vl_parse_source(file, &close), "%s: expected ] after 16 numbers, found %s", k->name,
                        vl_parse_show(&close).text);
 }
 
@@ -133,7 +133,7 @@ static bool read_active(vlParserFile *file, vlStatement *s) {
   else if (vl_parse_is_word(&token, "EndTime"))
     s->directive = VL_DIR_ACTIVE_END;
   else
-    return vl_parse_fail(file, vl_parse_place(file, &token),
+    return vl_parse_fail(file, vl_parse_source(file, &token),
                          "ActiveTransform: expected StartTime, EndTime or All, found %s", vl_parse_show(&token).text);
   return true;
 }
@@ -146,9 +146,9 @@ static bool read_option(vlParserFile *file, vlStatement *s) {
   vlToken token = vl_parse_take(file);
   bool bracket = token.kind == VL_TOKEN_OPEN;
   if (bracket) token = vl_parse_take(file);
-  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
+  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
   if (token.kind != VL_TOKEN_WORD && token.kind != VL_TOKEN_STRING)
-    return vl_parse_fail(file, vl_parse_place(file, &token), "Option: expected a value, found %s",
+    return vl_parse_fail(file, vl_parse_source(file, &token), "Option: expected a value, found %s",
                          vl_parse_show(&token).text);
   char value[1024];
   size_t n = token.length < sizeof value ? token.length : sizeof value - 1;
@@ -158,7 +158,7 @@ static bool read_option(vlParserFile *file, vlStatement *s) {
   if (bracket) {
     vlToken close = vl_parse_take(file);
     if (close.kind != VL_TOKEN_CLOSE)
-      return vl_parse_fail(file, vl_parse_place(file, &close), "Option: expected ], found %s",
+      return vl_parse_fail(file, vl_parse_source(file, &close), "Option: expected ], found %s",
                            vl_parse_show(&close).text);
   }
   return send(file, s);
@@ -188,7 +188,7 @@ static bool read_directive(vlParserFile *file, const vlToken *token) {
     if (vl_parse_is_word(token, keywords[i].name)) k = &keywords[i];
   if (!k) return unknown_directive(file, token);
   vlParamList params = {0};
-  vlStatement s = {.directive = k->directive, .place = vl_parse_place(file, token), .params = &params};
+  vlStatement s = {.directive = k->directive, .source = vl_parse_source(file, token), .params = &params};
   bool fine = true;
   switch (k->form) {
     case ALONE: break;
@@ -248,14 +248,15 @@ bool vl_parse_block(vlParserFile *file, char *data, size_t size) {
   const unsigned char *b = (const unsigned char *)data;
   vlToken start = {.line = 1, .column = 1};
   if (size >= 2 && ((b[0] == 0xfe && b[1] == 0xff) || (b[0] == 0xff && b[1] == 0xfe)))
-    return vl_parse_fail(file, vl_parse_place(file, &start), "the file is encoded as UTF-16; only UTF-8 is understood");
+    return vl_parse_fail(file, vl_parse_source(file, &start),
+                         "the file is encoded as UTF-16; only UTF-8 is understood");
   vl_tokenizer_start(&file->tokens, data, size);
   for (;;) {
     vlToken token = vl_parse_take(file);
     if (token.kind == VL_TOKEN_END) return true;
-    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
+    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
     if (token.kind != VL_TOKEN_WORD)
-      return vl_parse_fail(file, vl_parse_place(file, &token), "expected a directive, found %s",
+      return vl_parse_fail(file, vl_parse_source(file, &token), "expected a directive, found %s",
                            vl_parse_show(&token).text);
     if (!poll(file, size)) return false;
     if (!read_directive(file, &token) && !go_on(file)) return false;

@@ -6,17 +6,17 @@
 
 /* ---- parameters that outlive their directive -------------------------------------------------------------------- */
 
-/* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters' places. */
+/* Moves the statement's parameters to `to`. The scene keeps the file names of the parameters' sources. */
 bool vl_import_keep_params(vlImport *import, const vlStatement *s, vlParamList *to) {
   for (size_t i = 0; i < s->params->list.count; i++)
-    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->place)) return false;
+    if (!vl_scene_copy_source(import->scene, &s->params->list.items[i]->source)) return false;
   *to = *s->params;
   *s->params = (vlParamList){0};
   return true;
 }
 
-static bool keep_source(vlImport *import, vlSource *place) {
-  return vl_scene_copy_source(import->scene, place);
+static bool keep_source(vlImport *import, vlSource *source) {
+  return vl_scene_copy_source(import->scene, source);
 }
 
 /* ---- state ------------------------------------------------------------------------------------------------------ */
@@ -27,7 +27,7 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   for (int i = 0; i < VL_ATTR_TARGETS; i++)
     if (strcmp(s->names[0], targets[i]) == 0) target = i;
   if (target < 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
                           vl_short_text(s->names[0]).text);
   vlParamList params = {0};
@@ -51,11 +51,11 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
 /* ---- objects ---------------------------------------------------------------------------------------------------- */
 
 /* An object may be instanced before it is defined: its group is made at the first use. */
-static vlObject *find_object(vlImport *import, const char *name, vlSource place) {
+static vlObject *find_object(vlImport *import, const char *name, vlSource source) {
   uint32_t index;
   if (vl_names_find(&import->objects, name, &index)) return &import->object_list.items[index];
   const char *kept = vl_import_keep(import, name);
-  if (!kept || !keep_source(import, &place)) return NULL;
+  if (!kept || !keep_source(import, &source)) return NULL;
   vlGroupId group = vl_scene_add_group(import->scene, kept);
   if (!group.index) return NULL;
   vlObject *object = VL_PUSH(import->context, &import->object_list);
@@ -63,26 +63,26 @@ static vlObject *find_object(vlImport *import, const char *name, vlSource place)
     vl_import_fail_memory(import);
     return NULL;
   }
-  *object = (vlObject){.name = kept, .group = group, .place = place};
+  *object = (vlObject){.name = kept, .group = group, .source = source};
   return object;
 }
 
 bool vl_import_object_begin(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectBegin inside of an object: objects do not nest");
-  vlObject *object = find_object(import, s->names[0], s->place);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "ObjectBegin inside of an object: objects do not nest");
+  vlObject *object = find_object(import, s->names[0], s->source);
   if (!object) return false;
   if (object->defined)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "object \"%s\" is defined a second time",
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "object \"%s\" is defined a second time",
                           vl_short_text(s->names[0]).text);
   object->defined = true;
   import->in_object = true;
   import->object = object->group;
-  return vl_import_push(import, 'o', s->place);
+  return vl_import_push(import, 'o', s->source);
 }
 
 bool vl_import_object_end(vlImport *import, const vlStatement *s) {
-  if (!vl_import_pop(import, 'o', "ObjectEnd", s->place)) return false;
+  if (!vl_import_pop(import, 'o', "ObjectEnd", s->source)) return false;
   import->in_object = false;
   import->object = (vlGroupId){0};
   return true;
@@ -90,9 +90,9 @@ bool vl_import_object_end(vlImport *import, const vlStatement *s) {
 
 bool vl_import_object_instance(vlImport *import, const vlStatement *s) {
   if (import->in_object)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "ObjectInstance inside of an object: objects do not nest");
-  const vlObject *object = find_object(import, s->names[0], s->place);
-  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->place);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "ObjectInstance inside of an object: objects do not nest");
+  const vlObject *object = find_object(import, s->names[0], s->source);
+  return object && vl_import_add_instance(import, object->group, import->state.ctm, s->source);
 }
 
 /* ---- what waits ------------------------------------------------------------------------------------------------- */
@@ -105,10 +105,10 @@ static vlPending *add_pending(vlImport *import, const vlStatement *s, vlAttribut
     return NULL;
   }
   vlParamList own = {0};
-  p->place = s->place;
+  p->source = s->source;
   p->space = import->state.space;
   p->ctm = import->state.ctm[0];
-  if (!keep_source(import, &p->place) || !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
+  if (!keep_source(import, &p->source) || !vl_import_copy_params(import, &import->attributes[target], &p->params) ||
       !vl_import_keep_params(import, s, &own))
     return NULL;
   bool fine = true;
@@ -137,8 +137,8 @@ bool vl_import_material(vlImport *import, const vlStatement *s) {
 bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
   uint32_t index;
   if (vl_names_find(&import->named_materials, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "material \"%s\" is made a second time (first in line %u)",
-                          vl_short_text(s->names[0]).text, import->materials.items[index].place.line);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "material \"%s\" is made a second time (first in line %u)",
+                          vl_short_text(s->names[0]).text, import->materials.items[index].source.line);
   vlPending *p = add_pending(import, s, VL_ATTR_MATERIAL, false);
   if (!p || !(p->name = vl_import_keep(import, s->names[0]))) return false;
   if (vl_names_add(import->context, &import->named_materials, p->name, (uint32_t)import->materials.count - 1))
@@ -149,31 +149,31 @@ bool vl_import_make_named_material(vlImport *import, const vlStatement *s) {
 bool vl_import_named_material(vlImport *import, const vlStatement *s) {
   uint32_t index;
   import->state.material = 0;
-  import->state.material_place = s->place;
+  import->state.material_source = s->source;
   if (vl_names_find(&import->named_materials, s->names[0], &index)) {
     import->state.material_name = import->materials.items[index].name;
-    return keep_source(import, &import->state.material_place);
+    return keep_source(import, &import->state.material_source);
   }
   import->state.material_name = vl_import_keep(import, s->names[0]);
-  return import->state.material_name && keep_source(import, &import->state.material_place);
+  return import->state.material_name && keep_source(import, &import->state.material_source);
 }
 
 bool vl_import_texture(vlImport *import, const vlStatement *s) {
   bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
   if (!spectrum && strcmp(s->names[1], "float") != 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
                           vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);
   vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   uint32_t index;
   if (vl_names_find(table, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "%s texture \"%s\" is made a second time (first in line %u)", spectrum ? "spectrum" : "float",
-                          vl_short_text(s->names[0]).text, import->textures.items[index].place.line);
+                          vl_short_text(s->names[0]).text, import->textures.items[index].source.line);
   vlPending *p = add_pending(import, s, VL_ATTR_TEXTURE, true);
   if (!p) return false;
   p->spectrum = spectrum;
-  if (!vl_import_ctm(import, s->place, &p->ctm) || !(p->name = vl_import_keep(import, s->names[0])) ||
+  if (!vl_import_ctm(import, s->source, &p->ctm) || !(p->name = vl_import_keep(import, s->names[0])) ||
       !(p->kind = vl_import_keep(import, s->names[2])))
     return false;
   if (vl_names_add(import->context, table, p->name, (uint32_t)import->textures.count - 1)) return true;

@@ -127,15 +127,15 @@ static bool follow_text(vlParserFile *parent, vlSource at, const char *name, con
 
 bool vl_parse_follow(vlParserFile *file, const vlToken *at, const char *name, bool included) {
   const vlParseTarget *target = file->parser->target;
-  vlSource place = vl_parse_place(file, at);
+  vlSource source = vl_parse_source(file, at);
   char path[MAX_PATH];
   const char *text = given_text(target, name);
-  if (text) return follow_text(file, place, name, text, included);
+  if (text) return follow_text(file, source, name, text, included);
   vlFound found = vl_find_file(file->parser->context, file->path, file->parser->first, target->search_path, name, path,
                                sizeof path);
-  if (found == VL_FOUND_TOO_LONG) return vl_parse_fail(file, place, "file name too long");
-  if (found == VL_FOUND_CURRENT && target->found_elsewhere) target->found_elsewhere(target->user, place, path);
-  return parse_path(file->parser, file, place, path, included);
+  if (found == VL_FOUND_TOO_LONG) return vl_parse_fail(file, source, "file name too long");
+  if (found == VL_FOUND_CURRENT && target->found_elsewhere) target->found_elsewhere(target->user, source, path);
+  return parse_path(file->parser, file, source, path, included);
 }
 
 bool vl_parse_file(vlContext *context, const char *path, const vlParseTarget *target) {

@@ -13,11 +13,11 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
   vlImport *import = dict->import;
   double w = s->film.width, h = s->film.height, box[4] = {0, w, 0, h}, crop[4];
   vlParam *pixels = vl_dict_find(dict, "pixelbounds", 1u << VL_PARAM_INTEGER);
-  vlSource place = dict->place;
+  vlSource source = dict->source;
   if (pixels) {
-    place = pixels->place;
+    source = pixels->source;
     if (pixels->integers.count != 4)
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
+      return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: parameter \"pixelbounds\" takes 4 values, found %zu",
                             dict->what, pixels->integers.count);
     for (int i = 0; i < 4; i++) {
       double v = pixels->integers.items[i], top = i < 2 ? w : h;
@@ -36,7 +36,7 @@ static bool read_crop(vlDict *dict, vlSceneDefs *s) {
     }
   }
   if (!(box[0] < box[1] && box[2] < box[3]))
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the crop window holds no pixel", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the crop window holds no pixel", dict->what);
   s->film.crop[0] = (uint32_t)box[0];
   s->film.crop[2] = (uint32_t)box[1];
   s->film.crop[1] = (uint32_t)box[2];
@@ -63,7 +63,7 @@ static bool read_sensor_name(vlDict *dict, double *white) {
       vl_scene_defs(import->scene)->film.sensor = names[i];
       return true;
     }
-  return vl_import_unknown(import, p->place, "sensor", name, names, count, NULL, 0);
+  return vl_import_unknown(import, p->source, "sensor", name, names, count, NULL, 0);
 }
 
 /* Reads the sensor, its white balance and its largest component value. */
@@ -72,12 +72,12 @@ static bool read_sensor(vlDict *dict) {
   double white = 0.0, usual = 0.0, top = INFINITY;
   if (!read_sensor_name(dict, &usual)) return false;
   if (vl_dict_double(dict, "whitebalance", &white) && white != 0.0 && !(white >= 1000.0 && white <= 1e5))
-    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, vl_dict_find(dict, "whitebalance", VL_BIT_FLOAT)->source,
                           "%s: \"whitebalance\" is %g; it must be 0 (none) or 1000 to 100000 kelvin", dict->what,
                           white);
   vl_scene_defs(import->scene)->film.white_balance = white != 0.0 ? white : usual;
   if (vl_dict_double(dict, "maxcomponentvalue", &top) && !(top >= 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"maxcomponentvalue\" must not be negative",
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"maxcomponentvalue\" must not be negative",
                           dict->what);
   vl_scene_defs(import->scene)->film.max_component = top < 1e30 ? (float)top : INFINITY;
   return import->scene->error.code == VL_OK;
@@ -100,11 +100,11 @@ static bool read_rest(vlDict *dict, vlSceneDefs *s) {
   vl_dict_double(dict, "imagingratio", &ratio);
   if (import->scene->error.code != VL_OK) return false;
   if (strlen(output) >= sizeof s->output)
-    return vl_import_fail(import, VL_ERROR_SCENE, file->place, "%s: the file name is too long", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, file->source, "%s: the file name is too long", dict->what);
   snprintf(s->output, sizeof s->output, "%s", output);
   s->develop.exposure = (float)(iso / 100.0 * time * ratio);
   if (!(s->develop.exposure >= 0.0f) || !isfinite(s->develop.exposure))
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: the exposure is negative or not finite",
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: the exposure is negative or not finite",
                           dict->what);
   return read_crop(dict, s) && read_sensor(dict);
 }
@@ -119,7 +119,7 @@ static bool read_gbuffer(vlDict *dict, vlSceneDefs *s) {
 
 static bool check_wavelengths(vlDict *dict, vlSceneDefs *s) {
   if (!s->film.buckets || s->film.lambda_min < s->film.lambda_max) return true;
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
                         "%s: \"lambdamin\" is %g, it must be below \"lambdamax\", %g", dict->what, s->film.lambda_min,
                         s->film.lambda_max);
 }
@@ -135,10 +135,10 @@ bool vl_import_film(vlImport *import) {
   char what[96];
   snprintf(what, sizeof what, "Film \"%s\"",
            vl_import_kind_text(&vl_film_family, choice->given ? choice->kind : "rgb").text);
-  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = choice->given ? vl_kind_find(&vl_film_family, choice->kind) : VL_FILM_RGB;
   bool known = kind >= 0;
-  if (!known && !vl_import_unknown_kind(import, choice->place, &vl_film_family, choice->kind)) return false;
+  if (!known && !vl_import_unknown_kind(import, choice->source, &vl_film_family, choice->kind)) return false;
   if (!known) kind = VL_FILM_RGB;
   const vlKindRow *row = vl_kind_row(&vl_film_family, kind);
   vl_row_set_defaults(row, s);
@@ -176,25 +176,25 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   if (strcmp(name, "seed") == 0) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"seed\": \"%s\" is not an integer",
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"seed\": \"%s\" is not an integer",
                             vl_short_text(value).text);
     defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
   if (strcmp(name, "displacementedgescale") == 0) {
     if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": \"%s\" is not a number above 0", name,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": \"%s\" is not a number above 0", name,
                           vl_short_text(value).text);
   }
   for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
     if (strcmp(name, switches[i].name) != 0) continue;
     bool on = strcmp(value, "true") == 0;
     if (!on && strcmp(value, "false") != 0)
-      return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Option \"%s\": expected true or false, found \"%s\"",
+      return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": expected true or false, found \"%s\"",
                             switches[i].name, vl_short_text(value).text);
     if (switches[i].value) *switches[i].value = on;
     return switches[i].value || !on ||
-           vl_import_unsupported(import, s->place, "Option \"%s\": velo cannot; its materials stay what they are",
+           vl_import_unsupported(import, s->source, "Option \"%s\": velo cannot; its materials stay what they are",
                                  name);
   }
   for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
@@ -210,5 +210,5 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                                       "pixelstats",
                                       "wavefront",
                                       "rendercoordsys"};
-  return vl_import_unknown(import, s->place, "option", s->names[0], known, sizeof known / sizeof *known, NULL, 0);
+  return vl_import_unknown(import, s->source, "option", s->names[0], known, sizeof known / sizeof *known, NULL, 0);
 }

@@ -10,7 +10,7 @@ static bool link_shape(vlImport *import, const vlShapeLink *link) {
   vlShapeDef *shape = &import->scene->shapes.items[link->shape];
   bool is_interface = false;
   if (link->material_name) {
-    if (!vl_import_material_id(import, link->material_name, link->material_place, &shape->material, &is_interface))
+    if (!vl_import_material_id(import, link->material_name, link->material_source, &shape->material, &is_interface))
       return false;
   } else if (link->material) {
     const vlPending *p = &import->materials.items[link->material - 1];
@@ -23,9 +23,9 @@ static bool link_shape(vlImport *import, const vlShapeLink *link) {
     shape->emission.index = 0;
   }
   if (link->displacement &&
-      !vl_import_texture_id(import, link->displacement, false, link->displacement_place, &shape->displacement.texture))
+      !vl_import_texture_id(import, link->displacement, false, link->displacement_source, &shape->displacement.texture))
     return false;
-  return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_place, &shape->alpha.texture);
+  return !link->alpha || vl_import_texture_id(import, link->alpha, false, link->alpha_source, &shape->alpha.texture);
 }
 
 /* While diagnosing: unfinished textures are skipped and unfinished materials become the default one. */
@@ -77,7 +77,7 @@ bool vl_import_finish(vlImport *import) {
     return vl_import_fail(import, VL_ERROR_SCENE, (vlSource){import->first, 0, 0}, "the file has no WorldBegin");
   if (import->stack.count) {
     const vlStackEntry *top = &import->stack.items[import->stack.count - 1];
-    return vl_import_fail(import, VL_ERROR_SCENE, top->place, "%s is never closed",
+    return vl_import_fail(import, VL_ERROR_SCENE, top->source, "%s is never closed",
                           top->kind == 'o' ? "ObjectBegin" : "AttributeBegin");
   }
   if (!vl_import_flush_curves(import) || !vl_import_flush_meshes(import) || !vl_import_flush_spheres(import))
@@ -93,7 +93,7 @@ bool vl_import_finish(vlImport *import) {
   for (size_t i = 0; i < import->object_list.count; i++) {
     const vlObject *object = &import->object_list.items[i];
     if (object->defined) continue;
-    vl_import_fail(import, VL_ERROR_SCENE, object->place, "there is no object \"%s\"",
+    vl_import_fail(import, VL_ERROR_SCENE, object->source, "there is no object \"%s\"",
                    vl_short_text(object->name).text);
     if (!vl_import_recover(import)) return false;
   }

@@ -9,13 +9,13 @@ static bool scene_ok(const vlDict *dict) {
   return dict->import->scene->error.code == VL_OK;
 }
 
-static bool fail_with(vlDict *dict, vlSource place, vlResult code, const vlError *error) {
+static bool fail_with(vlDict *dict, vlSource source, vlResult code, const vlError *error) {
   if (code == VL_ERROR_MEMORY) return vl_import_fail_memory(dict->import);
   if (error->file[0] && error->line > 0) {
     vlSource there = {error->file, error->line, error->column};
     return vl_import_fail(dict->import, code, there, "%s", error->message);
   }
-  return vl_import_fail(dict->import, code == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : code, place, "%s: %s%s%s",
+  return vl_import_fail(dict->import, code == VL_ERROR_ARGUMENT ? VL_ERROR_SCENE : code, source, "%s: %s%s%s",
                         dict->what, error->file[0] ? error->file : "", error->file[0] ? ": " : "", error->message);
 }
 
@@ -46,24 +46,24 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   if (!vl_dict_string(dict, "aperture", &name) || strcmp(name, "circle") == 0 || strcmp(name, "circular") == 0 ||
       name[0] == 0)
     return scene_ok(dict);
-  vlAperture **place = VL_PUSH(import->context, &import->scene->apertures);
-  if (!place) return vl_import_fail_memory(import);
+  vlAperture **slot = VL_PUSH(import->context, &import->scene->apertures);
+  if (!slot) return vl_import_fail_memory(import);
   vlError error = {0};
   vlResult result = VL_OK;
   bool named = false;
   for (int i = 0; i < 4; i++) named = named || strcmp(name, names[i]) == 0;
   if (named) {
-    result = vl_aperture_create_named(import->context, name, place, &error);
+    result = vl_aperture_create_named(import->context, name, slot, &error);
   } else {
     char path[4096];
     vlImage *image = NULL;
     if (!vl_import_path(import, p, path, sizeof path)) return false;
     result = vl_image_read_named(import->context, NULL, path, &image, &error);
-    if (result == VL_OK) result = aperture_from_image(import, image, place, &error);
+    if (result == VL_OK) result = aperture_from_image(import, image, slot, &error);
     vl_image_destroy(image);
   }
-  if (result != VL_OK) return fail_with(dict, p->place, result, &error);
-  *aperture = *place;
+  if (result != VL_OK) return fail_with(dict, p->source, result, &error);
+  *aperture = *slot;
   return true;
 }
 
@@ -85,14 +85,14 @@ bool vl_import_optics(vlDict *dict, vlCameraDef *def, double film_diagonal) {
   vlParam *p = vl_dict_find(dict, "lensfile", 1u << VL_PARAM_STRING);
   vl_dict_string(dict, "lensfile", &file);
   if (!scene_ok(dict)) return false;
-  if (!p) return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string lensfile\" is missing", dict->what);
+  if (!p) return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"string lensfile\" is missing", dict->what);
   if (!vl_import_path(import, p, path, sizeof path) || !read_aperture(dict, &optics.aperture)) return false;
-  vlOptics **place = VL_PUSH(import->context, &import->scene->optics);
-  if (!place) return vl_import_fail_memory(import);
+  vlOptics **slot = VL_PUSH(import->context, &import->scene->optics);
+  if (!slot) return vl_import_fail_memory(import);
   vlError error = {0};
-  vlResult result = vl_optics_load(import->context, path, &optics, place, &error);
-  if (result != VL_OK) return fail_with(dict, p->place, result, &error);
+  vlResult result = vl_optics_load(import->context, path, &optics, slot, &error);
+  if (result != VL_OK) return fail_with(dict, p->source, result, &error);
   def->projection = VL_PROJECTION_OPTICS;
-  def->lens.optics = *place;
+  def->lens.optics = *slot;
   return true;
 }

@@ -16,7 +16,7 @@ static bool read_portal(vlDict *dict, vlLightDef *def, const vlParam *portal) {
   vlImport *import = dict->import;
   size_t count = portal->floats.count;
   if (count != 12)
-    return vl_import_fail(import, VL_ERROR_SCENE, portal->place, "%s: \"portal\" takes 4 points, found %zu numbers",
+    return vl_import_fail(import, VL_ERROR_SCENE, portal->source, "%s: \"portal\" takes 4 points, found %zu numbers",
                           dict->what, count);
   def->has_portal = true;
   for (int i = 0; i < 12; i++) def->portal[i / 3][i % 3] = portal->floats.items[i];
@@ -29,7 +29,7 @@ static bool check_source(vlDict *dict, const vlKindRow *row) {
   vlParam *color = vl_dict_find(dict, "L", VL_BITS_SPECTRUM);
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   if (color && file && file->strings.items[0][0])
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->place, "%s: give either \"L\" or \"filename\", not both",
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, file->source, "%s: give either \"L\" or \"filename\", not both",
                           dict->what);
   return dict->import->scene->error.code == VL_OK;
 }
@@ -45,11 +45,11 @@ static bool finish_light(vlDict *dict, const vlKindRow *row, const bool *given, 
   drop_target(&def->illuminance);
   if (portal && !read_portal(dict, def, portal)) return false;
   if (!has_color && vl_dict_find(dict, "I", VL_BITS_SPECTRUM))
-    vl_import_warn(import, VL_LOG_WARNING, dict->place,
+    vl_import_warn(import, VL_LOG_WARNING, dict->source,
                    "%s: \"I\" has no effect, as in pbrt: the image is the intensity", dict->what);
   if (!vl_dict_done(dict)) return false;
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def->path && !import->image_missing)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"string filename\" is missing", dict->what);
   return true;
 }
 
@@ -71,18 +71,18 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
   snprintf(what, sizeof what, "LightSource \"%s\"", vl_import_kind_text(&vl_light_family, s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   int kind = vl_kind_find(&vl_light_family, s->names[0]);
   if (kind < 0) /* permissive: skipped */
-    return vl_import_unknown_kind(import, s->place, &vl_light_family, s->names[0]);
+    return vl_import_unknown_kind(import, s->source, &vl_light_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_light_family, kind);
   vlLightDef def = vl_default_light_def((vlLightKind)kind);
   vlMat4 ctm;
   import->image_missing = false;
-  def.source = s->place;
+  def.source = s->source;
   def.space = import->state.space;
-  if (!vl_import_ctm(import, s->place, &ctm) || !check_source(&dict, row) ||
+  if (!vl_import_ctm(import, s->source, &ctm) || !check_source(&dict, row) ||
       !vl_import_parameters(&dict, row, &def, true, given) || !finish_light(&dict, row, given, &def))
     return false;
   if ((row->traits & VL_LIGHT_TRAIT_IMAGE) && !def.path) return true; /* permissive: skipped */
@@ -96,22 +96,22 @@ bool vl_import_light(vlImport *import, const vlStatement *s) {
   vlLightId id = vl_scene_add_light(import->scene, &def);
   vl_image_destroy(sky);
   return id.index != 0 &&
-         ((row->traits & VL_LIGHT_TRAIT_FAR) || vl_import_note_media(import, 'l', id.index - 1, s->place));
+         ((row->traits & VL_LIGHT_TRAIT_FAR) || vl_import_note_media(import, 'l', id.index - 1, s->source));
 }
 
 bool vl_import_area_light(vlImport *import, const vlStatement *s) {
   char what[96];
   bool given[MOST_PARAMETERS];
   snprintf(what, sizeof what, "AreaLightSource \"%s\"", vl_import_kind_text(&vl_emission_family, s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_LIGHT));
   import->state.emission = (vlEmissionId){0};
   if (s->names[0][0] == 0) return true; /* as in pbrt, an empty name ends the current area light */
   int kind = vl_kind_find(&vl_emission_family, s->names[0]);
-  if (kind < 0) return vl_import_unknown_kind(import, s->place, &vl_emission_family, s->names[0]);
+  if (kind < 0) return vl_import_unknown_kind(import, s->source, &vl_emission_family, s->names[0]);
   const vlKindRow *row = vl_kind_row(&vl_emission_family, kind);
   vlEmissionDef def = vl_default_emission_def();
-  def.source = s->place;
+  def.source = s->source;
   if (!check_source(&dict, row) || !vl_import_parameters(&dict, row, &def, true, given) || !vl_dict_done(&dict))
     return false;
   if (!vl_import_given(row, given, "L")) def.radiance.space = dict.space; /* default: the colour space's white */

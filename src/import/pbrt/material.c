@@ -5,17 +5,17 @@
 
 #include "import/pbrt/builder.h"
 
-bool vl_import_material_id(vlImport *import, const char *name, vlSource place, vlMaterialId *id, bool *is_interface) {
+bool vl_import_material_id(vlImport *import, const char *name, vlSource source, vlMaterialId *id, bool *is_interface) {
   uint32_t index;
   if (!vl_names_find(&import->named_materials, name, &index)) {
     const char *near = vl_names_nearest(&import->named_materials, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%s\" (did you mean \"%s\"?)",
+      return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\" (did you mean \"%s\"?)",
                             vl_short_text(name).text, vl_short_text(near).text);
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no material \"%s\"", vl_short_text(name).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no material \"%s\"", vl_short_text(name).text);
   }
   if (import->materials.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "material \"%s\" is mixed of itself",
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "material \"%s\" is mixed of itself",
                           vl_short_text(name).text);
   if (!vl_import_finish_material(import, index)) return false;
   id->index = import->materials.items[index].id;
@@ -33,7 +33,7 @@ typedef struct Reading {
 } Reading;
 
 static bool refuse(const Reading *r, const char *what) {
-  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place, "%s: %s", r->dict->what, what);
+  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: %s", r->dict->what, what);
 }
 
 static bool given(const Reading *r, const char *name) {
@@ -43,7 +43,7 @@ static bool given(const Reading *r, const char *name) {
 static bool finish_metal(const Reading *r, vlMaterialDef *def, const char *eta, const char *k) {
   def->use_reflectance = given(r, "reflectance");
   if (!def->use_reflectance || (!given(r, eta) && !given(r, k))) return true;
-  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
+  return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
                         "%s: give either \"reflectance\" or \"%s\" and \"%s\", not both", r->dict->what, eta, k);
 }
 
@@ -60,11 +60,11 @@ static bool finish_mix(const Reading *r, vlMaterialDef *def) {
   vlParam *p = vl_dict_find(r->dict, "materials", 1u << VL_PARAM_STRING);
   if (!p) return vl_dict_done(r->dict) && refuse(r, "\"string materials\" (two names) is missing");
   if (p->strings.count != 2)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"materials\" takes 2 values, found %zu",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"materials\" takes 2 values, found %zu",
                           r->dict->what, p->strings.count);
   for (int i = 0; i < 2; i++) {
     bool is_interface;
-    if (!vl_import_material_id(import, p->strings.items[i], p->place, &def->materials[i], &is_interface)) return false;
+    if (!vl_import_material_id(import, p->strings.items[i], p->source, &def->materials[i], &is_interface)) return false;
   }
   return true;
 }
@@ -76,7 +76,7 @@ static bool finish_hair(const Reading *r, vlMaterialDef *def) {
   if (pheomelanin && !given(r, "eumelanin")) def->hair.eumelanin = vl_float_input(0.0f);
   def->hair.color = sigma ? VL_HAIR_SIGMA_A : reflectance ? VL_HAIR_REFLECTANCE : VL_HAIR_MELANIN;
   if (sigma + reflectance + melanin > 1)
-    vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->place,
+    vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
                    "%s: its colour is given in several ways; sigma_a comes before reflectance, that before melanin",
                    r->dict->what);
   return true;
@@ -99,7 +99,7 @@ static bool finish_subsurface(const Reading *r, vlMaterialDef *def) {
   d->sigma_a = vl_spectrum_input(preset_a);
   d->sigma_s = vl_spectrum_input(preset_s);
   if (def->g.value == 0.0f) return true;
-  vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->place,
+  vl_import_warn(r->dict->import, VL_LOG_WARNING, r->dict->source,
                  "%s: \"g\" is ignored beside \"name\": measured scattering is that of g = 0", r->dict->what);
   def->g = vl_float_input(0.0f);
   return true;
@@ -129,17 +129,17 @@ static bool read_material(vlDict *dict, vlMaterialDef *def) {
 /* Finds the kind; *kind is -1 for an unknown name. False after an error. */
 static bool find_kind(vlImport *import, vlPending *pending, vlDict *dict, int *kind) {
   const char *type = pending->kind;
-  vlSource place = pending->place;
+  vlSource source = pending->source;
   if (!type) { /* MakeNamedMaterial */
     if (!vl_dict_string(dict, "type", &type)) {
       if (import->scene->error.code != VL_OK) return false;
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "MakeNamedMaterial \"%s\": \"string type\" is missing",
+      return vl_import_fail(import, VL_ERROR_SCENE, source, "MakeNamedMaterial \"%s\": \"string type\" is missing",
                             vl_short_text(pending->name).text);
     }
-    place = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->place;
+    source = vl_dict_find(dict, "type", 1u << VL_PARAM_STRING)->source;
   }
   *kind = type[0] ? vl_kind_find(&vl_material_family, type) : VL_MATERIAL_INTERFACE; /* pbrt-v3's spelling */
-  return *kind >= 0 || vl_import_unknown_kind(import, place, &vl_material_family, type);
+  return *kind >= 0 || vl_import_unknown_kind(import, source, &vl_material_family, type);
 }
 
 static bool finish(vlImport *import, uint32_t index) {
@@ -149,12 +149,12 @@ static bool finish(vlImport *import, uint32_t index) {
     snprintf(what, sizeof what, "Material \"%s\"", vl_import_kind_text(&vl_material_family, pending->kind).text);
   else
     snprintf(what, sizeof what, "MakeNamedMaterial \"%s\"", vl_short_text(pending->name).text);
-  vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
+  vlDict dict = vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
   int kind = -1;
   if (!find_kind(import, pending, &dict, &kind)) return false;
   vlMaterialDef def = vl_default_material_def(kind < 0 ? VL_MATERIAL_DIFFUSE : (vlMaterialKind)kind);
   def.name = pending->name;
-  def.source = pending->place;
+  def.source = pending->source;
   if (kind >= 0 && !read_material(&dict, &def)) return false;
   pending->is_interface = def.kind == VL_MATERIAL_INTERFACE;
   pending->id = vl_scene_add_material(import->scene, &def).index;
@@ -165,8 +165,8 @@ bool vl_import_finish_material(vlImport *import, uint32_t index) {
   vlPending *pending = &import->materials.items[index];
   if (pending->state == VL_DONE) return true;
   if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_fail(import, VL_ERROR_SCENE, pending->place, "materials are mixed of each other more than %d deep",
-                          VL_IMPORT_DEPTH);
+    return vl_import_fail(import, VL_ERROR_SCENE, pending->source,
+                          "materials are mixed of each other more than %d deep", VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
   if (!finish(import, index)) return false;
   import->depth--;

@@ -25,7 +25,7 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
     return true;
   }
   if (!*given) return true;
-  vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->place;
+  vlSource at = vl_dict_find(dict, parameter, 1u << VL_PARAM_STRING)->source;
   const char *near = vl_nearest_name(name, names, count);
   if (near)
     return vl_import_fail(dict->import, VL_ERROR_SCENE, at, "%s: no preset is named \"%s\" (did you mean \"%s\"?)",
@@ -63,7 +63,7 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
   size_t per = type == VL_PARAM_RGB ? 3 : 1, count = p->floats.count / per;
   double cells = (double)def->nx * def->ny * def->nz;
   if (p->floats.count % per || (double)count != cells)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
                           "%s: \"%s\" holds %zu numbers, but nx * ny * nz = %u * %u * %u cells need %.0f", dict->what,
                           name, p->floats.count, def->nx, def->ny, def->nz, cells * (double)per);
   *values = p->floats.items;
@@ -72,7 +72,7 @@ static bool read_cells(vlDict *dict, const char *name, vlParamType type, const v
 
 static bool missing(vlDict *dict, const char *what) {
   if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: %s is missing", dict->what, what);
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: %s is missing", dict->what, what);
 }
 
 /* Rules that the rows do not express, by kind; null: none. given: one entry per parameter of the row. */
@@ -85,7 +85,7 @@ static bool read_grid(vlDict *dict, const vlKindRow *row, const bool *given, vlM
   else if (!read_cells(dict, "Lescale", VL_PARAM_FLOAT, def, &def->emission_scales))
     return false;
   if (vl_import_given(row, given, "Le") && def->temperature)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source,
                           "%s: give either \"Le\" or \"temperature\", not both", dict->what);
   return def->density || missing(dict, "\"float density\"");
 }
@@ -128,27 +128,27 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
   const char *type = NULL;
   snprintf(what, sizeof what, "MakeNamedMedium \"%s\"", vl_short_text(s->names[0]).text);
   if (vl_names_find(&import->media, s->names[0], &index))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "medium \"%s\" is made a second time",
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "medium \"%s\" is made a second time",
                           vl_short_text(s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_MEDIUM));
   if (!vl_dict_string(&dict, "type", &type)) {
     if (import->scene->error.code != VL_OK) return false;
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "%s: \"string type\" is missing", what);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "%s: \"string type\" is missing", what);
   }
   int kind = vl_kind_find(&vl_medium_family, type);
   const char *name = vl_import_keep(import, s->names[0]);
   if (!name) return false;
   vlMediumId id = {0};
   if (kind < 0) { /* permissive: vacuum */
-    if (!vl_import_unknown_kind(import, s->place, &vl_medium_family, type)) return false;
+    if (!vl_import_unknown_kind(import, s->source, &vl_medium_family, type)) return false;
   } else {
     vlMediumDef def = vl_default_medium_def((vlMediumKind)kind);
     vlMat4 ctm;
     def.name = name;
-    def.source = s->place;
+    def.source = s->source;
     def.space = import->state.space;
-    if (!vl_import_ctm(import, s->place, &ctm) || !read_medium(&dict, kind, &def)) return false;
+    if (!vl_import_ctm(import, s->source, &ctm) || !read_medium(&dict, kind, &def)) return false;
     memcpy(def.world_from_medium, ctm.m, sizeof def.world_from_medium);
     id = vl_scene_add_medium(import->scene, &def);
     if (!id.index) return false;
@@ -158,24 +158,24 @@ bool vl_import_medium(vlImport *import, const vlStatement *s) {
 
 /* ---- who lies in them ------------------------------------------------------------------------------------------- */
 
-bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource place) {
+bool vl_import_note_media(vlImport *import, char target, uint32_t index, vlSource source) {
   const char *inside = target == 's' && import->state.inside ? import->state.inside : "";
   const char *outside = import->state.outside ? import->state.outside : "";
   if (!inside[0] && !outside[0]) return true;
   vlMediumLink *link = VL_PUSH(import->context, &import->medium_links);
   if (!link) return vl_import_fail_memory(import);
-  *link = (vlMediumLink){target, index, inside, outside, place};
-  return vl_scene_copy_source(import->scene, &link->place);
+  *link = (vlMediumLink){target, index, inside, outside, source};
+  return vl_scene_copy_source(import->scene, &link->source);
 }
 
-static bool find(vlImport *import, const char *name, vlSource place, vlMediumId *id) {
+static bool find(vlImport *import, const char *name, vlSource source, vlMediumId *id) {
   id->index = 0;
   if (!name[0] || vl_names_find(&import->media, name, &id->index)) return true;
   const char *near = vl_names_nearest(&import->media, name);
   if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%s\" (did you mean \"%s\"?)",
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\" (did you mean \"%s\"?)",
                           vl_short_text(name).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no medium \"%s\"", vl_short_text(name).text);
+  return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no medium \"%s\"", vl_short_text(name).text);
 }
 
 /* Warns when a scene with media names one of pbrt's surface integrators, which ignore media. Velo's light-tracing and
@@ -187,7 +187,7 @@ static void warn_surface_integrator(vlImport *import, const vlMediumLink *link) 
   if (tracer == VL_TRACER_VOLPATH || tracer == VL_TRACER_BIDIRECTIONAL || !integrator->given) return;
   bool through = !(vl_kind_row(&vl_tracer_family, (int)tracer)->traits & VL_TRACER_TRAIT_NO_MEDIA);
   vl_import_warn(
-      import, VL_LOG_WARNING, link->place,
+      import, VL_LOG_WARNING, link->source,
       through ? "integrator \"%s\" of pbrt looks past participating media (here \"%s\"), velo's goes through"
               : "integrator \"%s\" looks past participating media (here \"%s\"), as in pbrt; volpath goes through",
       vl_import_kind_text(&vl_tracer_family, integrator->kind).text,
@@ -199,7 +199,7 @@ bool vl_import_finish_media(vlImport *import) {
   for (size_t i = 0; i < import->medium_links.count; i++) {
     const vlMediumLink *link = &import->medium_links.items[i];
     vlMediumId inside, outside;
-    if (!find(import, link->inside, link->place, &inside) || !find(import, link->outside, link->place, &outside)) {
+    if (!find(import, link->inside, link->source, &inside) || !find(import, link->outside, link->source, &outside)) {
       if (!vl_import_recover(import)) return false;
       continue;
     }

@@ -19,13 +19,13 @@ typedef struct Work {
   uint32_t first; /* of import->mesh_files */
 } Work;
 
-bool vl_import_note_mesh(vlImport *import, const char *path, vlSource place, const vlShapeDef *def,
+bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source, const vlShapeDef *def,
                          const vlShapeLink *link) {
   vlScene *scene = import->scene;
   vlMeshFile *file = VL_PUSH(import->context, &import->mesh_files);
   if (!file) return vl_import_fail_memory(import);
-  *file = (vlMeshFile){.place = place, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
-  if (!(file->path = vl_import_keep(import, path)) || !vl_scene_copy_source(scene, &file->place) ||
+  *file = (vlMeshFile){.source = source, .def = *def, .link = *link, .shape = (uint32_t)scene->shapes.count};
+  if (!(file->path = vl_import_keep(import, path)) || !vl_scene_copy_source(scene, &file->source) ||
       !vl_scene_copy_source(scene, &file->def.source))
     return false;
   vlShapeDef *slot = scene->shapes.count < 0x7fffffff ? VL_PUSH(scene->context, &scene->shapes) : NULL;
@@ -79,7 +79,7 @@ static bool add_mesh(vlImport *import, const vlMeshFile *file, Job *job) {
   vlPlyMesh *mesh = &job->mesh;
   if (job->result != VL_OK) {
     vlSource inside = {job->error.file, job->error.line, job->error.column};
-    return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->place, "%s", job->error.message);
+    return vl_import_fail(import, job->result, job->error.file[0] ? inside : file->source, "%s", job->error.message);
   }
   vlShapeDef def = file->def;
   if (file->link.displacement && !only_triangles(import, mesh)) return false;

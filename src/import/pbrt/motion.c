@@ -11,10 +11,10 @@ static bool differ(const vlMat4 m[2]) {
   return memcmp(&m[0], &m[1], sizeof *m) != 0;
 }
 
-bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm) {
+bool vl_import_ctm(vlImport *import, vlSource source, vlMat4 *ctm) {
   *ctm = import->state.ctm[0];
   if (differ(import->state.ctm))
-    vl_import_warn(import, VL_LOG_WARNING, place,
+    vl_import_warn(import, VL_LOG_WARNING, source,
                    "this cannot move (ActiveTransform): its transform at the start counts, as in pbrt");
   return true;
 }
@@ -22,8 +22,8 @@ bool vl_import_ctm(vlImport *import, vlSource place, vlMat4 *ctm) {
 bool vl_import_times(vlImport *import, const vlStatement *s) {
   const double *t = s->numbers;
   if (!isfinite(t[0]) || !isfinite(t[1]) || !(t[0] < t[1]))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "TransformTimes: the end (%g) must be after the start (%g)",
-                          t[1], t[0]);
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
+                          "TransformTimes: the end (%g) must be after the start (%g)", t[1], t[0]);
   import->times[0] = t[0];
   import->times[1] = t[1];
   return true;
@@ -34,38 +34,38 @@ bool vl_import_moves(const vlImport *import) {
 }
 
 /* Reports transforms between which no motion exists. */
-static bool check_motion(vlImport *import, vlSource place, const vlMat4 ctm[2]) {
+static bool check_motion(vlImport *import, vlSource source, const vlMat4 ctm[2]) {
   vlMotion motion;
   if (vl_motion_make(ctm[0].m, ctm[1].m, &motion)) return true;
-  return vl_import_fail(import, VL_ERROR_SCENE, place,
+  return vl_import_fail(import, VL_ERROR_SCENE, source,
                         "no motion leads from the transform at the start to that at the end: one is singular, not "
                         "affine, or mirrors alone");
 }
 
-bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource place) {
+bool vl_import_add_instance(vlImport *import, vlGroupId group, const vlMat4 ctm[2], vlSource source) {
   if (!differ(ctm)) {
-    vl_scene_add_instance(import->scene, group, ctm[0].m, place);
+    vl_scene_add_instance(import->scene, group, ctm[0].m, source);
   } else {
     double poses[32];
-    if (!check_motion(import, place, ctm)) return false;
+    if (!check_motion(import, source, ctm)) return false;
     memcpy(poses, ctm[0].m, sizeof ctm[0].m);
     memcpy(poses + 16, ctm[1].m, sizeof ctm[1].m);
-    vl_scene_add_moving_instance(import->scene, group, 2, import->times, poses, place);
+    vl_scene_add_moving_instance(import->scene, group, 2, import->times, poses, source);
   }
   return import->scene->error.code == VL_OK;
 }
 
-bool vl_import_moving_group(vlImport *import, vlSource place, vlGroupId *group) {
+bool vl_import_moving_group(vlImport *import, vlSource source, vlGroupId *group) {
   const vlMat4 *ctm = import->state.ctm;
   vlMovingGroup *last = import->moving.count ? &import->moving.items[import->moving.count - 1] : NULL;
   if (!last || last->object.index != import->object.index || memcmp(last->ctm, ctm, sizeof last->ctm) != 0) {
     vlGroupId made = vl_scene_add_group(import->scene, "");
     last = made.index ? VL_PUSH(import->context, &import->moving) : NULL;
     if (!last) return import->scene->error.code == VL_OK ? vl_import_fail_memory(import) : false;
-    *last = (vlMovingGroup){.group = made, .object = import->object, .place = place};
+    *last = (vlMovingGroup){.group = made, .object = import->object, .source = source};
     memcpy(last->ctm, ctm, sizeof last->ctm);
-    if (!vl_scene_copy_source(import->scene, &last->place) || !check_motion(import, place, ctm)) return false;
-    if (!import->in_object && !vl_import_add_instance(import, made, ctm, place)) return false;
+    if (!vl_scene_copy_source(import->scene, &last->source) || !check_motion(import, source, ctm)) return false;
+    if (!import->in_object && !vl_import_add_instance(import, made, ctm, source)) return false;
   }
   *group = last->group;
   return true;

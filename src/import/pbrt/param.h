@@ -1,5 +1,5 @@
 /* import/pbrt/param.h: the parsed parameters of a directive and typed access to them. A parameter that nothing reads,
- * or that has the wrong type or count, is an error at its place; the message names the nearest accepted parameter. */
+ * or that has the wrong type or count, is an error at its source; the message names the nearest accepted parameter. */
 #ifndef IMPORT_PBRT_PARAM_H
 #define IMPORT_PBRT_PARAM_H
 
@@ -33,7 +33,7 @@ const char *vl_param_type_nearest(const char *text);
 typedef struct vlParam {
   vlParamType type;
   char *name;
-  vlSource place; /* place of the declaration; its file name is not owned */
+  vlSource source; /* place of the declaration; its file name is not owned */
   /* One of these is filled: integers for type integer, floats for other numbers. */
   VL_ARRAY(float) floats;
   VL_ARRAY(int32_t) integers;
@@ -62,7 +62,7 @@ typedef struct vlImport vlImport;
 typedef struct vlDict {
   vlImport *import;
   const char *what; /* 'Shape "sphere"', for errors */
-  vlSource place;   /* of the directive */
+  vlSource source;  /* of the directive */
   vlColorSpace space;
   const vlParamList *own, *attributes; /* attributes may be null */
   const char *asked[64];

@@ -128,13 +128,13 @@ static void copy_to_second(const vlParameter *p, char *def) {
   if (p->type == VL_PARAMETER_FLOAT) memcpy(def + p->second, def + p->offset, sizeof(float));
 }
 
-/* Reports an error at the parameter's place. */
+/* Reports an error at the parameter's source. */
 static bool check(vlDict *dict, const vlParameter *p, const void *def) {
   char message[200];
   if (vl_parameter_check(p, def, dict->what, message)) return true;
   const vlParam *param = vl_dict_find(dict, p->name, ~0u);
   if (!param && p->alias) param = vl_dict_find(dict, p->alias, ~0u);
-  return vl_import_fail(dict->import, VL_ERROR_SCENE, param ? param->place : dict->place, "%s", message);
+  return vl_import_fail(dict->import, VL_ERROR_SCENE, param ? param->source : dict->source, "%s", message);
 }
 
 bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool spectrum, bool *given) {
@@ -157,7 +157,7 @@ bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool sp
     if (!p->name || !(p->flags & VL_PARAMETER_REQUIRED) || (p->flags & VL_PARAMETER_RULE)) continue;
     if (vl_dict_find(dict, p->name, ~0u)) continue;
     if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: \"%s %s\" is missing", dict->what,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: \"%s %s\" is missing", dict->what,
                           p->type == VL_PARAMETER_STRING || p->type == VL_PARAMETER_FILE ? "string" : "float", p->name);
   }
   return true;

@@ -57,7 +57,7 @@ typedef enum vlDirective {
 
 typedef struct vlStatement {
   vlDirective directive;
-  vlSource place;
+  vlSource source;
   double numbers[16];
   const char *names[3]; /* valid during the call */
   vlParamList *params;  /* parameters of a directive that has them; the callee may take the contents and zero the list,
@@ -68,13 +68,13 @@ typedef struct vlParseTarget {
   void *user;
   /* Handles a statement. Returns false to stop the parser, after it has reported an error. */
   bool (*statement)(void *user, const vlStatement *statement);
-  void (*error)(void *user, vlResult code, vlSource place, const char *message);
+  void (*error)(void *user, vlResult code, vlSource source, const char *message);
   /* Called after an error. Returns true to continue after the directive or file. May be null. */
   bool (*recover)(void *user);
   /* Folders separated by ':' in which included files are looked for, too; null: none. */
   const char *search_path;
   /* Called for a file that is found in the current folder only. May be null. */
-  void (*found_elsewhere)(void *user, vlSource place, const char *path);
+  void (*found_elsewhere)(void *user, vlSource source, const char *path);
   /* Called before each directive; fraction: the share of the first file that is read, 0
    * inside included files. False: the parser stops; the
    * callee has reported why. May be null. */
@@ -83,7 +83,7 @@ typedef struct vlParseTarget {
   const char *const *texts;
   size_t text_count;
   /* Called for a file beyond the limits. Returns true to leave the file out. May be null. */
-  bool (*skip)(void *user, vlSource place);
+  bool (*skip)(void *user, vlSource source);
 } vlParseTarget;
 
 /* Both functions return false after an error. vl_parse_memory parses a copy of data and uses name as the file's

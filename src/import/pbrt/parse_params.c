@@ -7,18 +7,18 @@
 
 /* ---- errors ----------------------------------------------------------------------------------------------------- */
 
-vlSource vl_parse_place(const vlParserFile *file, const vlToken *token) {
+vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
   return (vlSource){file->path, token->line, token->column};
 }
 
-bool vl_parse_fail(const vlParserFile *file, vlSource place, const char *format, ...) {
+bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...) {
   char text[512];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   const vlParseTarget *target = file->parser->target;
-  target->error(target->user, VL_ERROR_SCENE, place, text);
+  target->error(target->user, VL_ERROR_SCENE, source, text);
   return false;
 }
 
@@ -76,14 +76,15 @@ static bool declare(vlParserFile *file, const vlToken *token, vlParam *param) {
   size_t name_length = (size_t)(p - name);
   while (p < end && is_blank(*p)) p++;
   if (type_length == 0 || name_length == 0 || p != end)
-    return vl_parse_fail(file, param->place, "parameter %s is not of the form \"type name\"",
+    return vl_parse_fail(file, param->source, "parameter %s is not of the form \"type name\"",
                          vl_parse_show(token).text);
   if (!vl_param_type_find(type, type_length, &param->type)) {
     const vlShortText text = vl_short_text_of(type, type_length);
     const char *near = vl_param_type_nearest(text.text);
     if (near)
-      return vl_parse_fail(file, param->place, "unknown parameter type \"%s\" (did you mean \"%s\"?)", text.text, near);
-    return vl_parse_fail(file, param->place, "unknown parameter type \"%s\"", text.text);
+      return vl_parse_fail(file, param->source, "unknown parameter type \"%s\" (did you mean \"%s\"?)", text.text,
+                           near);
+    return vl_parse_fail(file, param->source, "unknown parameter type \"%s\"", text.text);
   }
   param->name = vl_alloc(file->parser->context, name_length + 1);
   if (!param->name) return vl_parse_fail_memory(file);
@@ -100,12 +101,12 @@ static bool add_number(vlParserFile *file, const vlToken *token, vlParam *param)
   vlContext *context = file->parser->context;
   double value;
   if (!vl_number_parse(token->text, token->length, &value))
-    return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a number, found %s",
+    return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": expected a number, found %s",
                          vl_param_type_name(param->type), vl_short_text(param->name).text, vl_parse_show(token).text);
   if (param->type == VL_PARAM_INTEGER) {
     if (value < -2147483648.0 || value > 2147483647.0 || value != (double)(int64_t)value)
-      return vl_parse_fail(file, vl_parse_place(file, token), "\"integer %s\": %s is not a 32-bit integer", param->name,
-                           vl_parse_show(token).text);
+      return vl_parse_fail(file, vl_parse_source(file, token), "\"integer %s\": %s is not a 32-bit integer",
+                           param->name, vl_parse_show(token).text);
     int32_t *slot = VL_PUSH(context, &param->integers);
     if (!slot) return vl_parse_fail_memory(file);
     *slot = (int32_t)value;
@@ -130,7 +131,7 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   }
   if (param->type == VL_PARAM_BOOL) {
     if (!is_true && !is_false)
-      return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected true or false, found %s", type,
+      return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": expected true or false, found %s", type,
                            vl_short_text(param->name).text, vl_parse_show(token).text);
     uint8_t *slot = VL_PUSH(context, &param->bools);
     if (!slot) return vl_parse_fail_memory(file);
@@ -139,20 +140,20 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   }
   if (token->kind == VL_TOKEN_STRING) {
     if (takes_numbers(param->type) && param->type != VL_PARAM_SPECTRUM)
-      return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a number, found the string %s", type,
-                           vl_short_text(param->name).text, vl_parse_show(token).text);
+      return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": expected a number, found the string %s",
+                           type, vl_short_text(param->name).text, vl_parse_show(token).text);
     if (param->floats.count)
-      return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": numbers and strings do not mix", type,
+      return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": numbers and strings do not mix", type,
                            param->name);
     char **slot = VL_PUSH(context, &param->strings);
     if (!slot || !(*slot = vl_strdup(context, token->text))) return vl_parse_fail_memory(file);
     return true;
   }
   if (!takes_numbers(param->type))
-    return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": expected a string in quotes, found %s", type,
+    return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": expected a string in quotes, found %s", type,
                          vl_short_text(param->name).text, vl_parse_show(token).text);
   if (param->strings.count)
-    return vl_parse_fail(file, vl_parse_place(file, token), "\"%s %s\": numbers and strings do not mix", type,
+    return vl_parse_fail(file, vl_parse_source(file, token), "\"%s %s\": numbers and strings do not mix", type,
                          vl_short_text(param->name).text);
   return add_number(file, token, param);
 }
@@ -184,10 +185,10 @@ static bool read_run(vlParserFile *file, vlParam *param) {
 
 static bool read_values(vlParserFile *file, vlParam *param) {
   vlToken token = vl_parse_take(file);
-  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
+  if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
   if (token.kind != VL_TOKEN_OPEN) {
     if (token.kind == VL_TOKEN_END || token.kind == VL_TOKEN_CLOSE)
-      return vl_parse_fail(file, vl_parse_place(file, &token), "\"%s %s\": expected a value, found %s",
+      return vl_parse_fail(file, vl_parse_source(file, &token), "\"%s %s\": expected a value, found %s",
                            vl_param_type_name(param->type), vl_short_text(param->name).text,
                            vl_parse_show(&token).text);
     return add_value(file, &token, param);
@@ -198,10 +199,10 @@ static bool read_values(vlParserFile *file, vlParam *param) {
     if (numbers && param->strings.count == 0 && !read_run(file, param)) return false;
     token = vl_parse_take(file);
     if (token.kind == VL_TOKEN_CLOSE) return true;
-    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
-    if (token.kind == VL_TOKEN_OPEN) return vl_parse_fail(file, vl_parse_place(file, &token), "[ inside of [ ]");
+    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
+    if (token.kind == VL_TOKEN_OPEN) return vl_parse_fail(file, vl_parse_source(file, &token), "[ inside of [ ]");
     if (token.kind == VL_TOKEN_END)
-      return vl_parse_fail(file, vl_parse_place(file, &open), "unclosed [ in \"%s %s\": the file ends before the ]",
+      return vl_parse_fail(file, vl_parse_source(file, &open), "unclosed [ in \"%s %s\": the file ends before the ]",
                            vl_param_type_name(param->type), param->name);
     if (!add_value(file, &token, param)) return false;
   }
@@ -211,7 +212,7 @@ bool vl_parse_params(vlParserFile *file, vlParamList *params) {
   vlContext *context = file->parser->context;
   for (;;) {
     vlToken token = vl_parse_peek(file);
-    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_place(file, &token), "%s", token.message);
+    if (token.kind == VL_TOKEN_BAD) return vl_parse_fail(file, vl_parse_source(file, &token), "%s", token.message);
     if (token.kind == VL_TOKEN_END && file->included && vl_parse_peek(file->parent).kind == VL_TOKEN_STRING) {
       file = file->parent;
       continue;
@@ -225,7 +226,7 @@ bool vl_parse_params(vlParserFile *file, vlParamList *params) {
       return vl_parse_fail_memory(file);
     }
     *slot = param;
-    param->place = vl_parse_place(file, &token);
+    param->source = vl_parse_source(file, &token);
     if (!declare(file, &token, param) || !read_values(file, param)) return false;
   }
 }

@@ -1,5 +1,5 @@
 /* import/pbrt/parser.h: declarations shared by the files of the parser: the file being read, its next token, errors
- * at a place. parse_params.c reads parameters; directives.c
+ * with their lines. parse_params.c reads parameters; directives.c
  * reads directives, files.c files. */
 #ifndef IMPORT_PBRT_PARSER_H
 #define IMPORT_PBRT_PARSER_H
@@ -38,8 +38,8 @@ typedef struct vlShownToken {
 } vlShownToken;
 
 vlShownToken vl_parse_show(const vlToken *token);
-vlSource vl_parse_place(const vlParserFile *file, const vlToken *token);
-bool vl_parse_fail(const vlParserFile *file, vlSource place, const char *format, ...)
+vlSource vl_parse_source(const vlParserFile *file, const vlToken *token);
+bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 bool vl_parse_fail_memory(const vlParserFile *file);
 vlToken vl_parse_peek(vlParserFile *file);

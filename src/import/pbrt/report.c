@@ -1,4 +1,5 @@
-/* import/pbrt/report.c: errors and warnings with their places, kept strings, paths, copies of parameters. */
+/* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept strings, paths, copies of
+ * parameters. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,13 +10,13 @@
 
 /* ---- errors ----------------------------------------------------------------------------------------------------- */
 
-bool vl_import_fail(vlImport *import, vlResult code, vlSource place, const char *format, ...) {
+bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...) {
   char text[512];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  vl_scene_fail(import->scene, code, place, "%s", text);
+  vl_scene_fail(import->scene, code, source, "%s", text);
   return false;
 }
 
@@ -23,19 +24,19 @@ bool vl_import_fail_memory(vlImport *import) {
   return vl_import_fail(import, VL_ERROR_MEMORY, (vlSource){0}, "out of memory");
 }
 
-static void log_text(vlImport *import, vlLogLevel level, vlSource place, const char *text) {
+static void log_text(vlImport *import, vlLogLevel level, vlSource source, const char *text) {
   vlError where = {0};
-  vl_fail_at(&where, VL_OK, place.file, place.line, place.column, "%s", "");
+  vl_fail_at(&where, VL_OK, source.file, source.line, source.column, "%s", "");
   vl_log(import->context, level, &where, "%s", text);
 }
 
-void vl_import_warn(vlImport *import, vlLogLevel level, vlSource place, const char *format, ...) {
+void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format, ...) {
   char text[512];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  log_text(import, level, place, text);
+  log_text(import, level, source, text);
 }
 
 bool vl_import_recover(vlImport *import) {
@@ -48,7 +49,7 @@ bool vl_import_recover(vlImport *import) {
   return true;
 }
 
-void vl_import_remark(vlImport *import, vlSource place, const char *format, ...) {
+void vl_import_remark(vlImport *import, vlSource source, const char *format, ...) {
   if (!import->scene->problem) return;
   char text[400];
   va_list args;
@@ -56,32 +57,32 @@ void vl_import_remark(vlImport *import, vlSource place, const char *format, ...)
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   vlError remark = {0};
-  vl_fail_at(&remark, VL_OK, place.file, place.line, place.column, "%s", text);
+  vl_fail_at(&remark, VL_OK, source.file, source.line, source.column, "%s", text);
   import->scene->problem(import->scene->problem_user, &remark);
 }
 
-bool vl_import_unsupported(vlImport *import, vlSource place, const char *format, ...) {
+bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...) {
   char text[400];
   va_list args;
   va_start(args, format);
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
-  if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, place, "%s", text);
-  log_text(import, VL_LOG_WARNING, place, text);
+  if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
+  log_text(import, VL_LOG_WARNING, source, text);
   return true;
 }
 
-bool vl_import_unknown(vlImport *import, vlSource place, const char *thing, const char *name, const char *const *known,
+bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count) {
   for (size_t i = 0; i < later_count; i++)
     if (strcmp(name, later[i]) == 0)
-      return vl_import_unsupported(import, place, "%s \"%s\" is not understood yet", thing, vl_short_text(name).text);
+      return vl_import_unsupported(import, source, "%s \"%s\" is not understood yet", thing, vl_short_text(name).text);
   const char *near = vl_nearest_name(name, known, known_count);
   if (!near) near = vl_nearest_name(name, later, later_count);
   if (near)
-    return vl_import_unsupported(import, place, "unknown %s \"%s\" (did you mean \"%s\"?)", thing,
+    return vl_import_unsupported(import, source, "unknown %s \"%s\" (did you mean \"%s\"?)", thing,
                                  vl_short_text(name).text, near);
-  return vl_import_unsupported(import, place, "unknown %s \"%s\"", thing, vl_short_text(name).text);
+  return vl_import_unsupported(import, source, "unknown %s \"%s\"", thing, vl_short_text(name).text);
 }
 
 vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
@@ -90,10 +91,10 @@ vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
   return text;
 }
 
-bool vl_import_unknown_kind(vlImport *import, vlSource place, const vlKindFamily *family, const char *name) {
+bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family, const char *name) {
   const char *names[64];
   size_t count = vl_kind_names(family, names, sizeof names / sizeof *names);
-  return vl_import_unknown(import, place, family->thing, name, names, count, NULL, 0);
+  return vl_import_unknown(import, source, family->thing, name, names, count, NULL, 0);
 }
 
 const char *vl_import_keep(vlImport *import, const char *text) {
@@ -104,32 +105,33 @@ const char *vl_import_keep(vlImport *import, const char *text) {
   return NULL;
 }
 
-vlDict vl_import_dict(vlImport *import, const char *what, vlSource place, vlColorSpace space, const vlParamList *own,
+vlDict vl_import_dict(vlImport *import, const char *what, vlSource source, vlColorSpace space, const vlParamList *own,
                       const vlParamList *attributes) {
-  return (vlDict){.import = import, .what = what, .place = place, .space = space, .own = own, .attributes = attributes};
+  return (vlDict){
+      .import = import, .what = what, .source = source, .space = space, .own = own, .attributes = attributes};
 }
 
-void vl_import_note_elsewhere(void *user, vlSource place, const char *path) {
+void vl_import_note_elsewhere(void *user, vlSource source, const char *path) {
   vlImport *import = user;
   if (!import->elsewhere++)
-    vl_import_warn(import, VL_LOG_INFO, place, "%s: taken from the current folder; it is not beside the scene's files",
+    vl_import_warn(import, VL_LOG_INFO, source, "%s: taken from the current folder; it is not beside the scene's files",
                    path);
 }
 
-vlFound vl_import_find(vlImport *import, vlSource place, const char *name, char *path, size_t size) {
-  vlFound found = vl_find_file(import->context, place.file, import->first, import->search_path, name, path, size);
-  if (found == VL_FOUND_CURRENT) vl_import_note_elsewhere(import, place, path);
+vlFound vl_import_find(vlImport *import, vlSource source, const char *name, char *path, size_t size) {
+  vlFound found = vl_find_file(import->context, source.file, import->first, import->search_path, name, path, size);
+  if (found == VL_FOUND_CURRENT) vl_import_note_elsewhere(import, source, path);
   return found;
 }
 
 bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t size) {
   if (param->strings.count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" takes one file name, found %zu", param->name,
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" takes one file name, found %zu", param->name,
                           param->strings.count);
   if (param->strings.items[0][0] == 0)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\" is an empty file name", param->name);
-  if (vl_import_find(import, param->place, param->strings.items[0], path, size) == VL_FOUND_TOO_LONG)
-    return vl_import_fail(import, VL_ERROR_SCENE, param->place, "\"%s\": file name too long", param->name);
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\" is an empty file name", param->name);
+  if (vl_import_find(import, param->source, param->strings.items[0], path, size) == VL_FOUND_TOO_LONG)
+    return vl_import_fail(import, VL_ERROR_SCENE, param->source, "\"%s\": file name too long", param->name);
   if (vl_context_allows(import->context, path) && access(path, R_OK) == 0) return true;
   char *data;
   size_t count;
@@ -137,16 +139,16 @@ bool vl_import_path(vlImport *import, const vlParam *param, char *path, size_t s
   vlResult result =
       vl_file_read(import->context, path, false, &data, &count, &error); /* opened for its error message */
   vl_free(import->context, data);
-  if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
-  return vl_import_fail(import, VL_ERROR_IO, param->place, "cannot read %s", path);
+  if (result != VL_OK) return vl_import_fail(import, result, param->source, "%s", error.message);
+  return vl_import_fail(import, VL_ERROR_IO, param->source, "cannot read %s", path);
 }
 
 bool vl_import_image_path(vlImport *import, const vlParam *param, char *path, size_t size) {
   const char *name = param->strings.count == 1 ? param->strings.items[0] : "";
   if (!import->permissive || import->scene->problem || !name[0] ||
-      vl_import_find(import, param->place, name, path, size) != VL_FOUND_NOT)
+      vl_import_find(import, param->source, name, path, size) != VL_FOUND_NOT)
     return vl_import_path(import, param, path, size);
-  vl_import_warn(import, VL_LOG_WARNING, param->place, "no such file: %s; done without", path);
+  vl_import_warn(import, VL_LOG_WARNING, param->source, "no such file: %s; done without", path);
   import->repairs.images++;
   import->image_missing = true;
   return false;
@@ -187,7 +189,7 @@ static bool copy_bytes(vlContext *context, const void *from, size_t count, size_
 
 static bool copy_param(vlContext *context, const vlParam *from, vlParam *to) {
   to->type = from->type;
-  to->place = from->place;
+  to->source = from->source;
   to->space = from->space;
   to->optional = true;
   memcpy(to->exact, from->exact, sizeof to->exact);

@@ -12,7 +12,7 @@ static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family, c
                                  bool *good) {
   *good = true;
   *kind = vl_kind_find(family, choice->kind);
-  if (*kind < 0) *good = vl_import_unknown_kind(import, choice->place, family, choice->kind);
+  if (*kind < 0) *good = vl_import_unknown_kind(import, choice->source, family, choice->kind);
   return vl_kind_row(family, *kind);
 }
 
@@ -42,7 +42,7 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
   given = vl_dict_count(dict, "ysamples", 1, &y) || given;
   vl_dict_bool(dict, "jitter", &jitter);
   if ((uint64_t)x * y > 0x7fffffff)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: too many samples", dict->what);
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: too many samples", dict->what);
   if (!jitter) s->render.sampler = VL_SAMPLER_REGULAR;
   if (given || !spp_given)
     s->render.spp = x * y; /* pbrt's stratified sampler has no pixelsamples; velo accepts it for all samplers */
@@ -52,7 +52,7 @@ static bool read_grid(vlDict *dict, vlSceneDefs *s, bool spp_given) {
 static void read_randomization(vlDict *dict, const vlParameter *p) {
   int randomization = 2;
   if (p && vl_dict_choice(dict, p->name, p->choices, 4, &randomization) && randomization == 0)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->place,
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
                    "%s: randomization \"none\": samples are scrambled all the same", dict->what);
 }
 
@@ -63,7 +63,7 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Sampler \"%s\"", vl_import_kind_text(&vl_sampler_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind;
   bool good, given[16];
   const vlKindRow *row = find_row(import, &vl_sampler_family, choice, &kind, &good);
@@ -71,7 +71,7 @@ static bool read_sampler(vlImport *import, vlSceneDefs *s) {
   s->render.sampler = (vlSamplerKind)kind;
   vl_row_set_defaults(row, s);
   if (is_alias(row, choice) && (kind == VL_SAMPLER_SOBOL || kind == VL_SAMPLER_ZSOBOL))
-    vl_import_warn(import, VL_LOG_INFO, choice->place, "sampler \"%s\": \"%s\" is taken in its place", row->alias,
+    vl_import_warn(import, VL_LOG_INFO, choice->source, "sampler \"%s\": \"%s\" is taken in its place", row->alias,
                    row->name);
   int32_t seed;
   if (vl_dict_integer(&dict, "seed", &seed)) s->render.seed = (uint32_t)seed;
@@ -89,9 +89,9 @@ static bool read_filter(vlImport *import, vlSceneDefs *s) {
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "PixelFilter \"%s\"", vl_import_kind_text(&vl_pixel_filter_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_pixel_filter_family, choice->kind);
-  if (kind < 0) return vl_import_unknown_kind(import, choice->place, &vl_pixel_filter_family, choice->kind);
+  if (kind < 0) return vl_import_unknown_kind(import, choice->source, &vl_pixel_filter_family, choice->kind);
   s->film.filter = vl_default_pixel_filter((vlPixelFilterKind)kind);
   const vlKindRow *row = vl_kind_row(&vl_pixel_filter_family, kind);
   return vl_import_parameters(&dict, row, &s->film.filter, false, NULL) && vl_dict_done(&dict);
@@ -104,7 +104,7 @@ static void read_depth(vlDict *dict, vlSceneDefs *s) {
   enum { MOST = 4096 };
   vl_dict_count(dict, "maxdepth", 0, &s->render.max_depth);
   if (s->render.max_depth <= MOST) return;
-  vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->place,
+  vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "maxdepth", 1u << VL_PARAM_INTEGER)->source,
                  "%s: \"maxdepth\" %u: %d is taken", dict->what, s->render.max_depth, MOST);
   s->render.max_depth = MOST;
 }
@@ -114,7 +114,7 @@ static void read_light_sampler(vlDict *dict, const vlKindRow *row, vlSceneDefs *
   int sampler = 0;
   if (!p || !vl_dict_choice(dict, p->name, p->choices, 4, &sampler)) return;
   if (sampler == 3)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->place,
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, p->name, 1u << VL_PARAM_STRING)->source,
                    "%s: light sampler \"exhaustive\": \"bvh\" is taken in its place", dict->what);
   s->build.light_sampler = sampler == 3 ? VL_LIGHT_SAMPLER_BVH : (vlLightSampler)sampler;
 }
@@ -135,7 +135,7 @@ static const char *stand_in(const char *name) {
 static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
   bool pbrts = strcmp(kind, "bdpt") == 0 || strcmp(kind, "mlt") == 0 || strcmp(kind, "sppm") == 0;
   if (pbrts)
-    vl_import_warn(import, VL_LOG_INFO, import->integrator.place, "integrator \"%s\": rendered by velo's %s",
+    vl_import_warn(import, VL_LOG_INFO, import->integrator.source, "integrator \"%s\": rendered by velo's %s",
                    vl_short_text(kind).text, tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
 }
 
@@ -143,7 +143,7 @@ static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) 
 static void remark_regularize(vlDict *dict, const vlSceneDefs *s) {
   bool asked = false;
   if (vl_dict_bool(dict, "regularize", &asked) && asked && !s->build.regularize)
-    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->place,
+    vl_import_warn(dict->import, VL_LOG_INFO, vl_dict_find(dict, "regularize", 1u << VL_PARAM_BOOL)->source,
                    "%s: \"regularize\" is ignored: only \"path\" and \"volpath\" have it", dict->what);
 }
 
@@ -155,14 +155,14 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   if (!choice->given) return true;
   char what[96];
   snprintf(what, sizeof what, "Integrator \"%s\"", vl_import_kind_text(&vl_tracer_family, choice->kind).text);
-  vlDict dict = vl_import_dict(import, what, choice->place, choice->space, &choice->params, NULL);
+  vlDict dict = vl_import_dict(import, what, choice->source, choice->space, &choice->params, NULL);
   int kind = vl_kind_find(&vl_tracer_family, stand_in(choice->kind));
   const vlKindRow *row = vl_kind_row(&vl_tracer_family, kind);
   if (!row) { /* permissive: a path tracer of the same depth replaces it */
     static const char *const later[] = {"function"};
     const char *names[32];
     size_t count = vl_kind_names(&vl_tracer_family, names, sizeof names / sizeof *names);
-    if (!vl_import_unknown(import, choice->place, "integrator", choice->kind, names, count, later, 1)) return false;
+    if (!vl_import_unknown(import, choice->source, "integrator", choice->kind, names, count, later, 1)) return false;
     read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
   }
@@ -182,7 +182,7 @@ static bool check_accelerator(vlImport *import) {
   static const char *const names[] = {"bvh", "kdtree"};
   const vlChoice *choice = &import->accelerator;
   if (!choice->given || strcmp(choice->kind, names[0]) == 0 || strcmp(choice->kind, names[1]) == 0) return true;
-  return vl_import_unknown(import, choice->place, "accelerator", choice->kind, names, 2, NULL, 0);
+  return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2, NULL, 0);
 }
 
 bool vl_import_sampling(vlImport *import) {

@@ -32,7 +32,7 @@ static bool take_vertex_floats(vlDict *dict, const char *name, vlParamType type,
   if (!p) return dict->import->scene->error.code == VL_OK;
   size_t count = p->floats.count;
   if (count != per * vertices)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
                           "%s: \"%s\" holds %zu numbers, but %u vertices need %zu", dict->what, name, count, vertices,
                           per * vertices);
   return take_floats(dict->import, p, result);
@@ -44,15 +44,15 @@ static bool take_indices(vlDict *dict, vlShapeDef *def, size_t per) {
   if (!p && import->scene->error.code != VL_OK) return false;
   size_t count = p ? p->integers.count : per;
   if (!p && def->vertices != per)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"integer indices\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"integer indices\" is missing", dict->what);
   if (count % per)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"indices\" holds %zu numbers, not a multiple of %zu",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"indices\" holds %zu numbers, not a multiple of %zu",
                           dict->what, count, per);
   if (count / per > 0x7fffffffu)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: too many faces", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many faces", dict->what);
   for (size_t i = 0; p && i < count; i++)
     if (p->integers.items[i] < 0 || (uint32_t)p->integers.items[i] >= def->vertices)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place,
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source,
                             "%s: \"indices\": number %zu names vertex %d, but there are %u vertices (0 to %u)",
                             dict->what, i, p->integers.items[i], def->vertices, def->vertices - 1);
   uint32_t *indices = vl_alloc_array(import->context, count, sizeof *indices);
@@ -75,14 +75,14 @@ static bool read_mesh(vlDict *dict, vlShapeDef *def, size_t per) {
     vl_dict_find(dict, "faceIndices", 1u << VL_PARAM_INTEGER);
     if (per == 3) vl_dict_find(dict, "S", 1u << VL_PARAM_VECTOR3);
     if (!vl_dict_done(dict)) return false; /* a misspelt parameter is reported first */
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"point3 P\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"point3 P\" is missing", dict->what);
   }
   size_t count = p->floats.count;
   if (count % 3)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"P\" holds %zu numbers, not a multiple of 3",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"P\" holds %zu numbers, not a multiple of 3",
                           dict->what, count);
   if (count / 3 > 0x7fffffffu)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: too many vertices", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: too many vertices", dict->what);
   def->vertices = (uint32_t)(count / 3);
   vl_dict_find(dict, "faceIndices",
                1u << VL_PARAM_INTEGER); /* accepted and ignored: only pbrt's ptex textures use it */
@@ -120,7 +120,7 @@ static bool read_loop(vlDict *dict, vlShapeDef *def) {
   vlError error = {0};
   vlResult result = vl_loop_subdivide(import->context, def->vertices, def->positions, def->faces, def->indices, levels,
                                       &mesh, &error);
-  if (result != VL_OK) return vl_import_fail(import, result, dict->place, "%s: %s", dict->what, error.message);
+  if (result != VL_OK) return vl_import_fail(import, result, dict->source, "%s: %s", dict->what, error.message);
   free_arrays(import, def);
   def->uvs = def->tangents = NULL;
   def->vertices = mesh.vertices;
@@ -172,14 +172,14 @@ static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) 
   const char *const lengths[] = {"displacement.edgelength", "edgelength"};
   for (int i = 0; i < 2; i++)
     if (vl_dict_float(dict, lengths[i], &def->edge_length) && !(def->edge_length > 0.0f))
-      return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"%s\" must be above 0", dict->what, lengths[i]);
+      return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"%s\" must be above 0", dict->what, lengths[i]);
   def->edge_length *= (float)import->edge_scale;
   if (!p) return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: \"displacement\" takes one texture", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: \"displacement\" takes one texture", dict->what);
   link->displacement = vl_import_keep(import, p->strings.items[0]);
-  link->displacement_place = p->place;
-  return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_place);
+  link->displacement_source = p->source;
+  return link->displacement && vl_scene_copy_source(import->scene, &link->displacement_source);
 }
 
 /* Records the mesh file. All mesh files are read at the end (meshes.c). */
@@ -188,10 +188,10 @@ static bool note_ply(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlParam *file = vl_dict_find(dict, "filename", 1u << VL_PARAM_STRING);
   if (!read_displacement(dict, def, link) || !vl_dict_done(dict)) return false;
   if (!file)
-    return vl_import_fail(import, VL_ERROR_SCENE, dict->place, "%s: \"string filename\" is missing", dict->what);
+    return vl_import_fail(import, VL_ERROR_SCENE, dict->source, "%s: \"string filename\" is missing", dict->what);
   char path[4096];
   if (!vl_import_path(import, file, path, sizeof path)) return false;
-  return vl_import_note_mesh(import, path, file->place, def, link);
+  return vl_import_note_mesh(import, path, file->source, def, link);
 }
 
 /* Alpha: a number, or a float texture that is resolved at the end. */
@@ -200,21 +200,21 @@ static bool read_alpha(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlParam *p = vl_dict_find(dict, "alpha", VL_BIT_FLOAT | VL_BIT_TEXTURE);
   if (!p) return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"alpha\" takes 1 value, found %zu",
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"alpha\" takes 1 value, found %zu",
                           dict->what, vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     def->alpha.value = p->floats.items[0];
     return true;
   }
   link->alpha = vl_import_keep(import, p->strings.items[0]);
-  link->alpha_place = p->place;
-  return link->alpha && vl_scene_copy_source(import->scene, &link->alpha_place);
+  link->alpha_source = p->source;
+  return link->alpha && vl_scene_copy_source(import->scene, &link->alpha_source);
 }
 
 /* Records the media of the shapes from index first on. */
-static bool note_media(vlImport *import, size_t first, vlSource place) {
+static bool note_media(vlImport *import, size_t first, vlSource source) {
   for (size_t i = first; i < import->scene->shapes.count; i++)
-    if (!vl_import_note_media(import, 's', (uint32_t)i, place)) return false;
+    if (!vl_import_note_media(import, 's', (uint32_t)i, source)) return false;
   return true;
 }
 
@@ -225,7 +225,7 @@ static bool enter(vlDict *dict, const vlShapeDef *def, const vlShapeLink *link, 
   if (!vl_dict_done(dict)) return false;
   *taken = true;
   size_t before = dict->import->scene->shapes.count;
-  return vl_import_add_shape(dict->import, def, link) && note_media(dict->import, before, dict->place);
+  return vl_import_add_shape(dict->import, def, link) && note_media(dict->import, before, dict->source);
 }
 
 static bool enter_triangles(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bool *taken) {
@@ -268,7 +268,7 @@ static bool enter_ply(vlDict *dict, vlShapeDef *def, const vlShapeLink *link, bo
   vlShapeLink own = *link;
   size_t before = dict->import->scene->shapes.count;
   *taken = true;
-  return note_ply(dict, def, &own) && note_media(dict->import, before, dict->place);
+  return note_ply(dict, def, &own) && note_media(dict->import, before, dict->source);
 }
 
 /* Rules that the rows do not express; null: enter_row. */
@@ -299,16 +299,16 @@ static bool unknown_shape(vlImport *import, const vlStatement *s) {
   const char *names[64];
   size_t count = vl_kind_names(&vl_shape_family, names, 64 - MESHES);
   for (size_t i = 0; i < MESHES; i++) names[count++] = meshes[i].name;
-  return vl_import_unknown(import, s->place, "shape", s->names[0], names, count, NULL, 0); /* permissive: skipped */
+  return vl_import_unknown(import, s->source, "shape", s->names[0], names, count, NULL, 0); /* permissive: skipped */
 }
 
 /* Removes the emission of shapes that cannot emit light, with a warning. */
-static void drop_emission(vlImport *import, vlSource place, bool moves, vlShapeDef *def) {
+static void drop_emission(vlImport *import, vlSource source, bool moves, vlShapeDef *def) {
   if (!def->emission.index) return;
   if (import->in_object)
-    vl_import_warn(import, VL_LOG_WARNING, place, "area lights inside of objects give no light (as in pbrt)");
+    vl_import_warn(import, VL_LOG_WARNING, source, "area lights inside of objects give no light (as in pbrt)");
   else if (moves)
-    vl_import_warn(import, VL_LOG_WARNING, place, "an area light that moves (ActiveTransform) gives no light");
+    vl_import_warn(import, VL_LOG_WARNING, source, "an area light that moves (ActiveTransform) gives no light");
   else
     return;
   def->emission.index = 0;
@@ -317,7 +317,7 @@ static void drop_emission(vlImport *import, vlSource place, bool moves, vlShapeD
 bool vl_import_shape(vlImport *import, const vlStatement *s) {
   char what[96];
   snprintf(what, sizeof what, "Shape \"%s\"", vl_short_text(s->names[0]).text);
-  vlDict dict = vl_import_dict(import, what, s->place, import->state.space, s->params,
+  vlDict dict = vl_import_dict(import, what, s->source, import->state.space, s->params,
                                vl_import_attributes(import, VL_ATTR_SHAPE));
   vlShapeKind kind;
   EnterShape *function = find_shape(s->names[0], &kind);
@@ -325,17 +325,17 @@ bool vl_import_shape(vlImport *import, const vlStatement *s) {
   vlShapeDef def = vl_default_shape_def(kind);
   vlShapeLink link = {.material = import->state.material,
                       .material_name = import->state.material_name,
-                      .material_place = import->state.material_place};
+                      .material_source = import->state.material_source};
   vlMat4 ctm = vl_mat4_identity();
   bool moves = vl_import_moves(import), taken = false;
-  def.source = s->place;
+  def.source = s->source;
   def.group = import->object;
   def.reverse_orientation = import->state.reverse_orientation;
-  if (moves && !vl_import_moving_group(import, s->place, &def.group)) return false;
-  if ((!moves && !vl_import_ctm(import, s->place, &ctm)) || !read_alpha(&dict, &def, &link)) return false;
+  if (moves && !vl_import_moving_group(import, s->source, &def.group)) return false;
+  if ((!moves && !vl_import_ctm(import, s->source, &ctm)) || !read_alpha(&dict, &def, &link)) return false;
   memcpy(def.group_from_shape, ctm.m, sizeof def.group_from_shape);
   def.emission = import->state.emission;
-  drop_emission(import, s->place, moves, &def);
+  drop_emission(import, s->source, moves, &def);
   if (kind != VL_SHAPE_CURVES && !vl_import_flush_curves(import)) return false;
   bool fine = function(&dict, &def, &link, &taken);
   if (!taken) free_arrays(import, &def);

@@ -17,9 +17,9 @@ static float *keep_floats(vlImport *import, size_t count) {
   return block;
 }
 
-static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSource place, vlSpectrum *spectrum) {
+static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSource source, vlSpectrum *spectrum) {
   if (values % 2)
-    return vl_import_fail(import, VL_ERROR_SCENE, place,
+    return vl_import_fail(import, VL_ERROR_SCENE, source,
                           "a spectrum holds pairs of wavelength and value; found %zu numbers", values);
   size_t n = values / 2;
   float *block = keep_floats(import, values);
@@ -28,8 +28,9 @@ static bool take_pairs(vlImport *import, const float *pairs, size_t values, vlSo
     block[i] = pairs[2 * i];
     block[n + i] = pairs[2 * i + 1];
     if (i && !(block[i] > block[i - 1]))
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "wavelengths of a spectrum must increase: %g comes after %g",
-                            (double)block[i], (double)block[i - 1]);
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
+                            "wavelengths of a spectrum must increase: %g comes after %g", (double)block[i],
+                            (double)block[i - 1]);
   }
   *spectrum = (vlSpectrum){
       .kind = VL_SPECTRUM_SAMPLED, .scale = 1.0f, .count = (uint32_t)n, .wavelengths = block, .values = block + n};
@@ -70,7 +71,7 @@ static bool read_file(vlImport *import, const vlParam *param, vlSpectrum *spectr
   vlError error = {0};
   if (!vl_import_path(import, param, path, sizeof path)) return false;
   vlResult result = vl_file_read(import->context, path, true, &data, &size, &error);
-  if (result != VL_OK) return vl_import_fail(import, result, param->place, "%s", error.message);
+  if (result != VL_OK) return vl_import_fail(import, result, param->source, "%s", error.message);
   bool fine = parse_file(import, path, data, size, spectrum);
   vl_free(import->context, data);
   return fine;
@@ -89,9 +90,9 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
   if (strchr(text, '/') || strchr(text, '.')) return read_file(import, param, spectrum);
   const char *near = vl_nearest_name(text, names, count);
   char path[4096];
-  if (!near && vl_import_find(import, param->place, text, path, sizeof path) != VL_FOUND_TOO_LONG)
+  if (!near && vl_import_find(import, param->source, text, path, sizeof path) != VL_FOUND_TOO_LONG)
     return read_file(import, param, spectrum);
-  return vl_import_fail(import, VL_ERROR_SCENE, param->place, "no spectrum is named \"%s\" (did you mean \"%s\"?)",
+  return vl_import_fail(import, VL_ERROR_SCENE, param->source, "no spectrum is named \"%s\" (did you mean \"%s\"?)",
                         vl_short_text(text).text, near ? near : "");
 }
 
@@ -99,25 +100,25 @@ bool vl_import_spectrum(vlImport *import, vlParam *p, vlSpectrum *spectrum) {
   size_t count = vl_param_count(p);
   if (p->type == VL_PARAM_RGB) {
     if (count != 3)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "\"rgb %s\" takes 3 values, found %zu", p->name, count);
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"rgb %s\" takes 3 values, found %zu", p->name, count);
     *spectrum = vl_spectrum_rgb(p->floats.items[0], p->floats.items[1], p->floats.items[2]);
     spectrum->space = p->space;
     for (int i = 0; i < 3; i++)
       if (spectrum->rgb[i] < 0.0f)
-        return vl_import_fail(import, VL_ERROR_SCENE, p->place, "\"rgb %s\" has a negative value", p->name);
+        return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"rgb %s\" has a negative value", p->name);
     return true;
   }
   if (p->type == VL_PARAM_BLACKBODY) {
     if (count != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "\"blackbody %s\" takes 1 value (kelvin), found %zu",
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"blackbody %s\" takes 1 value (kelvin), found %zu",
                             p->name, count);
     *spectrum = vl_spectrum_blackbody(p->floats.items[0]);
     if (p->floats.items[0] > 0.0f) return true;
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "\"blackbody %s\" must be above 0 kelvin", p->name);
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"blackbody %s\" must be above 0 kelvin", p->name);
   }
-  if (p->strings.count == 0) return take_pairs(import, p->floats.items, p->floats.count, p->place, spectrum);
+  if (p->strings.count == 0) return take_pairs(import, p->floats.items, p->floats.count, p->source, spectrum);
   if (count != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "\"spectrum %s\" takes one name, found %zu", p->name,
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "\"spectrum %s\" takes one name, found %zu", p->name,
                           count);
   return read_named(import, p, spectrum);
 }
@@ -128,13 +129,13 @@ bool vl_import_float_input(vlDict *dict, const char *name, vlFloatInput *input, 
   if (given) *given = p != NULL;
   if (!p) return import->scene->error.code == VL_OK;
   if (vl_param_count(p) != 1)
-    return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"%s\" takes 1 value, found %zu", dict->what,
-                          name, vl_param_count(p));
+    return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" takes 1 value, found %zu",
+                          dict->what, name, vl_param_count(p));
   if (p->type == VL_PARAM_FLOAT) {
     *input = vl_float_input(p->floats.items[0]);
     return true;
   }
-  return vl_import_texture_id(import, p->strings.items[0], false, p->place, &input->texture);
+  return vl_import_texture_id(import, p->strings.items[0], false, p->source, &input->texture);
 }
 
 bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *input, bool albedo, bool *given) {
@@ -144,16 +145,16 @@ bool vl_import_spectrum_input(vlDict *dict, const char *name, vlSpectrumInput *i
   if (!p) return import->scene->error.code == VL_OK;
   if (p->type == VL_PARAM_TEXTURE) {
     if (vl_param_count(p) != 1)
-      return vl_import_fail(import, VL_ERROR_SCENE, p->place, "%s: parameter \"%s\" takes 1 texture, found %zu",
+      return vl_import_fail(import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" takes 1 texture, found %zu",
                             dict->what, name, vl_param_count(p));
-    return vl_import_texture_id(import, p->strings.items[0], true, p->place, &input->texture);
+    return vl_import_texture_id(import, p->strings.items[0], true, p->source, &input->texture);
   }
   *input = (vlSpectrumInput){0};
   if (!vl_import_spectrum(import, p, &input->value)) return false;
   if (albedo && p->type == VL_PARAM_RGB)
     for (int i = 0; i < 3; i++)
       if (p->floats.items[i] > 1.0f)
-        return vl_import_fail(import, VL_ERROR_SCENE, p->place,
+        return vl_import_fail(import, VL_ERROR_SCENE, p->source,
                               "%s: \"rgb %s\" is a reflectance and must not be above 1, it is %g", dict->what, name,
                               (double)p->floats.items[i]);
   return true;

@@ -59,7 +59,7 @@ void vl_import_free_spheres(vlImport *import) {
 
 /* Moves the translation of the transform to `center` and its scale to the radius. Returns false unless the scale is the
  * same along all axes and the transform does not mirror. */
-static bool take_place(vlShapeDef *def, double center[3], float *radius) {
+static bool take_slot(vlShapeDef *def, double center[3], float *radius) {
   double *m = def->group_from_shape, at[3] = {m[3], m[7], m[11]}, s = m[0];
   if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return false;
   *radius = def->radius;
@@ -94,7 +94,7 @@ bool vl_import_gather_sphere(vlImport *import, const vlShapeDef *given, const vl
   float radius;
   bool whole = def.z_min <= -def.radius && def.z_max >= def.radius && def.phi_max >= 2.0f * 3.14159265358979f;
   if (import->scene->shapes.count < VL_MESH_RUN_FROM || import->scene->problem || !whole || def.emission.index ||
-      link->displacement || !take_place(&def, center, &radius))
+      link->displacement || !take_slot(&def, center, &radius))
     return true;
   vlSphereRun *run = NULL;
   for (int i = 0; i < VL_MESH_RUNS && !run; i++)

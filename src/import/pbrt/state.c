@@ -22,14 +22,14 @@ static bool look_at(vlImport *import, const vlStatement *s) {
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
   double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   if (!(length > 0.0))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the eye and the point it looks at are the same");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the eye and the point it looks at are the same");
   for (int i = 0; i < 3; i++) d[i] /= length;
   double r[3] = {u[1] * d[2] - u[2] * d[1], u[2] * d[0] - u[0] * d[2], u[0] * d[1] - u[1] * d[0]};
   double size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   double up = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-  if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is zero");
+  if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is zero");
   if (!(size > 1e-12 * up))
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "LookAt: the up vector is parallel to the view direction");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is parallel to the view direction");
   for (int i = 0; i < 3; i++) r[i] /= size;
   double n[3] = {d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]};
   vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2], e[2], 0, 0, 0, 1}}, m;
@@ -43,7 +43,7 @@ bool vl_import_transform(vlImport *import, const vlStatement *s) {
   vlMat4 m = vl_mat4_identity();
   if (s->directive == VL_DIR_LOOK_AT) return look_at(import, s);
   if (s->directive == VL_DIR_ROTATE && v[1] == 0.0 && v[2] == 0.0 && v[3] == 0.0)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place, "Rotate: the axis is zero");
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Rotate: the axis is zero");
   if (s->directive == VL_DIR_IDENTITY)
     set_ctm(import, m);
   else if (s->directive == VL_DIR_TRANSLATE)
@@ -81,22 +81,22 @@ bool vl_import_use_system(vlImport *import, const vlStatement *s) {
   }
   const char *near = vl_names_nearest(&import->coordinate_systems, s->names[0]);
   if (near)
-    return vl_import_fail(import, VL_ERROR_SCENE, s->place,
+    return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "there is no coordinate system \"%s\" (did you mean \"%s\"?)",
                           vl_short_text(s->names[0]).text, vl_short_text(near).text);
-  return vl_import_fail(import, VL_ERROR_SCENE, s->place, "there is no coordinate system \"%s\"",
+  return vl_import_fail(import, VL_ERROR_SCENE, s->source, "there is no coordinate system \"%s\"",
                         vl_short_text(s->names[0]).text);
 }
 
 /* ---- the stack -------------------------------------------------------------------------------------------------- */
 
-bool vl_import_push(vlImport *import, char kind, vlSource place) {
+bool vl_import_push(vlImport *import, char kind, vlSource source) {
   if (import->stack.count > 100000)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "attributes are nested more than 100000 deep");
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "attributes are nested more than 100000 deep");
   vlStackEntry *entry = VL_PUSH(import->context, &import->stack);
   if (!entry) return vl_import_fail_memory(import);
-  *entry = (vlStackEntry){kind, place, import->state};
-  return vl_scene_copy_source(import->scene, &entry->place);
+  *entry = (vlStackEntry){kind, source, import->state};
+  return vl_scene_copy_source(import->scene, &entry->source);
 }
 
 void vl_import_restore(vlImport *import) {
@@ -108,20 +108,20 @@ void vl_import_restore(vlImport *import) {
   }
 }
 
-bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource place) {
+bool vl_import_pop(vlImport *import, char kind, const char *directive, vlSource source) {
   static const struct {
     char kind;
     const char *name;
   } openers[] = {{'a', "AttributeBegin"}, {'o', "ObjectBegin"}, {'i', "Import"}};
   const vlStackEntry *top = import->stack.count ? &import->stack.items[import->stack.count - 1] : NULL;
   if (!top || (top->kind != kind && top->kind == 'i'))
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s without its beginning", directive);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s without its beginning", directive);
   if (top->kind != kind) {
     const char *open = "";
     for (size_t i = 0; i < 3; i++)
       if (openers[i].kind == top->kind) open = openers[i].name;
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "%s: the %s of line %u must be closed first", directive, open,
-                          top->place.line);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "%s: the %s of line %u must be closed first", directive, open,
+                          top->source.line);
   }
   vl_import_restore(import);
   return true;

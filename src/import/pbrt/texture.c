@@ -6,25 +6,25 @@
 
 #include "import/pbrt/builder.h"
 
-bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource place, vlTextureId *id) {
+bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;
   const vlNameTable *other = spectrum ? &import->float_textures : &import->spectrum_textures;
   const char *type = spectrum ? "spectrum" : "float";
   uint32_t index;
   if (!vl_names_find(table, name, &index)) {
     if (vl_names_find(other, name, &index))
-      return vl_import_fail(import, VL_ERROR_SCENE, place,
+      return vl_import_fail(import, VL_ERROR_SCENE, source,
                             "texture \"%s\" is a %s texture; a %s texture is needed here", vl_short_text(name).text,
                             spectrum ? "float" : "spectrum", type);
     const char *near = vl_names_nearest(table, name);
     if (near)
-      return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%s\" (did you mean \"%s\"?)", type,
-                            vl_short_text(name).text, vl_short_text(near).text);
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "there is no %s texture \"%s\"", type,
+      return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s texture \"%s\" (did you mean \"%s\"?)",
+                            type, vl_short_text(name).text, vl_short_text(near).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "there is no %s texture \"%s\"", type,
                           vl_short_text(name).text);
   }
   if (import->textures.items[index].state == VL_IN_PROGRESS)
-    return vl_import_fail(import, VL_ERROR_SCENE, place, "texture \"%s\" refers to itself", vl_short_text(name).text);
+    return vl_import_fail(import, VL_ERROR_SCENE, source, "texture \"%s\" refers to itself", vl_short_text(name).text);
   if (!vl_import_finish_texture(import, index)) return false;
   id->index = import->textures.items[index].id;
   return true;
@@ -51,14 +51,14 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
   bool solid = def->kind == VL_TEXTURE_CHECKERBOARD && def->dimension == 3;
   const vlParam *mapping = solid ? vl_dict_find(r->dict, "mapping", ~0u) : NULL;
   if (mapping && !mapping->optional)
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->place,
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->source,
                           "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
   for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++) {
     const char *name = parameters[i].name;
     if (parameters[i].in[def->mapping] && !solid) continue;
     const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
     if (p && !p->optional) /* attributes may stay unused */
-      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->place, "%s: \"%s\" has no effect with this mapping",
+      return vl_import_fail(r->dict->import, VL_ERROR_SCENE, p->source, "%s: \"%s\" has no effect with this mapping",
                             r->dict->what, name);
   }
   return true;
@@ -77,7 +77,7 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   } else if (sscanf(text, "gamma %f", &def->gamma) == 1 && def->gamma > 0.0f && isfinite(def->gamma)) {
     def->encoding = VL_ENCODING_GAMMA;
   } else {
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->place,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source,
                           "%s: unknown encoding \"%s\" (known: sRGB, linear, gamma followed by a number)", dict->what,
                           vl_short_text(text).text);
   }
@@ -90,7 +90,7 @@ static bool finish_image(const Reading *r, vlTextureDef *def) {
   if (!read_encoding(r->dict, def) || !vl_dict_done(r->dict))
     return false; /* a misspelt "filename" is reported first */
   if (r->dict->import->image_missing) return true;
-  return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place,
+  return def->path || vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source,
                                      "%s: \"string filename\" is missing", r->dict->what);
 }
 
@@ -102,7 +102,7 @@ static bool finish_direction_mix(const Reading *r, vlTextureDef *def) {
   vl_mat4_vector(r->world_from_texture, d, world);
   double length = sqrt(world[0] * world[0] + world[1] * world[1] + world[2] * world[2]);
   if (!(length > 0.0))
-    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->place, "%s: \"dir\" is zero", r->dict->what);
+    return vl_import_fail(r->dict->import, VL_ERROR_SCENE, r->dict->source, "%s: \"dir\" is zero", r->dict->what);
   for (int i = 0; i < 3; i++) def->direction[i] = (float)(world[i] / length);
   return true;
 }
@@ -122,11 +122,11 @@ static bool read_texture(vlDict *dict, vlTextureDef *def, const vlPending *pendi
   vlMat4 texture_from_world;
   assert(row->parameter_count <= MOST);
   if (!vl_mat4_inverse(pending->ctm, &texture_from_world))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->place, "%s: the current transform is singular",
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, pending->source, "%s: the current transform is singular",
                           dict->what);
   memcpy(def->texture_from_world, texture_from_world.m, sizeof def->texture_from_world);
   if (row->traits & (def->spectrum ? VL_TEXTURE_FLOAT_ONLY : VL_TEXTURE_COLOR_ONLY))
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->place, "%s: this is a %s texture only", dict->what,
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, dict->source, "%s: this is a %s texture only", dict->what,
                           def->spectrum ? "float" : "spectrum");
   return vl_import_parameters(dict, row, def, def->spectrum, is_given) &&
          (!vl_row_find(row, "mapping") || check_mapping(&r, def)) && (!rules[def->kind] || rules[def->kind](&r, def)) &&
@@ -147,21 +147,21 @@ static bool finish(vlImport *import, uint32_t index) {
   char what[160];
   snprintf(what, sizeof what, "Texture \"%s\" (%s)", vl_short_text(pending->name).text,
            vl_import_kind_text(&vl_texture_family, pending->kind).text);
-  vlDict dict = vl_import_dict(import, what, pending->place, pending->space, &pending->params, NULL);
+  vlDict dict = vl_import_dict(import, what, pending->source, pending->space, &pending->params, NULL);
   int kind = vl_kind_find(&vl_texture_family, pending->kind);
   vlTextureDef def = vl_default_texture_def(kind < 0 ? VL_TEXTURE_CONSTANT : (vlTextureKind)kind, pending->spectrum);
   def.name = pending->name;
-  def.source = pending->place;
+  def.source = pending->source;
   def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB
                                            : pending->space; /* images have their own colour space or are sRGB */
   if (kind < 0) {                                            /* permissive: a constant replaces it: middle grey, or 1 */
     if (strcmp(pending->kind, "ptex") == 0) {
       if (!vl_import_unsupported(
-              import, pending->place,
+              import, pending->source,
               "texture \"ptex\": Ptex files are not supported (to convert: bake it into an image over uv, "
               "and name that by \"imagemap\")"))
         return false;
-    } else if (!vl_import_unknown_kind(import, pending->place, &vl_texture_family, pending->kind)) {
+    } else if (!vl_import_unknown_kind(import, pending->source, &vl_texture_family, pending->kind)) {
       return false;
     }
     def.spectrum_a = vl_spectrum_input(vl_spectrum_constant(0.5f));
@@ -178,7 +178,7 @@ bool vl_import_finish_texture(vlImport *import, uint32_t index) {
   vlPending *pending = &import->textures.items[index];
   if (pending->state == VL_DONE) return true;
   if (++import->depth > VL_IMPORT_DEPTH)
-    return vl_import_fail(import, VL_ERROR_SCENE, pending->place, "textures refer to each other more than %d deep",
+    return vl_import_fail(import, VL_ERROR_SCENE, pending->source, "textures refer to each other more than %d deep",
                           VL_IMPORT_DEPTH);
   pending->state = VL_IN_PROGRESS;
   if (!finish(import, index)) return false;

@@ -20,8 +20,8 @@ typedef struct Stl {
 } Stl;
 
 static bool fail(Stl *s, vlResult code, const char *what, const char *word) {
-  vlSource place = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
-  vl_scene_fail(s->scene, code, place, "STL: %s%s%s%s", what, word ? " \"" : "", word ? word : "", word ? "\"" : "");
+  vlSource source = {.file = s->path, .line = s->line, .column = s->line ? 1 : 0};
+  vl_scene_fail(s->scene, code, source, "STL: %s%s%s%s", what, word ? " \"" : "", word ? word : "", word ? "\"" : "");
   return false;
 }
 

@@ -52,12 +52,12 @@ static inline float base_alpha(float x, float y) {
 }
 
 /* Positions in the albedo tables, for a chunk. */
-typedef struct Places {
+typedef struct Cells {
   int32_t alpha[VL_PRINCIPLED_CHUNK], cosine[VL_PRINCIPLED_CHUNK];
   float alpha_t[VL_PRINCIPLED_CHUNK], cosine_t[VL_PRINCIPLED_CHUNK];
-} Places;
+} Cells;
 
-static __attribute__((noinline)) void find_places(const vlPrincipledSlice *s, const float *z, Places *p) {
+static __attribute__((noinline)) void find_cells(const vlPrincipledSlice *s, const float *z, Cells *p) {
   const float *ax = s->alpha_x, *ay = s->alpha_y;
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
@@ -76,19 +76,19 @@ static __attribute__((noinline)) void find_places(const vlPrincipledSlice *s, co
 }
 
 /* Scalar, since not every instruction set has gathers. */
-static __attribute__((noinline)) void look_up(const Places *p, uint32_t count, float *a, float *b) {
+static __attribute__((noinline)) void look_up(const Cells *p, uint32_t count, float *a, float *b) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < count; i++) {
-    vlAlbedoPlace alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]}, c = {(uint32_t)p->cosine[i], p->cosine_t[i]};
+    vlAlbedoCell alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]}, c = {(uint32_t)p->cosine[i], p->cosine_t[i]};
     a[i] = vl_albedo_at(t->a, alpha, c);
     b[i] = vl_albedo_at(t->b, alpha, c);
   }
 }
 
-static __attribute__((noinline)) void look_up_means(const Places *p, uint32_t count, float *a, float *b) {
+static __attribute__((noinline)) void look_up_means(const Cells *p, uint32_t count, float *a, float *b) {
   const vlPrincipledTables *t = &vl_principled_tables;
   for (uint32_t i = 0; i < count; i++) {
-    vlAlbedoPlace alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]};
+    vlAlbedoCell alpha = {(uint32_t)p->alpha[i], p->alpha_t[i]};
     a[i] = vl_albedo_mean(t->a_mean, alpha);
     b[i] = vl_albedo_mean(t->b_mean, alpha);
   }
@@ -147,13 +147,13 @@ static void coat_energies(const vlPrincipledSlice *s, const vlPrincipledLanes *l
     float coat = s->row[VL_P_COAT][i];
     energy[i] = 0.0f;
     if (!(coat > 0.0f)) continue;
-    vlAlbedoPlace alpha = vl_albedo_place(s->row[VL_P_COAT_ALPHA][i], VL_ALBEDO_ALPHA);
+    vlAlbedoCell alpha = vl_albedo_cell(s->row[VL_P_COAT_ALPHA][i], VL_ALBEDO_ALPHA);
     if (!z) {
       energy[i] = coat * (0.04f * vl_albedo_mean(t->a_mean, alpha) + vl_albedo_mean(t->b_mean, alpha));
       continue;
     }
     vlVec3 n = vl_principled_coat(s, i, l->side[i]);
-    vlAlbedoPlace c = vl_albedo_place(vl_abs(vl_dot(vl_vec3(x[i], y[i], z[i]), n)), VL_ALBEDO_COS);
+    vlAlbedoCell c = vl_albedo_cell(vl_abs(vl_dot(vl_vec3(x[i], y[i], z[i]), n)), VL_ALBEDO_COS);
     energy[i] = coat * (0.04f * vl_albedo_at(t->a, alpha, c) + vl_albedo_at(t->b, alpha, c));
   }
 }
@@ -163,8 +163,8 @@ static void sheen_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float fuzz = brightest(s, VL_P_SHEEN, i);
     if (!(fuzz > 0.0f)) continue;
-    vlAlbedoPlace rough = vl_albedo_place(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
-    l->sheen_raw[i] = vl_albedo_at(t->sheen, rough, vl_albedo_place(l->z[i], VL_ALBEDO_COS));
+    vlAlbedoCell rough = vl_albedo_cell(s->row[VL_P_SHEEN_ALPHA][i], VL_ALBEDO_ALPHA);
+    l->sheen_raw[i] = vl_albedo_at(t->sheen, rough, vl_albedo_cell(l->z[i], VL_ALBEDO_COS));
     l->sheen_o[i] = fuzz * vl_min(l->sheen_raw[i], 1.0f);
     l->sheen_mean[i] = fuzz * vl_albedo_mean(t->sheen_mean, rough);
   }
@@ -177,7 +177,7 @@ static void sheen_at_light(const vlPrincipledSlice *s, const float *ox, const fl
     float fuzz = brightest(s, VL_P_SHEEN, i), c = vl_abs(z[i]);
     if (!(fuzz > 0.0f)) continue;
     float alpha = s->row[VL_P_SHEEN_ALPHA][i];
-    float raw = vl_albedo_at(t->sheen, vl_albedo_place(alpha, VL_ALBEDO_ALPHA), vl_albedo_place(c, VL_ALBEDO_COS));
+    float raw = vl_albedo_at(t->sheen, vl_albedo_cell(alpha, VL_ALBEDO_ALPHA), vl_albedo_cell(c, VL_ALBEDO_COS));
     float most = vl_max(vl_max(raw, l->sheen_raw[i]), 1.0f);
     vlVec3 h = vl_normalize(vl_vec3(ox[i] + ix[i], oy[i] + iy[i], l->z[i] + c));
     l->sheen_i[i] = fuzz * vl_min(raw, 1.0f);
@@ -199,10 +199,10 @@ static void losses_at_view(const vlPrincipledSlice *s, vlPrincipledLanes *l) {
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i];
     if (s->row[VL_P_THIN][i] > 0.0f || !(s->row[VL_P_TRANSMISSION][i] > 0.0f) || !(eta > 1.0f)) continue;
-    vlAlbedoPlace index = vl_loss_place(eta),
-                  alpha = vl_albedo_place(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    vlAlbedoCell index = vl_loss_cell(eta),
+                 alpha = vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f;
-    l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_place(l->z[i], VL_LOSS_COS));
+    l->loss_o[i] = vl_loss_at(side, index, alpha, vl_albedo_cell(l->z[i], VL_LOSS_COS));
     for (uint32_t k = 0; k < 2; k++) l->loss_mean[k][i] = vl_max(vl_loss_mean(side ^ k, index, alpha), VL_MIN_FRACTION);
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i], n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_pass[i] = n2 * there / vl_max(here, n2 * there);
@@ -217,11 +217,11 @@ static void losses_at_light(const vlPrincipledSlice *s, const float *z, vlPrinci
   for (uint32_t i = 0; i < s->count; i++) {
     float eta = s->eta[i], c = vl_abs(z[i]);
     if (!(l->loss_mean[0][i] > 0.0f)) continue;
-    vlAlbedoPlace index = vl_loss_place(eta),
-                  alpha = vl_albedo_place(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
+    vlAlbedoCell index = vl_loss_cell(eta),
+                 alpha = vl_albedo_cell(base_alpha(s->alpha_x[i], s->alpha_y[i]), VL_LOSS_ALPHA);
     uint32_t side = l->inside[i] > 0.0f, crosses = z[i] < 0.0f;
     float both =
-        l->loss_o[i] * vl_loss_at(side ^ crosses, index, alpha, vl_albedo_place(c, VL_LOSS_COS)) * c * VL_INV_PI;
+        l->loss_o[i] * vl_loss_at(side ^ crosses, index, alpha, vl_albedo_cell(c, VL_LOSS_COS)) * c * VL_INV_PI;
     float here = l->loss_mean[0][i], there = l->loss_mean[1][i], n2 = side ? 1.0f / (eta * eta) : eta * eta;
     l->again_up[i] = both / here;
     l->again_down[i] = both / vl_max(here, n2 * there);
@@ -285,12 +285,12 @@ void vl_principled_view(const vlPrincipledSlice *s, vlBsdfDirections wo, uint32_
     l->coat_i[i] = l->sheen_i[i] = l->sheen_value[i] = 0.0f;
     for (int c = 0; c < 4; c++) l->film[c][i] = 0.0f;
   }
-  Places places;
-  find_places(s, l->z, &places);
-  look_up_means(&places, count, a, b);
+  Cells cells;
+  find_cells(s, l->z, &cells);
+  look_up_means(&cells, count, a, b);
   energies(s, a, b, l->energy_mean, l->one_mean);
   if (s->film) film_energies(s, NULL, l->one_mean, l->energy_mean);
-  look_up(&places, count, a, b);
+  look_up(&cells, count, a, b);
   energies(s, a, b, l->energy_o, l->one_o);
   if (s->film) film_energies(s, l->z, l->one_o, l->energy_o);
   if (s->coat) {
@@ -310,9 +310,9 @@ void vl_principled_light(const vlPrincipledSlice *s, vlBsdfDirections wo, vlBsdf
   float a[VL_PRINCIPLED_CHUNK], b[VL_PRINCIPLED_CHUNK], z[VL_PRINCIPLED_CHUNK];
   uint32_t count = VL_WHOLE(s->count);
   for (uint32_t i = 0; i < count; i++) z[i] = iz[i] * l->side[i];
-  Places places;
-  find_places(s, z, &places);
-  look_up(&places, count, a, b);
+  Cells cells;
+  find_cells(s, z, &cells);
+  look_up(&cells, count, a, b);
   energies(s, a, b, l->energy_i, l->one_i);
   if (s->coat) coat_energies(s, l, ix, iy, z, l->coat_i);
   if (s->sheen) sheen_at_light(s, ox, oy, ix, iy, z, l);

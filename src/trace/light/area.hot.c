@@ -46,12 +46,8 @@ static inline __attribute__((always_inline)) void arrive(Block *restrict b, uint
   int emits = (facing > 0.0f) | ((b->two_sided[k] > 0.0f) & (facing < 0.0f));
   vlVec3 target = vl_offset_end(p, vl_vec3(side * n.x, side * n.y, side * n.z), offset, w, from);
   b->pdf[k] = emits & (pdf > 0.0f) & (pdf < VL_INFINITY) ? pdf : 0.0f;
-  b->wx[k] = w.x;
-  b->wy[k] = w.y;
-  b->wz[k] = w.z;
-  b->tx[k] = target.x;
-  b->ty[k] = target.y;
-  b->tz[k] = target.z;
+  vl_set_lane3(b->wx, b->wy, b->wz, k, w);
+  vl_set_lane3(b->tx, b->ty, b->tz, k, target);
 }
 
 static void triangles(uint32_t padded, Block *restrict b) {

@@ -100,9 +100,7 @@ static void directions(const vlEnvironment *env, uint32_t padded, Block *restric
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
     vlVec3 w = vl_normalize(vl_environment_turn(turn, vl_octahedral_decode(b->s[k], b->t[k])));
-    b->wx[k] = w.x;
-    b->wy[k] = w.y;
-    b->wz[k] = w.z;
+    vl_set_lane3(b->wx, b->wy, b->wz, k, w);
   }
 }
 

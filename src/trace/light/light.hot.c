@@ -284,12 +284,8 @@ static void sample_one(const vlWorld *world, uint32_t i, const vlPaths *paths, v
   if (!(sample.pdf > 0.0f) || !(sample.pdf < VL_INFINITY)) return;
   float total = sample.pdf * out->pmf[i], inv = 1.0f / total;
   out->pdf[i] = total;
-  out->wx[i] = sample.w.x;
-  out->wy[i] = sample.w.y;
-  out->wz[i] = sample.w.z;
-  out->tx[i] = sample.target.x;
-  out->ty[i] = sample.target.y;
-  out->tz[i] = sample.target.z;
+  vl_set_lane3(out->wx, out->wy, out->wz, i, sample.w);
+  vl_set_lane3(out->tx, out->ty, out->tz, i, sample.target);
   for (int c = 0; c < 4; c++) out->radiance[c][i] = sample.radiance[c] * inv;
 }
 

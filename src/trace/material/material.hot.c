@@ -90,12 +90,8 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
     vlVec3 m = vl_cross(du, dv);
     if (!(vl_length2(m) > 0.0f)) continue;
     m = facing(vl_normalize(m), n);
-    f->nx[i] = m.x;
-    f->ny[i] = m.y;
-    f->nz[i] = m.z;
-    f->ux[i] = du.x;
-    f->uy[i] = du.y;
-    f->uz[i] = du.z;
+    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
+    vl_set_lane3(f->ux, f->uy, f->uz, i, du);
   }
 }
 
@@ -111,9 +107,7 @@ static void normal_map(vlTextureRun *r, int32_t image) {
     vlFrame frame = {x, vl_cross(n, x), n};
     vlVec3 m = vl_normalize(vl_from_local(frame, local));
     if (!(vl_length2(m) > 0.0f)) continue;
-    f->nx[i] = m.x;
-    f->ny[i] = m.y;
-    f->nz[i] = m.z;
+    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
   }
 }
 
@@ -277,12 +271,8 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlSha
     t.y = ok > 0.0f ? t.y : any.x.y;
     t.z = ok > 0.0f ? t.z : any.x.z;
     vlVec3 b = vl_cross(nn, t);
-    shade->tx[i] = t.x;
-    shade->ty[i] = t.y;
-    shade->tz[i] = t.z;
-    shade->bx[i] = b.x;
-    shade->by[i] = b.y;
-    shade->bz[i] = b.z;
+    vl_set_lane3(shade->tx, shade->ty, shade->tz, i, t);
+    vl_set_lane3(shade->bx, shade->by, shade->bz, i, b);
     vlVec3 wo = vl_vec3(-paths->dx[i], -paths->dy[i], -paths->dz[i]);
     shade->wo[0][i] = vl_dot(wo, t);
     shade->wo[1][i] = vl_dot(wo, b);

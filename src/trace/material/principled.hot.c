@@ -51,9 +51,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
   const vlTextureNode *node = &r->world->nodes.items[p->normal];
   for (uint32_t i = r->first; i < r->last; i++) {
     vlVec3 m = mapped(r, node, p->normal_scale, i);
-    f->nx[i] = m.x;
-    f->ny[i] = m.y;
-    f->nz[i] = m.z;
+    vl_set_lane3(f->nx, f->ny, f->nz, i, m);
   }
 }
 
@@ -66,9 +64,7 @@ static void turn_tangent(vlTextureRun *r, const float *angle) {
     vlVec3 x = vl_normalize(vl_sub(u, vl_mul(n, vl_dot(u, n)))), y = vl_cross(n, x);
     y = vl_dot(y, vl_vec3(f->vx[i], f->vy[i], f->vz[i])) < 0.0f ? vl_neg(y) : y;
     vlVec3 t = vl_add(vl_mul(x, a.cos), vl_mul(y, a.sin));
-    f->ux[i] = t.x;
-    f->uy[i] = t.y;
-    f->uz[i] = t.z;
+    vl_set_lane3(f->ux, f->uy, f->uz, i, t);
   }
 }
 

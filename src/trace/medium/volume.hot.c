@@ -293,9 +293,7 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
       p->beta[c][i] /= survive;
       v->c.l[c][i] = v->c.u[c][i] / pdf;
     }
-    p->dx[i] = w.x;
-    p->dy[i] = w.y;
-    p->dz[i] = w.z;
+    vl_set_lane3(p->dx, p->dy, p->dz, i, w);
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     vl_note_scattered(t, p->lane[i]);
@@ -368,9 +366,7 @@ static void make_shadows(vlTracing *t, uint32_t n) {
     int distant = l->distant[i], delta = l->delta[i];
     float length = distant ? VL_INFINITY : vl_length(to), own = sh->pdf[i];
     lit[i] = (pdf > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
-    q->ox[i] = o.x;
-    q->oy[i] = o.y;
-    q->oz[i] = o.z;
+    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     q->dx[i] = distant ? w.x : d.x;
     q->dy[i] = distant ? w.y : d.y;
     q->dz[i] = distant ? w.z : d.z;

@@ -14,12 +14,8 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
     length = vl_length(to);
     w = vl_normalize(to);
   }
-  q->ox[count] = o.x;
-  q->oy[count] = o.y;
-  q->oz[count] = o.z;
-  q->dx[count] = w.x;
-  q->dy[count] = w.y;
-  q->dz[count] = w.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+  vl_set_lane3(q->dx, q->dy, q->dz, count, w);
   q->t_max[count] = length * VL_SHADOW_END;
   for (int c = 0; c < 4; c++) {
     q->radiance[c][count] = p->beta[c][i] * value[c] * l->radiance[c][i] * l->pdf[i];

@@ -91,12 +91,8 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
   float reach = inside > 0.0f ? __builtin_sqrtf(inside) : 0.0f;
   float start = vl_max(-half, middle - reach), end = vl_min(half, middle + reach);
   o = vl_add(o, vl_mul(along, start));
-  p->ox[j] = o.x;
-  p->oy[j] = o.y;
-  p->oz[j] = o.z;
-  p->dx[j] = along.x;
-  p->dy[j] = along.y;
-  p->dz[j] = along.z;
+  vl_set_lane3(p->ox, p->oy, p->oz, j, o);
+  vl_set_lane3(p->dx, p->dy, p->dz, j, along);
   x->length[j] = end > start ? end - start : 0.0f;
 }
 
@@ -319,20 +315,14 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
     vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
     float weight = exit_value(table_at(t, i), local.z) * VL_PI, pdf = local.z * VL_INV_PI;
-    p->ox[i] = o.x;
-    p->oy[i] = o.y;
-    p->oz[i] = o.z;
-    p->dx[i] = w.x;
-    p->dy[i] = w.y;
-    p->dz[i] = w.z;
+    vl_set_lane3(p->ox, p->oy, p->oz, i, o);
+    vl_set_lane3(p->dx, p->dy, p->dz, i, w);
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     p->cone[i] = vl_abs(p->cone[i]);
     p->spread[i] = t->def->pixel_spread;
     vl_note_scattered(t, p->lane[i]);
-    p->from_nx[i] = nn.x;
-    p->from_ny[i] = nn.y;
-    p->from_nz[i] = nn.z;
+    vl_set_lane3(p->from_nx, p->from_ny, p->from_nz, i, nn);
     for (int c = 0; c < 4; c++) {
       p->beta[c][i] *= weight;
       rows->l[c][i] = rows->u[c][i] / pdf;

@@ -98,9 +98,7 @@ static uint32_t make_shadow_rays(vlTracing *t, uint32_t n) {
     float x = l->tx[i] - o.x, y = l->ty[i] - o.y, z = l->tz[i] - o.z;
     float mis = vl_power_heuristic(l->pdf[i], sh->pdf[i]), weight = delta ? 1.0f : mis;
     lit[i] = (l->pdf[i] > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
-    q->ox[i] = o.x;
-    q->oy[i] = o.y;
-    q->oz[i] = o.z;
+    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     q->dx[i] = distant ? w.x : x;
     q->dy[i] = distant ? w.y : y;
     q->dz[i] = distant ? w.z : z;
@@ -202,12 +200,8 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     float sum = b0 + b1 + b2 + b3;
     alive[i] = lives;
     broken[i] = sum == sum ? 0.0f : 1.0f;
-    p->ox[i] = o.x;
-    p->oy[i] = o.y;
-    p->oz[i] = o.z;
-    p->dx[i] = w.x;
-    p->dy[i] = w.y;
-    p->dz[i] = w.z;
+    vl_set_lane3(p->ox, p->oy, p->oz, i, o);
+    vl_set_lane3(p->dx, p->dy, p->dz, i, w);
     p->beta[0][i] = b0 * inv;
     p->beta[1][i] = b1 * inv;
     p->beta[2][i] = b2 * inv;

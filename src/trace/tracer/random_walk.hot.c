@@ -22,9 +22,7 @@ void vl_trace_random_walk(vlTracing *t) {
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       vlVec3 w = vl_warp_sphere(sh->u1[i], sh->u2[i]);
-      s->light.wx[i] = w.x;
-      s->light.wy[i] = w.y;
-      s->light.wz[i] = w.z;
+      vl_set_lane3(s->light.wx, s->light.wy, s->light.wz, i, w);
     }
     vl_stage_light_bsdf(t, n);
     for (uint32_t i = 0; i < n; i++) {
@@ -36,12 +34,8 @@ void vl_trace_random_walk(vlTracing *t) {
       }
       vlVec3 w = vl_normalize(vl_lane3(s->light.wx, s->light.wy, s->light.wz, i));
       vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], w);
-      p->ox[i] = o.x;
-      p->oy[i] = o.y;
-      p->oz[i] = o.z;
-      p->dx[i] = w.x;
-      p->dy[i] = w.y;
-      p->dz[i] = w.z;
+      vl_set_lane3(p->ox, p->oy, p->oz, i, o);
+      vl_set_lane3(p->dx, p->dy, p->dz, i, w);
       p->cone[i] = f->width[i];
       p->spread[i] = t->def->pixel_spread;
       s->order[count] = i;

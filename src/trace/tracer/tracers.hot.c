@@ -101,12 +101,8 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
                                 vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), s->surface.offset[i], w);
     float lambda[4];
     vl_path_lambda(&s->b, i, lambda);
-    q->ox[i] = o.x;
-    q->oy[i] = o.y;
-    q->oz[i] = o.z;
-    q->dx[i] = w.x;
-    q->dy[i] = w.y;
-    q->dz[i] = w.z;
+    vl_set_lane3(q->ox, q->oy, q->oz, i, o);
+    vl_set_lane3(q->dx, q->dy, q->dz, i, w);
     q->t_max[i] = t->def->ao_distance;
     /* Uniform sampling: cos / pi over the density 1 / (2 pi). */
     for (int c = 0; c < 4; c++)
@@ -156,10 +152,17 @@ void vl_trace_light_path(vlTracing *t) {
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
   vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
   start_paths(&t);
-#define CASE(K, k) \
-  case VL_TRACER_##K: vl_trace_##k(&t); break;
-  switch (def->tracer) { VL_TRACER_KINDS(CASE) }
-#undef CASE
+  switch (def->tracer) {
+    case VL_TRACER_PATH: vl_trace_path(&t); break;
+    case VL_TRACER_RAYCAST: vl_trace_raycast(&t); break;
+    case VL_TRACER_AMBIENT_OCCLUSION: vl_trace_ambient_occlusion(&t); break;
+    case VL_TRACER_VOLPATH: vl_trace_volpath(&t); break;
+    case VL_TRACER_BIDIRECTIONAL: vl_trace_bidirectional(&t); break;
+    case VL_TRACER_MERGING: vl_trace_merging(&t); break;
+    case VL_TRACER_SPPM: vl_trace_sppm(&t); break;
+    case VL_TRACER_LIGHT_PATH: vl_trace_light_path(&t); break;
+    case VL_TRACER_RANDOM_WALK: vl_trace_random_walk(&t); break;
+  }
 }
 
 const vlTraceKernels vl_trace_kernel_table = {trace, vl_light_tracer, vl_light_media};

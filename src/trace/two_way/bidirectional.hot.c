@@ -107,12 +107,8 @@ static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) 
     return next;
   }
   vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
-  q->ox[count] = o.x;
-  q->oy[count] = o.y;
-  q->oz[count] = o.z;
-  q->dx[count] = d.x;
-  q->dy[count] = d.y;
-  q->dz[count] = d.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
   for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * sh->value[c][i] * l->radiance[c][i] * l->pdf[i];
   q->time[count] = vl_path_time(&s->b, i);

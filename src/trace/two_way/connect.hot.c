@@ -194,12 +194,8 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float 
   factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->b, i) ? 0.25f : 1.0f);
   for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * s->rows[3 + c][i] * x->power[c] * factor;
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
-  q->ox[count] = o.x;
-  q->oy[count] = o.y;
-  q->oz[count] = o.z;
-  q->dx[count] = d.x;
-  q->dy[count] = d.y;
-  q->dz[count] = d.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = VL_ONE_MINUS_EPSILON;
   q->time[count] = vl_path_time(&s->b, i);
   q->lane[count] = s->b.lane[i];
@@ -228,7 +224,6 @@ static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, float facto
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
   const vlLightVertices *inner = &t->def->two_way->inner;
@@ -248,13 +243,7 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
     s->light.wz[i] = s->rows[11][i] = w.z;
   }
   if (!found) return;
-  vl_stage_light_bsdf(t, n);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
-    for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
-    forth[i] = sh->pdf[i];
-  }
-  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_there_and_back(t, r, n, wi, value, forth);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (r->first[i] == VL_NONE) continue;

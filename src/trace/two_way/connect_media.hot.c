@@ -100,12 +100,8 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
   vlVec3 d = vl_sub(end, c->o);
   float length = vl_length(d);
   d = vl_normalize(d);
-  q->ox[count] = c->o.x;
-  q->oy[count] = c->o.y;
-  q->oz[count] = c->o.z;
-  q->dx[count] = d.x;
-  q->dy[count] = d.y;
-  q->dz[count] = d.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, count, c->o);
+  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = length * (1.0f - 0x1p-21f);
   q->time[count] = vl_path_time(p, c->i);
   q->lane[count] = p->lane[c->i];

@@ -31,6 +31,18 @@ void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[
   }
 }
 
+void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n, float wi[3][VL_ROW_SIZE],
+                             float value[4][VL_ROW_SIZE], float forth[VL_ROW_SIZE]) {
+  const vlShade *sh = &t->s->shade;
+  vl_stage_light_bsdf(t, n);
+  for (uint32_t i = 0; i < VL_PAD(n); i++) {
+    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
+    forth[i] = sh->pdf[i];
+  }
+  vl_stage_reverse(t, rows, n, (const float(*)[VL_ROW_SIZE])wi);
+}
+
 /* ---- start ------------------------------------------------------------------------------------------------------- */
 
 /* Writes the wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
@@ -76,12 +88,8 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     uint32_t *medium = s->volume.shadow_medium; /* not used yet */
     if (vl_has_media(t) && !start_medium(t, &e, &medium[i])) continue;
     uint32_t k = count++;
-    p->ox[k] = e.o.x;
-    p->oy[k] = e.o.y;
-    p->oz[k] = e.o.z;
-    p->dx[k] = e.d.x;
-    p->dy[k] = e.d.y;
-    p->dz[k] = e.d.z;
+    vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
+    vl_set_lane3(p->dx, p->dy, p->dz, k, e.d);
     p->pdf[k] = 1.0f;
     p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = 0.0f;
     p->eta_scale[k] = 1.0f;
@@ -99,12 +107,8 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     r->light[i] = e.light;
     r->density[i] = e.density;
     r->carry[i] = e.delta ? 0.0f : 1.0f; /* without 1 / (density cosine), which arrive() applies */
-    r->lx[i] = e.at.x;
-    r->ly[i] = e.at.y;
-    r->lz[i] = e.at.z;
-    r->lnx[i] = e.n.x;
-    r->lny[i] = e.n.y;
-    r->lnz[i] = e.n.z;
+    vl_set_lane3(r->lx, r->ly, r->lz, i, e.at);
+    vl_set_lane3(r->lnx, r->lny, r->lnz, i, e.n);
   }
   return count;
 }

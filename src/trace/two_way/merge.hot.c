@@ -97,7 +97,6 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
 static void add_listed(vlTracing *t, uint32_t n) {
   vlTwoWayRows *r = t->batch->two_way;
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
   const vlPaths *p = &s->b;
   const vlPhoton *photons = t->def->two_way->map.photons;
   float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7];
@@ -111,13 +110,7 @@ static void add_listed(vlTracing *t, uint32_t n) {
       s->light.wy[i] = has ? w[1] : s->surface.ny[i];
       s->light.wz[i] = has ? w[2] : s->surface.nz[i];
     }
-    vl_stage_light_bsdf(t, n);
-    for (uint32_t i = 0; i < VL_PAD(n); i++) {
-      for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
-      for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
-      forth[i] = sh->pdf[i];
-    }
-    vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+    vl_stage_there_and_back(t, r, n, wi, value, forth);
     for (uint32_t i = 0; i < n; i++) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];

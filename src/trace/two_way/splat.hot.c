@@ -86,9 +86,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], vl_sub(target, at));
   vlVec3 d = vl_sub(target, o);
-  q->ox[count] = o.x;
-  q->oy[count] = o.y;
-  q->oz[count] = o.z;
+  vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
   if (vl_has_media(t)) { /* unit length: distances to interfaces on the way are needed */
     vlVolumeScratch *v = &s->volume;
@@ -99,9 +97,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
     vl_shadow_from_surface(t, count, i, wi_z);
     for (int c = 0; c < 4; c++) v->density[c][count] = v->b.u[c][i];
   }
-  q->dx[count] = d.x;
-  q->dy[count] = d.y;
-  q->dz[count] = d.z;
+  vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->time[count] = vl_path_time(&s->b, i);
   q->lane[count] = s->b.lane[i];
 }
@@ -132,9 +128,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     end[i] = view.end;
     r->x[i] = view.x;
     r->y[i] = view.y;
-    fx[i] = view.from.x;
-    fy[i] = view.from.y;
-    fz[i] = view.from.z;
+    vl_set_lane3(fx, fy, fz, i, view.from);
   }
   vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
   uint32_t count = 0;

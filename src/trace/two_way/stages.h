@@ -129,6 +129,10 @@ vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, floa
 /* Writes to rows->rev the density of sampling wo if the path had come from wi (local), and to shade.value the BSDF's
  * value f(wi, wo) |cos wo|. Keeps shade.wo; overwrites shade.wi, shade.pdf and the light samples' wx, wy, wz. */
 void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
+/* Evaluates the BSDFs for the light samples' directions, and vl_stage_reverse for the way back. wi: those directions
+ * (local); value: the BSDFs' values of the way there; forth: its densities. */
+void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n, float wi[3][VL_ROW_SIZE],
+                             float value[4][VL_ROW_SIZE], float forth[VL_ROW_SIZE]);
 
 /* A ray that leaves a light. */
 typedef struct vlEmission {

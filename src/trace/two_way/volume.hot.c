@@ -202,12 +202,8 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
     if (!view.seen) continue;
     float phase = phase_of(t, i, view.w);
-    q->ox[count] = o.x;
-    q->oy[count] = o.y;
-    q->oz[count] = o.z;
-    q->dx[count] = view.w.x;
-    q->dy[count] = view.w.y;
-    q->dz[count] = view.w.z;
+    vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+    vl_set_lane3(q->dx, q->dy, q->dz, count, view.w);
     q->t_max[count] = vl_min(view.end, 1.0f - 0x1p-21f) * vl_length(vl_sub(view.from, o));
     q->time[count] = vl_path_time(p, i);
     q->lane[count] = lane;

@@ -33,35 +33,35 @@ typedef struct vlPrincipledTables {
 extern const vlPrincipledTables vl_principled_tables;
 
 /* Position of a value between two entries. */
-typedef struct vlAlbedoPlace {
+typedef struct vlAlbedoCell {
   uint32_t first;
   float t;
-} vlAlbedoPlace;
-static inline vlAlbedoPlace vl_albedo_place(float x, uint32_t count) {
+} vlAlbedoCell;
+static inline vlAlbedoCell vl_albedo_cell(float x, uint32_t count) {
   float c = x > 0.0f ? x : 0.0f; /* NaN becomes 0 */
   c = __builtin_sqrtf(c < 1.0f ? c : 1.0f) * (float)(count - 1);
   uint32_t first = (uint32_t)c;
   first = first < count - 2 ? first : count - 2;
-  return (vlAlbedoPlace){first, c - (float)first};
+  return (vlAlbedoCell){first, c - (float)first};
 }
-static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoPlace alpha, vlAlbedoPlace cosine) {
+static inline float vl_albedo_at(const float table[][VL_ALBEDO_COS], vlAlbedoCell alpha, vlAlbedoCell cosine) {
   const float *p = table[alpha.first] + cosine.first, *q = p + VL_ALBEDO_COS;
   float low = p[0] + cosine.t * (p[1] - p[0]), high = q[0] + cosine.t * (q[1] - q[0]);
   return low + alpha.t * (high - low);
 }
-static inline float vl_albedo_mean(const float *mean, vlAlbedoPlace alpha) {
+static inline float vl_albedo_mean(const float *mean, vlAlbedoCell alpha) {
   return mean[alpha.first] + alpha.t * (mean[alpha.first + 1] - mean[alpha.first]);
 }
 
 /* Position of the index in the tables of losses; eta >= 1. */
-static inline vlAlbedoPlace vl_loss_place(float eta) {
+static inline vlAlbedoCell vl_loss_cell(float eta) {
   float c = (eta - 1.0f) / (eta + 1.0f) * ((float)(VL_LOSS_ETA - 1) / VL_LOSS_MOST_ROOT);
   c = c > 0.0f ? c : 0.0f;
   uint32_t first = c < (float)(VL_LOSS_ETA - 2) ? (uint32_t)c : VL_LOSS_ETA - 2;
   float t = c - (float)first;
-  return (vlAlbedoPlace){first, t < 1.0f ? t : 1.0f};
+  return (vlAlbedoCell){first, t < 1.0f ? t : 1.0f};
 }
-static inline float vl_loss_at(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha, vlAlbedoPlace cosine) {
+static inline float vl_loss_at(uint32_t side, vlAlbedoCell eta, vlAlbedoCell alpha, vlAlbedoCell cosine) {
   float ends[2];
   for (uint32_t k = 0; k < 2; k++) {
     const float *p = vl_principled_tables.loss[side][eta.first + k][alpha.first] + cosine.first, *q = p + VL_LOSS_COS;
@@ -70,7 +70,7 @@ static inline float vl_loss_at(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace a
   }
   return ends[0] + eta.t * (ends[1] - ends[0]);
 }
-static inline float vl_loss_mean(uint32_t side, vlAlbedoPlace eta, vlAlbedoPlace alpha) {
+static inline float vl_loss_mean(uint32_t side, vlAlbedoCell eta, vlAlbedoCell alpha) {
   const float(*mean)[VL_LOSS_ALPHA] = vl_principled_tables.loss_mean[side] + eta.first;
   float low = vl_albedo_mean(mean[0], alpha), high = vl_albedo_mean(mean[1], alpha);
   return low + eta.t * (high - low);

@@ -29,9 +29,9 @@ bool vl_old_fail_memory(vlUpgrade *u) {
 static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, const char *text) {
   const vlUpgradeDef *def = file->u->def;
   if (file->u->quiet) return;
-  vlError place = {0};
-  vl_fail_at(&place, VL_OK, file->path, line, 0, "%s", "");
-  if (def->report) def->report(def->report_user, note, &place, text);
+  vlError where = {0};
+  vl_fail_at(&where, VL_OK, file->path, line, 0, "%s", "");
+  if (def->report) def->report(def->report_user, note, &where, text);
 }
 
 void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) {

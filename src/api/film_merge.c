@@ -91,7 +91,10 @@ static vlResult check_pair(const Merge *m, const vlFilmReader *r) {
 }
 
 static vlResult open_parts(Merge *m, const char *const *paths) {
-  for (uint32_t i = 0; i < m->count; i++) m->parts[i].reader.descriptor = -1, m->order[i] = i;
+  for (uint32_t i = 0; i < m->count; i++) {
+    m->parts[i].reader.descriptor = -1;
+    m->order[i] = i;
+  }
   for (uint32_t i = 0; i < m->count; i++) {
     vlFilmReader *r = &m->parts[i].reader;
     vlResult result = vl_film_reader_open(r, m->context, paths[i], m->error);
@@ -145,7 +148,10 @@ static bool contains(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, u
 static bool overlap(const vlSampleSpan *a, uint32_t n, const vlSampleSpan *b, uint32_t m, vlSampleSpan *common) {
   for (uint32_t i = 0, k = 0; i < n && k < m;) {
     uint32_t first = a[i].first > b[k].first ? a[i].first : b[k].first, end = a[i].end < b[k].end ? a[i].end : b[k].end;
-    if (first < end) return *common = (vlSampleSpan){first, end}, true;
+    if (first < end) {
+      *common = (vlSampleSpan){first, end};
+      return true;
+    }
     if (a[i].end < b[k].end)
       i++;
     else
@@ -168,7 +174,9 @@ static vlResult join(Merge *m, const vlSampleSpan *b, uint32_t count) {
       return vl_fail(m->error, VL_ERROR_SCENE, "the films' samples have more than %d gaps", VL_FILM_MOST_RANGES);
   }
   vlSampleSpan *swap = m->ranges;
-  m->ranges = m->joined, m->joined = swap, m->range_count = n;
+  m->ranges = m->joined;
+  m->joined = swap;
+  m->range_count = n;
   return VL_OK;
 }
 
@@ -210,7 +218,8 @@ static void sort_parts(Merge *m) {
   for (uint32_t i = 1; i < m->count; i++)
     for (uint32_t k = i; k > 0 && more_samples(m, m->order[k], m->order[k - 1]); k--) {
       uint32_t swap = m->order[k];
-      m->order[k] = m->order[k - 1], m->order[k - 1] = swap;
+      m->order[k] = m->order[k - 1];
+      m->order[k - 1] = swap;
     }
 }
 

@@ -29,7 +29,10 @@ static bool put_velo(json_t *tree, const char *commit) {
   bool good = vl_receipt_put(velo, "version", json_string(vl_version()->text)) &&
               (!commit || vl_receipt_put(velo, "commit", json_string(commit))) &&
               vl_receipt_put(velo, "sequence", json_integer(VL_SAMPLE_SEQUENCE));
-  if (!good) return json_decref(velo), false;
+  if (!good) {
+    json_decref(velo);
+    return false;
+  }
   return vl_receipt_put(tree, "velo", velo);
 }
 
@@ -49,7 +52,10 @@ static bool put_strings(vlContext *context, json_t *tree, const char *key, const
   if (!strings) return true;
   json_t *list = json_array();
   for (uint32_t i = 0; i < count; i++)
-    if (!vl_receipt_put(list, NULL, string_of(context, strings[i]))) return json_decref(list), false;
+    if (!vl_receipt_put(list, NULL, string_of(context, strings[i]))) {
+      json_decref(list);
+      return false;
+    }
   return vl_receipt_put(tree, key, list);
 }
 
@@ -70,8 +76,14 @@ static bool put_files(vlContext *context, json_t *tree, const char *scene) {
     bool good = vl_receipt_put(file, "path", string_of(context, relative(record->path, scene))) &&
                 vl_receipt_put(file, "size", json_integer((json_int_t)record->size)) &&
                 vl_receipt_put(file, "murmur3", json_string(digest));
-    if (!good) json_decref(file), file = NULL;
-    if (!vl_receipt_put(list, NULL, file)) return json_decref(list), false;
+    if (!good) {
+      json_decref(file);
+      file = NULL;
+    }
+    if (!vl_receipt_put(list, NULL, file)) {
+      json_decref(list);
+      return false;
+    }
   }
   return vl_receipt_put(tree, "files", list);
 }
@@ -94,7 +106,10 @@ static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
     const json_t *value = json_object_get(tree, counts[i]);
     if (value) good = vl_receipt_put(tree, counts[i], json_integer((json_int_t)json_real_value(value)));
   }
-  if (!good) json_decref(tree), tree = NULL;
+  if (!good) {
+    json_decref(tree);
+    tree = NULL;
+  }
   return tree;
 }
 
@@ -120,11 +135,14 @@ static bool put_optics(json_t *camera, const vlCameraDef *def) {
   double numbers[64 * 4 + 4];
   size_t count = 0;
   for (uint32_t i = 0; i < optics.count; i++) {
-    numbers[count++] = surfaces[i].radius, numbers[count++] = surfaces[i].thickness;
-    numbers[count++] = surfaces[i].ior, numbers[count++] = surfaces[i].aperture;
+    numbers[count++] = surfaces[i].radius;
+    numbers[count++] = surfaces[i].thickness;
+    numbers[count++] = surfaces[i].ior;
+    numbers[count++] = surfaces[i].aperture;
   }
   numbers[count++] = vl_is_unset(optics.aperture_diameter) ? -1.0 : optics.aperture_diameter;
-  numbers[count++] = optics.film_diagonal, numbers[count++] = optics.unit_mm;
+  numbers[count++] = optics.film_diagonal;
+  numbers[count++] = optics.unit_mm;
   vl_digest(numbers, count * sizeof *numbers, digest);
   if (!put_digest(camera, "optics_digest", digest)) return false;
   if (optics.aperture) {
@@ -142,7 +160,10 @@ static bool put_camera(vlContext *context, json_t *tree, const vlReceiptDef *def
     for (int i = 0; i < 3; i++) camera.lens.focus_point[i] = VL_UNSET;
   }
   json_t *object = camera_tree(context, &camera);
-  if (!object || !put_optics(object, &camera)) return json_decref(object), false;
+  if (!object || !put_optics(object, &camera)) {
+    json_decref(object);
+    return false;
+  }
   return vl_receipt_put(tree, "camera", object);
 }
 
@@ -196,7 +217,10 @@ vlResult vl_receipt_parse(vlContext *context, const char *text, size_t size, vlR
                  : vl_fail(error, VL_ERROR_SCENE, "receipt: this is not a receipt: there is no \"velo_receipt\"");
   }
   char *copy = vl_alloc(context, size + 1);
-  if (copy) memcpy(copy, text, size), copy[size] = 0;
+  if (copy) {
+    memcpy(copy, text, size);
+    copy[size] = 0;
+  }
   return receipt_of(context, tree, copy, receipt, error);
 }
 

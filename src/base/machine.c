@@ -78,7 +78,8 @@ void vl_machine_large_pages(void *block, size_t size) {
   if (to > from)
     madvise((void *)from, to - from, MADV_HUGEPAGE); /* only advice: if it fails, nothing changes but the speed */
 #else
-  (void)block, (void)size;
+  (void)block;
+  (void)size;
 #endif
 }
 

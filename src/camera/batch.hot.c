@@ -65,7 +65,10 @@ static inline __attribute__((always_inline)) void place_loop(const int lens, con
     double depth = flat * ahead + (1.0 - flat);
     if (lens == DISC) local = vl_lens_apply_at(c, local, vl_lens_disk(lens_u[i], lens_v[i]), depth);
     if (lens == POINTS) local = vl_lens_refract(c, local, (vlLensPoint){lens_u[i], lens_v[i]});
-    if (lens == OPTICS) local.ox = d->x[i], local.oy = d->y[i];
+    if (lens == OPTICS) {
+      local.ox = d->x[i];
+      local.oy = d->y[i];
+    }
     vlWorldRay w = vl_camera_place(c, local);
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, d->dx[i], d->dz[i]), w);
     int good = d->valid[i] > 0.0;
@@ -119,7 +122,8 @@ static void staged_rays(const vlCameraCompiled *c, uint32_t count, const vlCamer
       float x[VL_CAMERA_CHUNK], y[VL_CAMERA_CHUNK];
       vl_lens_points(c, n, s->lens_u + first, s->lens_v + first, x, y);
       vlCameraSamples points = *s;
-      points.lens_u = x, points.lens_v = y;
+      points.lens_u = x;
+      points.lens_v = y;
       place_loop(POINTS, 1, c, first, n, &d, &points, r);
     } else if (c->has_lens && c->eye_circle != 0.0) {
       place_loop(DISC, 1, c, first, n, &d, s, r);
@@ -214,7 +218,8 @@ static void own_rays(const vlCameraCompiled *c, uint32_t n, const vlCameraSample
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
       rows.x[i] = ((double)pixel_x[i] - c->cx + (double)film_x[i]) * c->inv_fx;
       rows.y[i] = ((double)pixel_y[i] - c->cy + (double)film_y[i]) * c->inv_fy;
-      rows.lens_u[i] = (double)s->lens_u[first + i], rows.lens_v[i] = (double)s->lens_v[first + i];
+      rows.lens_u[i] = (double)s->lens_u[first + i];
+      rows.lens_v[i] = (double)s->lens_v[first + i];
     }
     for (uint32_t i = 0; i < count; i++) {
       double seconds = c->when.timed ? vl_camera_seconds(c, pixel_x[i], pixel_y[i], time[i])

@@ -103,7 +103,10 @@ vlResult vl_camera_make(const vlCameraDef *def, vlCamera *camera, const char **w
   if (def->projection == VL_PROJECTION_OWN && !def->own)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the projection OWN needs own");
   vlCameraDef own;
-  if (def->own) own = vl_camera_own_def(def), def = &own;
+  if (def->own) {
+    own = vl_camera_own_def(def);
+    def = &own;
+  }
   vlCamera made = {
       .projection = def->projection,
       .width = def->width,
@@ -164,8 +167,11 @@ vlResult vl_camera_coarse(const vlCamera *camera, uint32_t factor, vlCamera *res
   if (!camera || !result || factor == 0 || factor > VL_MOST_COARSE) return VL_ERROR_ARGUMENT;
   vlCamera coarse = *camera;
   double scale = 1.0 / factor;
-  coarse.fx *= scale, coarse.fy *= scale, coarse.skew *= scale;
-  coarse.cx *= scale, coarse.cy *= scale;
+  coarse.fx *= scale;
+  coarse.fy *= scale;
+  coarse.skew *= scale;
+  coarse.cx *= scale;
+  coarse.cy *= scale;
   for (int i = 0; i < 2; i++) coarse.lens.focus_pixel[i] *= scale; /* unset values stay unset */
   coarse.width = (camera->width + factor - 1) / factor;
   coarse.height = (camera->height + factor - 1) / factor;

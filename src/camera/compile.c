@@ -42,7 +42,8 @@ static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {
   c->focus[2] = c->inv_focus;
   c->inv_ratio = 1.0 / l->ratio;
   c->aperture = l->aperture;
-  c->lens_turn[0] = vl_precise_cos(l->rotation), c->lens_turn[1] = vl_precise_sin(l->rotation);
+  c->lens_turn[0] = vl_precise_cos(l->rotation);
+  c->lens_turn[1] = vl_precise_sin(l->rotation);
   if (l->blades) vl_blades_make(l->blades, l->rotation, &c->blades);
   c->shaped = l->blades || l->aperture || l->ratio != 1.0 || c->focus[0] != 0.0 || c->focus[1] != 0.0;
 }
@@ -74,20 +75,25 @@ void vl_camera_compile(const vlCamera *camera, vlCameraCompiled *c) {
   bool orthographic = camera->projection == VL_PROJECTION_ORTHOGRAPHIC;
   c->plain = orthographic || (perspective && camera->distortion.steps == 0);
   c->inclined = perspective;
-  c->fx = camera->fx, c->fy = camera->fy, c->skew = camera->skew;
-  c->shape[0] = camera->shape[0], c->shape[1] = camera->shape[1];
+  c->fx = camera->fx;
+  c->fy = camera->fy;
+  c->skew = camera->skew;
+  c->shape[0] = camera->shape[0];
+  c->shape[1] = camera->shape[1];
   if (camera->projection == VL_PROJECTION_FOV) {
     vlSinCosDouble half = vl_sincos_double(0.5 * camera->shape[0]);
     c->shape[1] = 2.0 * half.sin / half.cos;
   }
-  c->over_x = overhang * c->inv_fx, c->over_y = overhang * c->inv_fy;
+  c->over_x = overhang * c->inv_fx;
+  c->over_y = overhang * c->inv_fy;
   if (camera->projection == VL_PROJECTION_EQUAL_AREA) c->over_x = c->over_x > c->over_y ? c->over_x : c->over_y;
   c->limit2 = camera->limit * camera->limit;
   c->distortion = camera->distortion;
   c->eye_circle = camera->eye_circle;
   c->own = camera->own;
   for (int i = 0; i < 2; i++) c->own_size[i] = (uint32_t)camera->own_size[i];
-  c->own_from = 0.0, c->own_clock = 1.0;
+  c->own_from = 0.0;
+  c->own_clock = 1.0;
   compile_lens(camera, c);
   vl_camera_compile_time(camera, &c->when);
   memcpy(c->camera_from_world, camera->camera_from_world, sizeof c->camera_from_world);

@@ -233,7 +233,8 @@ static void standard_focal(const vlCameraDef *d, const vlCamera *camera, Gathere
   double half = 0.5 * (d->width < d->height ? d->width : d->height), radius, focal[2];
   if (row->standard_focal) {
     row->standard_focal(d, camera, focal);
-    g->fx.value = focal[0], g->fy.value = focal[1];
+    g->fx.value = focal[0];
+    g->fy.value = focal[1];
     return;
   }
   /* along the smaller side: 180 degrees for fisheyes, 90 for others if the model covers that angle */

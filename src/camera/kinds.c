@@ -16,11 +16,13 @@ static void half_side(const vlCameraDef *d, const vlCamera *camera, double focal
 /* The image shows the whole sphere, cylinder or cube. */
 static void whole_sphere(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
-  focal[0] = d->width / (2.0 * pi), focal[1] = d->height / pi;
+  focal[0] = d->width / (2.0 * pi);
+  focal[1] = d->height / pi;
 }
 static void whole_square(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
-  focal[0] = 0.5 * d->width, focal[1] = 0.5 * d->height;
+  focal[0] = 0.5 * d->width;
+  focal[1] = 0.5 * d->height;
 }
 static void whole_cylinder(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   (void)camera;
@@ -28,12 +30,14 @@ static void whole_cylinder(const vlCameraDef *d, const vlCamera *camera, double 
 }
 static void whole_cube(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
   bool cross = camera->shape[0] > 0.0;
-  focal[0] = d->width / (cross ? 4.0 : 6.0), focal[1] = d->height / (cross ? 3.0 : 1.0);
+  focal[0] = d->width / (cross ? 4.0 : 6.0);
+  focal[1] = d->height / (cross ? 3.0 : 1.0);
 }
 
 /* The plane's unit is a pixel. */
 static void one_pixel(const vlCameraDef *d, const vlCamera *camera, double focal[2]) {
-  (void)d, (void)camera;
+  (void)d;
+  (void)camera;
   focal[0] = focal[1] = 1.0;
 }
 

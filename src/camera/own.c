@@ -23,8 +23,10 @@ void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
 void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRows *r) {
   double time = c->own_from + c->own_clock * c->shutter_open;
   for (uint32_t i = 0; i < n; i++) {
-    r->x[i] = (x[i] - c->cx) * c->inv_fx, r->y[i] = (y[i] - c->cy) * c->inv_fy;
-    r->lens_u[i] = r->lens_v[i] = 0.5, r->time[i] = time;
+    r->x[i] = (x[i] - c->cx) * c->inv_fx;
+    r->y[i] = (y[i] - c->cy) * c->inv_fy;
+    r->lens_u[i] = r->lens_v[i] = 0.5;
+    r->time[i] = time;
   }
   vl_own_rays(c, n, r);
 }
@@ -38,7 +40,8 @@ void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const
   c->own->pixels(c->own->user, &points);
   vl_machine_restore_denormals(state);
   for (uint32_t i = 0; i < n; i++) {
-    film_x[i] = c->fx * film_x[i] + c->cx, film_y[i] = c->fy * film_y[i] + c->cy;
+    film_x[i] = c->fx * film_x[i] + c->cx;
+    film_y[i] = c->fy * film_y[i] + c->cy;
     if (!isfinite(film_x[i] + film_y[i])) film_x[i] = film_y[i] = (double)NAN;
   }
 }
@@ -78,8 +81,12 @@ static void measure_pixel(const vlCamera *camera, vlOwnRows *rows, double pixel[
   double d[4][3], o[4][3];
   for (int i = 0; i < 4; i++) {
     double inv = 1.0 / vl_length3(rows->dx[i], rows->dy[i], rows->dz[i]);
-    d[i][0] = rows->dx[i] * inv, d[i][1] = rows->dy[i] * inv, d[i][2] = rows->dz[i] * inv;
-    o[i][0] = rows->ox[i], o[i][1] = rows->oy[i], o[i][2] = rows->oz[i];
+    d[i][0] = rows->dx[i] * inv;
+    d[i][1] = rows->dy[i] * inv;
+    d[i][2] = rows->dz[i] * inv;
+    o[i][0] = rows->ox[i];
+    o[i][1] = rows->oy[i];
+    o[i][2] = rows->oz[i];
   }
   for (int k = 0; k < 2; k++) {
     double a[3], b[3];
@@ -114,7 +121,8 @@ vlResult vl_camera_own(const vlCameraDef *def, vlCamera *camera, vlError *error)
   if (result != VL_OK) return result;
   vlOwnRows rows;
   camera->own = def->own;
-  camera->own_size[0] = def->width, camera->own_size[1] = def->height;
+  camera->own_size[0] = def->width;
+  camera->own_size[1] = def->height;
   measure_pixel(camera, &rows, camera->own_pixel);
   return VL_OK;
 }
@@ -126,8 +134,10 @@ double vl_own_outside(const vlCamera *camera) {
   vlOwnRows rows;
   vlCameraCompiled c;
   vl_camera_compile(camera, &c);
-  for (int i = 0; i < SIDE * SIDE; i++)
-    x[i] = camera->width * (i % SIDE + 0.5) / SIDE, y[i] = camera->height * (i / SIDE + 0.5) / SIDE;
+  for (int i = 0; i < SIDE * SIDE; i++) {
+    x[i] = camera->width * (i % SIDE + 0.5) / SIDE;
+    y[i] = camera->height * (i / SIDE + 0.5) / SIDE;
+  }
   vl_own_chief_rays(&c, SIDE * SIDE, x, y, &rows);
   uint32_t outside = 0;
   for (uint32_t i = 0; i < SIDE * SIDE; i++) {

@@ -27,7 +27,9 @@ static inline vlWorldRay vl_own_place(const vlCameraCompiled *c, double ox, doub
                                       double dz) {
   const double *m = c->rotation;
   vlWorldRay w = vl_camera_place(c, (vlCameraLocal){ox, oy, dx, dy, dz});
-  w.ox += m[2] * oz, w.oy += m[5] * oz, w.oz += m[8] * oz;
+  w.ox += m[2] * oz;
+  w.oy += m[5] * oz;
+  w.oz += m[8] * oz;
   return w;
 }
 /* Lane i of rows in the world. False: the film point has no ray, or the ray is not finite. */

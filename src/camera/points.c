@@ -91,8 +91,12 @@ bool vl_camera_unproject(const vlCamera *camera, double x, double y, double orig
     w = vl_camera_place(&c, r);
     if (c.eye_circle != 0.0) w = vl_camera_place_eye(&c, vl_eye_place(c.eye_circle, r.dx, r.dz), w);
   }
-  origin[0] = w.ox, origin[1] = w.oy, origin[2] = w.oz;
-  direction[0] = w.dx * w.inv_length, direction[1] = w.dy * w.inv_length, direction[2] = w.dz * w.inv_length;
+  origin[0] = w.ox;
+  origin[1] = w.oy;
+  origin[2] = w.oz;
+  direction[0] = w.dx * w.inv_length;
+  direction[1] = w.dy * w.inv_length;
+  direction[2] = w.dz * w.inv_length;
   return isfinite(direction[0]) && isfinite(direction[1]) && isfinite(direction[2]);
 }
 
@@ -129,15 +133,20 @@ void vl_camera_unproject_batch(const vlCamera *camera, size_t count, const doubl
     uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       const double *p = pixels + 2 * (first + (i < n ? i : n - 1));
-      in.x[i] = p[0], in.y[i] = p[1];
+      in.x[i] = p[0];
+      in.y[i] = p[1];
     }
     k->unproject(&c, n, &in, &out);
     for (uint32_t i = 0; i < n; i++) {
       double *d = directions + 3 * (first + i);
-      d[0] = out.x[i], d[1] = out.y[i], d[2] = out.z[i];
+      d[0] = out.x[i];
+      d[1] = out.y[i];
+      d[2] = out.z[i];
       if (origins) {
         double *o = origins + 3 * (first + i);
-        o[0] = out.ox[i], o[1] = out.oy[i], o[2] = out.oz[i];
+        o[0] = out.ox[i];
+        o[1] = out.oy[i];
+        o[2] = out.oz[i];
       }
       if (valid) valid[first + i] = out.valid[i] > 0.0;
     }
@@ -156,11 +165,14 @@ void vl_camera_project_batch(const vlCamera *camera, size_t count, const double 
     uint32_t n = count - first < VL_CAMERA_CHUNK ? (uint32_t)(count - first) : VL_CAMERA_CHUNK;
     for (uint32_t i = 0; i < VL_PAD(n); i++) {
       const double *p = points + 3 * (first + (i < n ? i : n - 1));
-      in.x[i] = p[0], in.y[i] = p[1], in.z[i] = p[2];
+      in.x[i] = p[0];
+      in.y[i] = p[1];
+      in.z[i] = p[2];
     }
     k->project(&c, n, &in, &out);
     for (uint32_t i = 0; i < n; i++) {
-      pixels[2 * (first + i)] = out.x[i], pixels[2 * (first + i) + 1] = out.y[i];
+      pixels[2 * (first + i)] = out.x[i];
+      pixels[2 * (first + i) + 1] = out.y[i];
       if (z) z[first + i] = out.z[i];
       if (valid) valid[first + i] = out.valid[i] > 0.0;
     }
@@ -176,7 +188,9 @@ static bool slope(const vlCameraCompiled *c, double x, double y, double hx, doub
     vlDirection r = vl_camera_direction(c, x + at[i] * hx, y + at[i] * hy);
     double k = weight[i] / (vl_length3(r.x, r.y, r.z) * (hx + hy));
     if (r.valid == 0.0) return false;
-    d[0] += k * r.x, d[1] += k * r.y, d[2] += k * r.z;
+    d[0] += k * r.x;
+    d[1] += k * r.y;
+    d[2] += k * r.z;
   }
   return true;
 }

@@ -18,15 +18,18 @@ static void undistort(const vlDistortionMap *map, uint32_t count, double *x, dou
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlPlanePoint flat = vl_tilt(m->untilt, x[i], y[i]);
     vlPlanePoint start = vl_distortion_start(m, flat.x, flat.y);
-    u[i] = flat.x, v[i] = flat.y;
-    x[i] = start.x, y[i] = start.y;
+    u[i] = flat.x;
+    v[i] = flat.y;
+    x[i] = start.x;
+    y[i] = start.y;
     valid[i] = flat.valid;
   }
   for (uint32_t step = 0; step < m->steps; step++) {
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
       vlPlanePoint p = vl_distortion_step(m, x[i], y[i], u[i], v[i]);
-      x[i] = p.x, y[i] = p.y;
+      x[i] = p.x;
+      y[i] = p.y;
     }
   }
   /* must vectorise */
@@ -41,7 +44,10 @@ static inline __attribute__((always_inline)) void plane_loop(vlProjection kind, 
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlDirection r = vl_plane_unproject(kind, c, d->face[i], d->x[i], d->y[i]);
     r = vl_direction_finish(inclined, r, d->valid[i]);
-    d->dx[i] = r.x, d->dy[i] = r.y, d->dz[i] = r.z, d->valid[i] = r.valid;
+    d->dx[i] = r.x;
+    d->dy[i] = r.y;
+    d->dz[i] = r.z;
+    d->valid[i] = r.valid;
   }
 }
 
@@ -72,7 +78,9 @@ static inline __attribute__((always_inline)) void place_loop(const int eyes, con
     vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
     int good = valid[i] > 0.0;
-    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->ox[i] = good ? w.ox : 0.0;
+    out->oy[i] = good ? w.oy : 0.0;
+    out->oz[i] = good ? w.oz : 0.0;
     out->x[i] = good ? w.dx * w.inv_length : 0.0;
     out->y[i] = good ? w.dy * w.inv_length : 0.0;
     out->z[i] = good ? w.dz * w.inv_length : 0.0;
@@ -91,7 +99,9 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
     vlWorldRay w = vl_camera_place(c, r);
     double sum = w.dx * w.inv_length + w.dy * w.inv_length + w.dz * w.inv_length;
     int good = sum - sum == 0.0 && x - x == 0.0 && y - y == 0.0;
-    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->ox[i] = good ? w.ox : 0.0;
+    out->oy[i] = good ? w.oy : 0.0;
+    out->oz[i] = good ? w.oz : 0.0;
     out->x[i] = good ? w.dx * w.inv_length : 0.0;
     out->y[i] = good ? w.dy * w.inv_length : 0.0;
     out->z[i] = good ? w.dz * w.inv_length : 0.0;
@@ -105,7 +115,9 @@ static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraP
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     vlWorldRay w;
     int good = vl_own_ray_at(c, &rows, i, &w);
-    out->ox[i] = good ? w.ox : 0.0, out->oy[i] = good ? w.oy : 0.0, out->oz[i] = good ? w.oz : 0.0;
+    out->ox[i] = good ? w.ox : 0.0;
+    out->oy[i] = good ? w.oy : 0.0;
+    out->oz[i] = good ? w.oz : 0.0;
     out->x[i] = good ? w.dx * w.inv_length : 0.0;
     out->y[i] = good ? w.dy * w.inv_length : 0.0;
     out->z[i] = good ? w.dz * w.inv_length : 0.0;
@@ -126,7 +138,8 @@ void vl_camera_unproject_chunk(const vlCameraCompiled *c, uint32_t n, const vlCa
   } else {
     vlDirections d;
     for (uint32_t i = 0; i < count; i++) {
-      d.x[i] = in->x[i] - c->cx, d.y[i] = in->y[i] - c->cy;
+      d.x[i] = in->x[i] - c->cx;
+      d.y[i] = in->y[i] - c->cy;
       vlPlanePoint p = vl_pixel_to_plane(c, d.x[i], d.y[i]);
       d.face[i] = vl_cube_cell(p.x, p.y);
     }
@@ -152,7 +165,10 @@ static inline __attribute__((always_inline)) void project_loop(vlProjection kind
     if (eyes) d = vl_eye_direction(c->eye_circle, x, y, z);
     vlPlanePoint p = vl_plane_project(kind, c, d.x, d.y, d.z);
     p.valid *= d.valid;
-    out->x[i] = p.x, out->y[i] = p.y, out->z[i] = z, out->valid[i] = p.valid;
+    out->x[i] = p.x;
+    out->y[i] = p.y;
+    out->z[i] = z;
+    out->valid[i] = p.valid;
   }
 }
 
@@ -161,13 +177,16 @@ static void own_project(const vlCameraCompiled *c, uint32_t n, const vlCameraPoi
   double x[VL_CAMERA_CHUNK] = {0}, y[VL_CAMERA_CHUNK] = {0}, z[VL_CAMERA_CHUNK] = {0};
   for (uint32_t i = 0; i < n; i++) {
     double wx = in->x[i], wy = in->y[i], wz = in->z[i];
-    x[i] = m[0] * wx + m[1] * wy + m[2] * wz + m[3], y[i] = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
+    x[i] = m[0] * wx + m[1] * wy + m[2] * wz + m[3];
+    y[i] = m[4] * wx + m[5] * wy + m[6] * wz + m[7];
     z[i] = m[8] * wx + m[9] * wy + m[10] * wz + m[11];
   }
   vl_own_pixels(c, n, x, y, z, out->x, out->y);
   for (uint32_t i = 0; i < n; i++) {
     int seen = out->x[i] == out->x[i];
-    out->x[i] = seen ? out->x[i] : 0.0, out->y[i] = seen ? out->y[i] : 0.0, out->z[i] = seen ? z[i] : 0.0;
+    out->x[i] = seen ? out->x[i] : 0.0;
+    out->y[i] = seen ? out->y[i] : 0.0;
+    out->z[i] = seen ? z[i] : 0.0;
     out->valid[i] = seen ? 1.0 : 0.0;
   }
 }
@@ -204,13 +223,17 @@ void vl_camera_project_chunk(const vlCameraCompiled *camera, uint32_t n, const v
     /* must vectorise */
     VL_SIMD for (uint32_t i = 0; i < count; i++) {
       vlPlanePoint p = vl_distortion_apply(&c->distortion, out->x[i], out->y[i]);
-      out->x[i] = p.x, out->y[i] = p.y, out->valid[i] *= p.valid;
+      out->x[i] = p.x;
+      out->y[i] = p.y;
+      out->valid[i] *= p.valid;
     }
   }
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     vlPlanePoint p = vl_plane_to_pixel(c, (vlPlanePoint){out->x[i], out->y[i], out->valid[i]});
-    out->x[i] = p.x, out->y[i] = p.y, out->valid[i] = p.valid;
+    out->x[i] = p.x;
+    out->y[i] = p.y;
+    out->valid[i] = p.valid;
     out->z[i] = p.valid > 0.0 ? out->z[i] : 0.0;
   }
 }

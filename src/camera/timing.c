@@ -69,7 +69,8 @@ vlResult vl_camera_travel(const vlCamera *camera, const double open[16], const d
   vlCamera there = *camera, made = *camera;
   vlResult status = vl_camera_pose_matrix(open, &made, error);
   if (status == VL_OK) status = vl_camera_pose_matrix(close, &there, error);
-  made.pose_times[0] = times[0], made.pose_times[1] = times[1];
+  made.pose_times[0] = times[0];
+  made.pose_times[1] = times[1];
   if (status == VL_OK) status = go_to(there.world_from_camera, &made, error);
   if (status == VL_OK) *result = made;
   return status;
@@ -120,7 +121,8 @@ void vl_camera_compile_time(const vlCamera *camera, vlCameraTime *t) {
   t->pose_rate = span > 0.0 ? 1.0 / span : 0.0;
   t->points = camera->shutter_points;
   for (uint32_t i = 0; i < t->points; i++) {
-    t->at[i] = camera->shutter_at[i], t->value[i] = camera->shutter_value[i];
+    t->at[i] = camera->shutter_at[i];
+    t->value[i] = camera->shutter_value[i];
     if (i) t->area += 0.5 * (t->at[i] - t->at[i - 1]) * (t->value[i] + t->value[i - 1]);
     t->share[i] = t->area;
   }

@@ -36,8 +36,12 @@ static void move_chunk(const vlCameraTime *time, uint32_t count, const double *w
     Moved w = move_ray(vl_motion_between(&t->motion, f), (double)ox[i], (double)oy[i], (double)oz[i], (double)dx[i],
                        (double)dy[i], (double)dz[i]);
     double inverse = 1.0 / w.length;
-    ox[i] = (float)w.ox, oy[i] = (float)w.oy, oz[i] = (float)w.oz;
-    dx[i] = (float)(w.dx * inverse), dy[i] = (float)(w.dy * inverse), dz[i] = (float)(w.dz * inverse);
+    ox[i] = (float)w.ox;
+    oy[i] = (float)w.oy;
+    oz[i] = (float)w.oz;
+    dx[i] = (float)(w.dx * inverse);
+    dy[i] = (float)(w.dy * inverse);
+    dz[i] = (float)(w.dz * inverse);
     t_min[i] = (float)((double)t_min[i] * w.length);
     t_max[i] = (float)((double)t_max[i] * w.length);
   }

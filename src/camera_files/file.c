@@ -81,7 +81,10 @@ static vlResult read_source(vlCameraFile *file, vlCameraDialect dialect, const S
   if (sink) file->ordinal = &i;
   for (; i < frames && result == VL_OK; i++) {
     if (sink) memset(record, 0, sizeof *record);
-    if (sink) record->camera = vl_default_camera_def(1, 1), record->frames = 1;
+    if (sink) {
+      record->camera = vl_default_camera_def(1, 1);
+      record->frames = 1;
+    }
     record->dialect = dialect;
     result = source->tree ? format->read(file, source->tree, record)
                           : format->read_text(file, source->text, source->size, record);

@@ -79,7 +79,10 @@ static json_t *film_tree(const vlFilmShape *shape) {
          put(film, "space", json_string(spaces[def->space])) &&
          put(film, "sensor", json_string(def->sensor ? def->sensor : vl_sensor_name(0))) &&
          put(film, "sequence", json_integer(shape->sequence)) && put_own(film, &shape->own);
-  if (!good) json_decref(film), film = NULL;
+  if (!good) {
+    json_decref(film);
+    film = NULL;
+  }
   return film;
 }
 
@@ -111,7 +114,10 @@ static bool count_of(const json_t *value, uint32_t *count) {
 
 static bool number_of(const json_t *value, double *result) {
   const char *text = json_string_value(value);
-  if (text && strcmp(text, "infinity") == 0) return *result = INFINITY, true;
+  if (text && strcmp(text, "infinity") == 0) {
+    *result = INFINITY;
+    return true;
+  }
   *result = json_number_value(value);
   return json_is_number(value);
 }
@@ -141,11 +147,20 @@ static bool take_names(const json_t *film, vlFilmDef *def) {
   const vlKindFamily *family = vl_kind_family_find("filters");
   bool found[3] = {false, false, false};
   for (uint32_t i = 0; filter && i < family->kind_count; i++)
-    if (strcmp(family->rows[i]->name, filter) == 0) def->filter.kind = (vlPixelFilterKind)i, found[0] = true;
+    if (strcmp(family->rows[i]->name, filter) == 0) {
+      def->filter.kind = (vlPixelFilterKind)i;
+      found[0] = true;
+    }
   for (int i = 0; space && i < SPACES; i++)
-    if (strcmp(spaces[i], space) == 0) def->space = (vlColorSpace)i, found[1] = true;
+    if (strcmp(spaces[i], space) == 0) {
+      def->space = (vlColorSpace)i;
+      found[1] = true;
+    }
   for (uint32_t i = 0; sensor && (name = vl_sensor_name(i)); i++)
-    if (strcmp(name, sensor) == 0) def->sensor = i ? name : NULL, found[2] = true;
+    if (strcmp(name, sensor) == 0) {
+      def->sensor = i ? name : NULL;
+      found[2] = true;
+    }
   return found[0] && found[1] && found[2];
 }
 

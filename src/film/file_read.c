@@ -28,8 +28,10 @@ static void add_block(Extent *e, const vlFilmReader *r) {
                   .least = samples};
   e->joined = e->joined && h->range_count == 1 && r->ranges[0].first == e->range.first;
   e->even = e->even && e->joined && r->ranges[0].end == e->range.end;
-  e->crop[0] = h->x0 < e->crop[0] ? h->x0 : e->crop[0], e->crop[1] = h->y0 < e->crop[1] ? h->y0 : e->crop[1];
-  e->crop[2] = h->x1 > e->crop[2] ? h->x1 : e->crop[2], e->crop[3] = h->y1 > e->crop[3] ? h->y1 : e->crop[3];
+  e->crop[0] = h->x0 < e->crop[0] ? h->x0 : e->crop[0];
+  e->crop[1] = h->y0 < e->crop[1] ? h->y0 : e->crop[1];
+  e->crop[2] = h->x1 > e->crop[2] ? h->x1 : e->crop[2];
+  e->crop[3] = h->y1 > e->crop[3] ? h->y1 : e->crop[3];
   e->least = samples < e->least ? samples : e->least;
   e->pixels += (uint64_t)(h->x1 - h->x0) * (h->y1 - h->y0);
 }
@@ -43,10 +45,14 @@ static vlResult find_extent(vlFilmReader *r, bool partial, Extent *e, vlError *e
     if (result != VL_OK) return result;
     if (!last) add_block(e, r);
   }
-  r->next = 0, r->at = at;
+  r->next = 0;
+  r->at = at;
   if (!e->any) return vl_fail(error, VL_ERROR_SCENE, "%s: the film has no samples", r->path);
   uint64_t area = (uint64_t)(e->crop[2] - e->crop[0]) * (e->crop[3] - e->crop[1]);
-  if (e->pixels != area) e->even = e->joined = false, e->least = 0;
+  if (e->pixels != area) {
+    e->even = e->joined = false;
+    e->least = 0;
+  }
   if (partial || e->joined) return VL_OK;
   return vl_fail(error, VL_ERROR_SCENE,
                  "%s: its pixels do not all begin with the same samples; \"velo film info --missing\" lists what is "

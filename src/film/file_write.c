@@ -100,7 +100,8 @@ static void write_block(void *user, uint32_t block, uint32_t worker) {
       atomic_store(&run->failed_errno, errno);
       return;
     }
-    from += n, at += (uint64_t)n;
+    from += n;
+    at += (uint64_t)n;
   }
 }
 
@@ -120,7 +121,10 @@ static vlResult write_blocks(vlFilmWriter *writer, Run *run, uint64_t at, vlErro
     at += head_of(run->film, place, samples_of(run->film, place), &head);
   }
   if (result == VL_OK && writer->file.in_memory && !vl_file_reserve(&writer->file, at)) result = vl_fail_memory(error);
-  if (writer->file.in_memory) run->memory = writer->file.memory, writer->file.memory_size = at;
+  if (writer->file.in_memory) {
+    run->memory = writer->file.memory;
+    writer->file.memory_size = at;
+  }
   if (result == VL_OK) vl_parallel_for(writer->context, count, write_block, run);
   vl_free(writer->context, run->offsets);
   vl_free(writer->context, run->buffers);

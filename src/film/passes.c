@@ -152,12 +152,15 @@ vlResult vl_film_begin_pass(vlFilm *film) {
       return VL_ERROR_MEMORY;
   if (!film->stamp || !film->back || !vl_film_spectrum_begin(film)) return VL_ERROR_MEMORY;
   film->in_pass = true;
-  film->part = vl_first_part(film->end), film->pass_end = film->end, film->part_moves = false;
+  film->part = vl_first_part(film->end);
+  film->pass_end = film->end;
+  film->part_moves = false;
   return VL_OK;
 }
 
 void vl_film_set_pass_samples(vlFilm *film, uint32_t first, uint32_t end) {
-  film->part = vl_first_part(end), film->part_moves = film->part != vl_first_part(first);
+  film->part = vl_first_part(end);
+  film->part_moves = film->part != vl_first_part(first);
   film->pass_end = end > film->end ? end : film->end;
 }
 

@@ -53,7 +53,9 @@ static uint32_t list_samples(const vlRenderRun *r, vlRenderWorker *w, uint32_t b
       uint32_t x = x0 + morton_half(m), y = y0 + morton_half(m >> 1);
       if (x < r->crop[0] || y < r->crop[1] || x >= r->crop[2] || y >= r->crop[3]) continue;
       if (some && !vl_adaptive_has(&r->adaptive, x, y)) continue;
-      px[n] = (int32_t)x, py[n] = (int32_t)y, index[n] = s;
+      px[n] = (int32_t)x;
+      py[n] = (int32_t)y;
+      index[n] = s;
       n++;
     }
   return n;
@@ -126,7 +128,10 @@ static void trace_batch(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
   if (!camera->plain) clear_invalid(n, rays.valid, batch.alpha, batch.radiance);
   if (vl_film_def(r->film)->buckets && !w->recorder) {
     vlFilmSpectra spectra = {.n = n, .px = rows.px, .py = rows.py, .weight = rows.weight};
-    for (int c = 0; c < 4; c++) spectra.radiance[c] = batch.radiance[c], spectra.lambda[c] = batch.lambda[c];
+    for (int c = 0; c < 4; c++) {
+      spectra.radiance[c] = batch.radiance[c];
+      spectra.lambda[c] = batch.lambda[c];
+    }
     vl_film_add_spectra(r->film, &spectra);
   }
   vl_film_expose(r->film, r->trace.isa, &expose, row(w, RED), row(w, GREEN), row(w, BLUE));
@@ -147,7 +152,10 @@ static void add_to_film(const vlRenderRun *r, vlRenderWorker *w, uint32_t n) {
                        rows.weight, rows.index};
   int32_t bad_x = 0, bad_y = 0;
   uint32_t bad = vl_film_add(r->film, &add, &bad_x, &bad_y);
-  if (bad && !w->not_finite) w->bad_x = bad_x, w->bad_y = bad_y;
+  if (bad && !w->not_finite) {
+    w->bad_x = bad_x;
+    w->bad_y = bad_y;
+  }
   w->not_finite += bad;
 }
 
@@ -190,7 +198,10 @@ static void store_batch(const vlRenderRun *r, vlRenderWorker *w, const vlSharedB
     float most = fmaxf(fabsf(color[0]), fmaxf(fabsf(color[1]), fabsf(color[2]))), sum = color[0] + color[1] + color[2];
     bool good = most < 0x1p39f && sum == sum && color[3] - color[3] == 0.0f;
     bool own = x >= 0 && y >= 0 && (uint32_t)x < b->width && (uint32_t)y < b->height;
-    if (!good && own && w->not_finite++ == 0) w->bad_x = rows.px[i], w->bad_y = rows.py[i];
+    if (!good && own && w->not_finite++ == 0) {
+      w->bad_x = rows.px[i];
+      w->bad_y = rows.py[i];
+    }
     uint32_t at = (uint32_t)(y + (int32_t)by) * stride + (uint32_t)(x + (int32_t)bx);
     vl_shared_store(&r->reconstruction, &w->grids[rows.index[i] - first], at, color, &taps, lane, good);
   }
@@ -232,7 +243,8 @@ static uint32_t skip_useless(const vlRenderRun *r, vlRenderWorker *w, const vlSh
     for (uint32_t x = 0; x < width; x++) {
       if (x == bx && y >= by && y < by + b->height) x += b->width; /* the block's own pixels */
       if (x == width) break;
-      rows.px[n] = b->x0 + (int32_t)x - (int32_t)bx, rows.py[n] = b->y0 + (int32_t)y - (int32_t)by;
+      rows.px[n] = b->x0 + (int32_t)x - (int32_t)bx;
+      rows.py[n] = b->y0 + (int32_t)y - (int32_t)by;
       rows.index[n++] = sample;
       if (n < VL_BATCH) continue;
       skipped += skip_listed(r, w, b, grid, n);
@@ -259,12 +271,16 @@ static bool trace_shared(vlRenderRun *r, vlRenderWorker *w, const vlSharedBlock 
       uint32_t x = tile % across * VL_RENDER_TILE + morton_half(in);
       uint32_t y = tile / across * VL_RENDER_TILE + morton_half(in >> 1);
       if (x >= width || y >= height || w->grids[s - first].skipped[y * width + x]) continue;
-      rows.px[n] = b->x0 - bx + (int32_t)x, rows.py[n] = b->y0 - by + (int32_t)y, rows.index[n] = s;
-      n++, filled++;
+      rows.px[n] = b->x0 - bx + (int32_t)x;
+      rows.py[n] = b->y0 - by + (int32_t)y;
+      rows.index[n] = s;
+      n++;
+      filled++;
       if (filled < (uint64_t)total * (done + 1) / batches) continue;
       trace_batch(r, w, n);
       store_batch(r, w, b, first, n);
-      done++, n = 0;
+      done++;
+      n = 0;
       if (done < batches && ask_between(r, state)) return false;
     }
   return true;
@@ -287,7 +303,10 @@ static void add_rows(const vlRenderRun *r, vlRenderWorker *w, const vlSharedBloc
         if (!w->recorder) vl_film_miss(r->film, (int32_t)px, (int32_t)py);
         continue;
       }
-      rows.px[n] = (int32_t)px, rows.py[n] = (int32_t)py, rows.index[n] = sample, rows.weight[n] = rows.weight[i];
+      rows.px[n] = (int32_t)px;
+      rows.py[n] = (int32_t)py;
+      rows.index[n] = sample;
+      rows.weight[n] = rows.weight[i];
       for (int c = 0; c < 4; c++) color[c][n] = color[c][i];
       n++;
     }

@@ -18,8 +18,10 @@ void vl_channel_ends(const vlChannelPass *p, vlChannelWorker *w, uint32_t n, con
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t k = i < n ? i : n - 1;
     rows[HALF][i] = 0.5f;
-    rows[FILM_X][i] = ends->film_x[k], rows[FILM_Y][i] = ends->film_y[k];
-    px[i] = (int32_t)ends->x[k], py[i] = (int32_t)ends->y[k];
+    rows[FILM_X][i] = ends->film_x[k];
+    rows[FILM_Y][i] = ends->film_y[k];
+    px[i] = (int32_t)ends->x[k];
+    py[i] = (int32_t)ends->y[k];
   }
   vlCameraSamples samples = {.film_x = rows[FILM_X],
                              .film_y = rows[FILM_Y],
@@ -50,24 +52,34 @@ static uint32_t list_pixels(const vlChannelPass *p, vlChannelWorker *w, uint32_t
   uint8_t valid[VL_TILE_PIXELS];
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
-    film[count][0] = (double)x + (double)w->film_x[k], film[count][1] = (double)y + (double)w->film_y[k];
-    w->x[count] = x, w->y[count] = y;
-    w->lane_x[count] = w->film_x[k], w->lane_y[count] = w->film_y[k];
+    film[count][0] = (double)x + (double)w->film_x[k];
+    film[count][1] = (double)y + (double)w->film_y[k];
+    w->x[count] = x;
+    w->y[count] = y;
+    w->lane_x[count] = w->film_x[k];
+    w->lane_y[count] = w->film_y[k];
     count++;
   }
   vl_camera_unproject_batch(&p->camera, count, film[0], o[0], d[0], valid);
   for (uint32_t k = 0; k < count; k++) {
     if (!valid[k]) continue;
-    for (int i = 0; i < 3; i++) b->o[i][n] = o[k][i], b->d[i][n] = d[k][i];
-    w->x[n] = w->x[k], w->y[n] = w->y[k];
-    w->lane_x[n] = w->lane_x[k], w->lane_y[n] = w->lane_y[k];
+    for (int i = 0; i < 3; i++) {
+      b->o[i][n] = o[k][i];
+      b->d[i][n] = d[k][i];
+    }
+    w->x[n] = w->x[k];
+    w->y[n] = w->y[k];
+    w->lane_x[n] = w->lane_x[k];
+    w->lane_y[n] = w->lane_y[k];
     n++;
   }
   return b->n = n;
 }
 
 static void put3(float *to, const float rows[3][VL_ROW_SIZE], uint32_t i) {
-  to[0] = rows[0][i], to[1] = rows[1][i], to[2] = rows[2][i];
+  to[0] = rows[0][i];
+  to[1] = rows[1][i];
+  to[2] = rows[2][i];
 }
 
 static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
@@ -87,7 +99,8 @@ static void put_floats(const vlChannelPass *p, const vlGroundTruthBatch *b, uint
   if (vl_channel_wanted(p, VL_CHANNEL_ALBEDO)) put3(vl_channel_floats(p, at, VL_INDEX_ALBEDO), b->albedo, i);
   if (!vl_channel_wanted(p, VL_CHANNEL_UV)) return;
   float *uv = vl_channel_floats(p, at, VL_INDEX_UV);
-  uv[0] = b->uv[0][i], uv[1] = b->uv[1][i];
+  uv[0] = b->uv[0][i];
+  uv[1] = b->uv[1][i];
 }
 
 static void put_ids(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, size_t at) {
@@ -125,7 +138,8 @@ static void put_film(const vlChannelPass *p, const vlChannelWorker *w, uint32_t 
   for (uint32_t k = 0; k < VL_TILE_PIXELS; k++) {
     if (!vl_channel_pixel(p, tile, k, &x, &y)) continue;
     float *to = vl_channel_floats(p, vl_channel_at(p, x, y), VL_INDEX_FILM);
-    to[0] = w->film_x[k], to[1] = w->film_y[k];
+    to[0] = w->film_x[k];
+    to[1] = w->film_y[k];
   }
 }
 

@@ -299,7 +299,8 @@ void vl_channel_prepare(vlChannelPass *p, const vlCamera *camera) {
   p->features.shading = p->features.albedo = p->features.coarse = true;
   vl_ground_truth_plan_albedo(p->world, p->def->space, &p->features);
   const uint32_t *crop = p->def->crop;
-  p->tile_x0 = crop[0] / VL_CHANNEL_TILE, p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
+  p->tile_x0 = crop[0] / VL_CHANNEL_TILE;
+  p->tile_y0 = crop[1] / VL_CHANNEL_TILE;
   p->tiles_x = (crop[2] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_x0;
   p->tiles = p->tiles_x * ((crop[3] + VL_CHANNEL_TILE - 1) / VL_CHANNEL_TILE - p->tile_y0);
   prepare_counting(p, camera, isa);

@@ -47,7 +47,8 @@ void vl_film_rays_init(vlFilmRays *f, const vlCamera *camera, const vlFilterTabl
   f->lens = camera->lens_radius > 0 || (camera->own && camera->own->lens);
   f->middle = f->moves = f->centred = f->uniform = false;
   f->shared = -1.0f;
-  f->groups = 0, f->turn = 0.0f;
+  f->groups = 0;
+  f->turn = 0.0f;
   f->spread = 1.0f;
 }
 
@@ -58,18 +59,29 @@ void vl_film_rays_clock(vlFilmRays *f, const vlWorld *world) {
 
 void vl_film_rays_points(const vlFilmRays *f, uint32_t n, const vlFilmRayRows *r) {
   const vlSamplerKernels *k = f->sampler_kernels;
-  for (uint32_t i = n; i < VL_PAD(n); i++)
-    r->px[i] = r->px[n - 1], r->py[i] = r->py[n - 1], r->index[i] = r->index[n - 1];
+  for (uint32_t i = n; i < VL_PAD(n); i++) {
+    r->px[i] = r->px[n - 1];
+    r->py[i] = r->py[n - 1];
+    r->index[i] = r->index[n - 1];
+  }
   k->get_2d(&f->sampler, n, r->px, r->py, r->index, VL_DIM_FILM, r->film_u, r->film_v);
   if (f->uniform) {
-    for (uint32_t i = 0; i < VL_PAD(n); i++)
-      r->film_x[i] = r->film_u[i], r->film_y[i] = r->film_v[i], r->weight[i] = 1.0f;
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      r->film_x[i] = r->film_u[i];
+      r->film_y[i] = r->film_v[i];
+      r->weight[i] = 1.0f;
+    }
   } else {
     f->filter_kernels->sample(f->filter, n, r->film_u, r->film_v, r->film_x, r->film_y, r->weight);
-    for (uint32_t i = 0; i < VL_PAD(n); i++)
-      r->film_x[i] = r->film_x[i] * f->spread + 0.5f, r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
+    for (uint32_t i = 0; i < VL_PAD(n); i++) {
+      r->film_x[i] = r->film_x[i] * f->spread + 0.5f;
+      r->film_y[i] = r->film_y[i] * f->spread + 0.5f;
+    }
   }
-  for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) r->film_x[i] = r->film_y[i] = 0.5f, r->weight[i] = 1.0f;
+  for (uint32_t i = 0; f->centred && i < VL_PAD(n); i++) {
+    r->film_x[i] = r->film_y[i] = 0.5f;
+    r->weight[i] = 1.0f;
+  }
 }
 
 /* Multiples of the golden ratio, modulo 1, are evenly distributed for any number of groups. */

@@ -76,7 +76,8 @@ static bool image_range(vlCheck *c, const vlImage *image, float range[2]) {
   if (n == 2 || n == 4) n--; /* alpha is not a colour */
   float *row = n ? vl_alloc_array(c->context, (size_t)image->width * n, sizeof *row) : NULL;
   if (!row) return false;
-  range[0] = INFINITY, range[1] = -INFINITY;
+  range[0] = INFINITY;
+  range[1] = -INFINITY;
   for (uint32_t y = 0; y < image->height; y++) {
     vl_image_row_to_float(image, y, channel, n, row);
     for (size_t i = 0; i < (size_t)image->width * n; i++) {
@@ -106,7 +107,10 @@ static float image_max(vlCheck *c, const vlTextureDef *t) {
       vl_check_add(c, VL_FINDING_BROKEN_FILE, VL_SEVERITY_ERROR, t->source, "%s", error.message);
   }
   if (image || t->image)
-    if (!image_range(c, image ? image : t->image, range)) range[0] = 0, range[1] = 1;
+    if (!image_range(c, image ? image : t->image, range)) {
+      range[0] = 0;
+      range[1] = 1;
+    }
   vl_image_destroy(image);
   return (t->invert ? 1.0f - t->scale * range[0] : t->scale * range[1]) *
          tint; /* as in pbrt, values are first scaled, then inverted */

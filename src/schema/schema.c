@@ -124,11 +124,11 @@ static bool spectrum_number(const vlSpectrum *s, double *number) {
 bool vl_parameter_number(const vlParameter *p, const void *def, double *number) {
   const void *at = (const char *)def + p->offset;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: return *number = *(const bool *)at, true;
-    case VL_PARAMETER_COUNT: return *number = *(const uint32_t *)at, true;
-    case VL_PARAMETER_FLOAT: return *number = (double)*(const float *)at, true;
-    case VL_PARAMETER_DOUBLE: return *number = *(const double *)at, true;
-    case VL_PARAMETER_CHOICE: return *number = *(const int *)at, true;
+    case VL_PARAMETER_BOOL: *number = *(const bool *)at; return true;
+    case VL_PARAMETER_COUNT: *number = *(const uint32_t *)at; return true;
+    case VL_PARAMETER_FLOAT: *number = (double)*(const float *)at; return true;
+    case VL_PARAMETER_DOUBLE: *number = *(const double *)at; return true;
+    case VL_PARAMETER_CHOICE: *number = *(const int *)at; return true;
     case VL_PARAMETER_SPECTRUM: return spectrum_number(at, number);
     case VL_PARAMETER_EITHER_INPUT:
     case VL_PARAMETER_FLOAT_INPUT:

@@ -35,9 +35,11 @@ static int open_scene(Verify *v, const Command *command, const Arguments *argume
   vlContextDef def = vl_default_context_def();
   vlError error = {0};
   vlWorld *world = NULL;
-  def.log = logged, def.log_user = v;
+  def.log = logged;
+  def.log_user = v;
   if (o[RENDER_THREADS].given) def.threads = (uint32_t)o[RENDER_THREADS].integer;
-  def.sandbox = arguments->folders, def.sandbox_count = (uint32_t)arguments->folder_count;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
   Confine confine = {.read_count = 0};
   confine_read(&confine, v->path);
   if (o[RENDER_CAMERA].given) confine_read_folder(&confine, o[RENDER_CAMERA].text);

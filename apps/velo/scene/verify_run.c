@@ -195,8 +195,10 @@ vlResult verify_prepare(Verify *v, vlError *error) {
   vlWorld *world = NULL;
   vlImage *floats = NULL, *ids = NULL;
   double centre[3], distance;
-  v->columns = (v->width + BLOCK / 2) / BLOCK, v->rows = (v->height + BLOCK / 2) / BLOCK;
-  v->columns += v->columns == 0, v->rows += v->rows == 0;
+  v->columns = (v->width + BLOCK / 2) / BLOCK;
+  v->rows = (v->height + BLOCK / 2) / BLOCK;
+  v->columns += v->columns == 0;
+  v->rows += v->rows == 0;
   vlChannelsDef def = vl_default_channels_def(v->width, v->height);
   def.channels = VL_CHANNEL_DISTANCE | VL_CHANNEL_P | VL_CHANNEL_ID_MATERIAL;
   vlResult result = vl_world_build(v->scene, &v->job.defs->build, &world, error);
@@ -215,7 +217,8 @@ vlResult verify_prepare(Verify *v, vlError *error) {
 /* ---- renders ----------------------------------------------------------------------------------------------------- */
 
 static bool on_progress(void *user, const vlProgress *now) {
-  (void)user, (void)now;
+  (void)user;
+  (void)now;
   return !signals_pending();
 }
 
@@ -225,7 +228,9 @@ static vlFilmDef film_of(const Verify *v) {
   const vlFilmDef *own = &v->job.defs->film;
   vlFilmDef film = vl_default_film_def(v->width, v->height);
   film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
-  film.space = own->space, film.white_balance = own->white_balance, film.sensor = own->sensor;
+  film.space = own->space;
+  film.white_balance = own->white_balance;
+  film.sensor = own->sensor;
   return film;
 }
 

@@ -18,7 +18,10 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
   vlError error;
   vl_error_clear(&error);
   def.dialect = VL_CAMERA_DIALECT_GLTF;
-  if (drop) def.drop = beyond, def.drop_count = sizeof beyond / sizeof *beyond;
+  if (drop) {
+    def.drop = beyond;
+    def.drop_count = sizeof beyond / sizeof *beyond;
+  }
   return vl_camera_write(x->context, path, &def, record, &error);
 }
 
@@ -53,7 +56,10 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   if (mirror) {
     vlCamera camera;
     vlResult r = vl_camera_make(&defs->camera, &camera, NULL, x->error);
-    if (r != VL_OK) return x->result = r, false;
+    if (r != VL_OK) {
+      x->result = r;
+      return false;
+    }
     record.camera.has_matrix = true;
     memcpy(record.camera.world_from_camera, camera.world_from_camera, sizeof camera.world_from_camera);
     for (int i = 8; i < 12; i++) record.camera.world_from_camera[i] *= -1;
@@ -61,7 +67,8 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   if (record.camera.has_matrix) square_up(record.camera.world_from_camera);
   if (record.camera.own) {
     vl_export_lose(x, "the camera's own functions: a perspective camera in its place");
-    record.camera.own = NULL, record.camera.projection = VL_PROJECTION_PERSPECTIVE;
+    record.camera.own = NULL;
+    record.camera.projection = VL_PROJECTION_PERSPECTIVE;
   }
   char name[64], path[4096];
   snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
@@ -98,7 +105,10 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
                          l = 0;
   vl_mat4_point(&m, a, from);
   vl_mat4_point(&m, b, to);
-  for (int i = 0; i < 3; i++) z[i] = from[i] - to[i], l += z[i] * z[i];
+  for (int i = 0; i < 3; i++) {
+    z[i] = from[i] - to[i];
+    l += z[i] * z[i];
+  }
   for (int i = 0; i < 3; i++) z[i] = l > 0 ? z[i] / sqrt(l) : i == 2;
   json_t *node = json_pack("{s:{s:{s:I}}}", "extensions", "KHR_lights_punctual", "light", index);
   if (d->kind != VL_LIGHT_DISTANT)
@@ -106,7 +116,10 @@ static json_t *light_node(const vlLightDef *d, json_int_t index) {
   if (d->kind == VL_LIGHT_POINT) return node;
   /* the shortest rotation from +z to z: quaternion (-z1, z0, 0, 1 + z2), normalised */
   double q[4] = {-z[1], z[0], 0, 1 + z[2]}, n = sqrt(q[0] * q[0] + q[1] * q[1] + q[3] * q[3]);
-  if (n < 1e-6) q[0] = n = 1, q[1] = q[3] = 0;
+  if (n < 1e-6) {
+    q[0] = n = 1;
+    q[1] = q[3] = 0;
+  }
   json_object_set_new(node, "rotation", json_pack("[f,f,f,f]", q[0] / n, q[1] / n, 0.0, q[3] / n));
   return node;
 }

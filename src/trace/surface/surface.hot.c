@@ -42,11 +42,15 @@ static inline void gather_triangle(const vlWorld *world, const vlHits *hits, uin
   for (int k = 0; k < 3; k++) {
     const float *x = s->positions + 3 * (size_t)f[k];
     vlVec3 moved = move_corner(q->from_group, x);
-    c->p[3 * k][i] = moved.x, c->p[3 * k + 1][i] = moved.y, c->p[3 * k + 2][i] = moved.z;
+    c->p[3 * k][i] = moved.x;
+    c->p[3 * k + 1][i] = moved.y;
+    c->p[3 * k + 2][i] = moved.z;
     c->error[i] = vl_max(c->error[i], placing_error(q, x));
     if (s->normals) {
       vlVec3 n = move_normal(q->to_group, s->normals + 3 * (size_t)f[k]);
-      c->n[3 * k][i] = n.x, c->n[3 * k + 1][i] = n.y, c->n[3 * k + 2][i] = n.z;
+      c->n[3 * k][i] = n.x;
+      c->n[3 * k + 1][i] = n.y;
+      c->n[3 * k + 2][i] = n.z;
     }
   }
 }
@@ -117,8 +121,12 @@ static void gather_moving(const vlWorld *world, const vlHits *hits, float time, 
   const vlWorldInstance *q = hits->instance[i] == VL_NONE ? NULL : &world->instances.items[hits->instance[i]];
   MovedTriangle r = move_triangle(s, q, hits->prim[i], time);
   for (int k = 0; k < 3; k++) {
-    c->p[3 * k][i] = r.p[k].x, c->p[3 * k + 1][i] = r.p[k].y, c->p[3 * k + 2][i] = r.p[k].z;
-    c->n[3 * k][i] = r.n[k].x, c->n[3 * k + 1][i] = r.n[k].y, c->n[3 * k + 2][i] = r.n[k].z;
+    c->p[3 * k][i] = r.p[k].x;
+    c->p[3 * k + 1][i] = r.p[k].y;
+    c->p[3 * k + 2][i] = r.p[k].z;
+    c->n[3 * k][i] = r.n[k].x;
+    c->n[3 * k + 1][i] = r.n[k].y;
+    c->n[3 * k + 2][i] = r.n[k].z;
   }
   c->error[i] = r.error;
   c->flip[i] = s->flip != r.mirrored ? -1.0f : 1.0f;
@@ -156,10 +164,14 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float b0 = vl_dot(d, vl_cross(b, c)), b1 = vl_dot(d, vl_cross(c, a)), b2 = vl_dot(d, vl_cross(a, b));
   float sum = b0 + b1 + b2;
   float sign = sum < 0.0f ? -1.0f : 1.0f;
-  b0 = vl_max(b0 * sign, 0.0f), b1 = vl_max(b1 * sign, 0.0f), b2 = vl_max(b2 * sign, 0.0f);
+  b0 = vl_max(b0 * sign, 0.0f);
+  b1 = vl_max(b1 * sign, 0.0f);
+  b2 = vl_max(b2 * sign, 0.0f);
   sum = b0 + b1 + b2;
   float inv = sum > 0.0f ? 1.0f / sum : 0.0f;
-  b0 = sum > 0.0f ? b0 * inv : 1.0f, b1 = b1 * inv, b2 = b2 * inv;
+  b0 = sum > 0.0f ? b0 * inv : 1.0f;
+  b1 = b1 * inv;
+  b2 = b2 * inv;
   Triangle r;
   r.p = vl_add(vl_add(vl_mul(p0, b0), vl_mul(p1, b1)), vl_mul(p2, b2));
   vlVec3 e02 = vl_sub(p0, p2), e12 = vl_sub(p1, p2);
@@ -212,14 +224,28 @@ static float mean_curvature(const vlSurfacePoint *q) {
 }
 
 static void store_point(vlSurface *out, uint32_t i, const vlSurfacePoint *q, float t) {
-  out->px[i] = (float)q->p[0], out->py[i] = (float)q->p[1], out->pz[i] = (float)q->p[2];
-  out->gx[i] = (float)q->n[0], out->gy[i] = (float)q->n[1], out->gz[i] = (float)q->n[2];
-  out->nx[i] = (float)q->ns[0], out->ny[i] = (float)q->ns[1], out->nz[i] = (float)q->ns[2];
-  out->ux[i] = (float)q->dpdu[0], out->uy[i] = (float)q->dpdu[1], out->uz[i] = (float)q->dpdu[2];
-  out->vx[i] = (float)q->dpdv[0], out->vy[i] = (float)q->dpdv[1], out->vz[i] = (float)q->dpdv[2];
-  for (int k = 0; k < 3; k++) out->dn[k][i] = (float)q->dndu[k], out->dn[3 + k][i] = (float)q->dndv[k];
+  out->px[i] = (float)q->p[0];
+  out->py[i] = (float)q->p[1];
+  out->pz[i] = (float)q->p[2];
+  out->gx[i] = (float)q->n[0];
+  out->gy[i] = (float)q->n[1];
+  out->gz[i] = (float)q->n[2];
+  out->nx[i] = (float)q->ns[0];
+  out->ny[i] = (float)q->ns[1];
+  out->nz[i] = (float)q->ns[2];
+  out->ux[i] = (float)q->dpdu[0];
+  out->uy[i] = (float)q->dpdu[1];
+  out->uz[i] = (float)q->dpdu[2];
+  out->vx[i] = (float)q->dpdv[0];
+  out->vy[i] = (float)q->dpdv[1];
+  out->vz[i] = (float)q->dpdv[2];
+  for (int k = 0; k < 3; k++) {
+    out->dn[k][i] = (float)q->dndu[k];
+    out->dn[3 + k][i] = (float)q->dndv[k];
+  }
   out->curvature[i] = mean_curvature(q);
-  out->u[i] = q->uv[0], out->v[i] = q->uv[1];
+  out->u[i] = q->uv[0];
+  out->v[i] = q->uv[1];
   out->t[i] = t;
   out->offset[i] = vl_point_offset(q);
   float area = vl_length(vl_cross(vl_lane3(out->ux, out->uy, out->uz, i), vl_lane3(out->vx, out->vy, out->vz, i)));
@@ -267,7 +293,10 @@ static vlSurfacePoint other_point(const vlWorld *world, float time, vlVec3 o, vl
   double ln = __builtin_sqrt(r.n[0] * r.n[0] + r.n[1] * r.n[1] + r.n[2] * r.n[2]);
   double ls = __builtin_sqrt(r.ns[0] * r.ns[0] + r.ns[1] * r.ns[1] + r.ns[2] * r.ns[2]);
   r.off /= ln > 0 ? ln : 1; /* planes perpendicular to n that are off apart are off / ln apart when transformed */
-  for (int i = 0; i < 3; i++) r.n[i] /= ln > 0 ? ln : 1, r.ns[i] /= ls > 0 ? ls : 1;
+  for (int i = 0; i < 3; i++) {
+    r.n[i] /= ln > 0 ? ln : 1;
+    r.ns[i] /= ls > 0 ? ls : 1;
+  }
   vl_normal_derivative(r.ns, ls, r.dndu);
   vl_normal_derivative(r.ns, ls, r.dndv);
   return r;
@@ -303,8 +332,12 @@ static void apply_tangents(const vlWorld *world, const vlHits *hits, float time,
   if (!(vl_length2(t) > 0.0f)) return;
   vlVec3 v = vl_cross(vl_vec3(out->nx[i], out->ny[i], out->nz[i]), t);
   if (s->tangent_signs && (s->tangent_signs[f[0]] < 0.0f) != mirrored) v = vl_neg(v);
-  out->ux[i] = t.x, out->uy[i] = t.y, out->uz[i] = t.z;
-  out->vx[i] = v.x, out->vy[i] = v.y, out->vz[i] = v.z;
+  out->ux[i] = t.x;
+  out->uy[i] = t.y;
+  out->uz[i] = t.z;
+  out->vx[i] = v.x;
+  out->vy[i] = v.y;
+  out->vz[i] = v.z;
 }
 
 void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, const vlHits *hits, vlCorners *c,
@@ -330,12 +363,23 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
                        vl_vec3(c->p[6][i], c->p[7][i], c->p[8][i]), vl_vec3(c->n[0][i], c->n[1][i], c->n[2][i]),
                        vl_vec3(c->n[3][i], c->n[4][i], c->n[5][i]), vl_vec3(c->n[6][i], c->n[7][i], c->n[8][i]), uv,
                        c->error[i], c->flip[i]);
-    out->px[i] = r.p.x, out->py[i] = r.p.y, out->pz[i] = r.p.z;
-    out->gx[i] = r.g.x, out->gy[i] = r.g.y, out->gz[i] = r.g.z;
-    out->nx[i] = r.n.x, out->ny[i] = r.n.y, out->nz[i] = r.n.z;
-    out->ux[i] = r.u.x, out->uy[i] = r.u.y, out->uz[i] = r.u.z;
-    out->vx[i] = r.v.x, out->vy[i] = r.v.y, out->vz[i] = r.v.z;
-    out->u[i] = r.s, out->v[i] = r.t;
+    out->px[i] = r.p.x;
+    out->py[i] = r.p.y;
+    out->pz[i] = r.p.z;
+    out->gx[i] = r.g.x;
+    out->gy[i] = r.g.y;
+    out->gz[i] = r.g.z;
+    out->nx[i] = r.n.x;
+    out->ny[i] = r.n.y;
+    out->nz[i] = r.n.z;
+    out->ux[i] = r.u.x;
+    out->uy[i] = r.u.y;
+    out->uz[i] = r.u.z;
+    out->vx[i] = r.v.x;
+    out->vy[i] = r.v.y;
+    out->vz[i] = r.v.z;
+    out->u[i] = r.s;
+    out->v[i] = r.t;
     out->t[i] = r.dist;
     out->offset[i] = r.offset;
     out->uv_scale[i] = r.uv_scale;
@@ -395,7 +439,10 @@ static inline OneTriangle one_triangle(const vlWorld *world, float time, uint32_
   }
   if (world->moves && triangle_moves(world, shape, instance)) {
     MovedTriangle moving = move_triangle(s, q, prim, time);
-    for (int k = 0; k < 3; k++) r.p[k] = moving.p[k], r.n[k] = moving.n[k];
+    for (int k = 0; k < 3; k++) {
+      r.p[k] = moving.p[k];
+      r.n[k] = moving.n[k];
+    }
     r.error = moving.error;
   }
   r.uv = (TriangleUv){uv[0], uv[1], uv[2], uv[3], uv[4], uv[5]};
@@ -408,7 +455,8 @@ static vlPoint point_of(const vlSurfacePoint *q, float t) {
   r.p = vl_vec3((float)q->p[0], (float)q->p[1], (float)q->p[2]);
   r.g = vl_vec3((float)q->n[0], (float)q->n[1], (float)q->n[2]);
   r.n = vl_vec3((float)q->ns[0], (float)q->ns[1], (float)q->ns[2]);
-  r.u = q->uv[0], r.v = q->uv[1];
+  r.u = q->uv[0];
+  r.v = q->uv[1];
   r.t = t;
   r.offset = vl_point_offset(q);
   return r;
@@ -436,10 +484,15 @@ static uint32_t gather_crossings(const vlWorld *world, const vlRays *rays, const
     triangles++;
     OneTriangle c = one_triangle(world, time, x->shape[i], x->prim[i], x->instance[i]);
     for (int j = 0; j < 3; j++) {
-      x->corner[j][0][i] = c.p[j].x, x->corner[j][1][i] = c.p[j].y, x->corner[j][2][i] = c.p[j].z;
-      x->normal[j][0][i] = c.n[j].x, x->normal[j][1][i] = c.n[j].y, x->normal[j][2][i] = c.n[j].z;
+      x->corner[j][0][i] = c.p[j].x;
+      x->corner[j][1][i] = c.p[j].y;
+      x->corner[j][2][i] = c.p[j].z;
+      x->normal[j][0][i] = c.n[j].x;
+      x->normal[j][1][i] = c.n[j].y;
+      x->normal[j][2][i] = c.n[j].z;
     }
-    x->error[i] = c.error, x->flip[i] = c.flip;
+    x->error[i] = c.error;
+    x->flip[i] = c.flip;
   }
   return triangles;
 }
@@ -460,7 +513,9 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, co
                                   vl_vec3(x->normal[2][0][i], x->normal[2][1][i], x->normal[2][2][i]), no_uv,
                                   x->error[i], x->flip[i]);
       x->t[i] = r.dist;
-      x->gx[i] = r.g.x, x->gy[i] = r.g.y, x->gz[i] = r.g.z;
+      x->gx[i] = r.g.x;
+      x->gy[i] = r.g.y;
+      x->gz[i] = r.g.z;
       x->offset[i] = r.offset;
     }
   }
@@ -473,7 +528,9 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, co
         other_point(world, rays->time ? rays->time[i] : 0.0f, o, d, x->shape[i], x->prim[i], x->instance[i], &t);
     vlPoint at = point_of(&q, t);
     x->t[i] = at.t;
-    x->gx[i] = at.g.x, x->gy[i] = at.g.y, x->gz[i] = at.g.z;
+    x->gx[i] = at.g.x;
+    x->gy[i] = at.g.y;
+    x->gz[i] = at.g.z;
     x->offset[i] = at.offset;
   }
 }

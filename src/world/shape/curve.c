@@ -53,7 +53,8 @@ static double width_at(const vlWorldShape *s, uint32_t segment, double u) {
 /* Parameter range of a piece on its segment. */
 static void piece_range(const vlWorldShape *s, uint32_t prim, double *u0, double *u1) {
   uint32_t count = 1u << s->split, k = prim & (count - 1);
-  *u0 = (double)k / count, *u1 = (double)(k + 1) / count;
+  *u0 = (double)k / count;
+  *u1 = (double)(k + 1) / count;
 }
 
 static inline double mix(double a, double b, double t) {
@@ -109,11 +110,15 @@ typedef struct Search {
 static void ribbon_normal(const vlWorldShape *s, uint32_t segment, double u, double n[3]) {
   const float *a = s->normals + 6 * (size_t)segment, *b = a + 3;
   double from[3] = {a[0], a[1], a[2]}, to[3] = {b[0], b[1], b[2]};
-  vl_normalize3(from), vl_normalize3(to);
+  vl_normalize3(from);
+  vl_normalize3(to);
   float angle = vl_acos(vl_clamp((float)vl_dot3(from, to), -1, 1));
   double f = 1 - u, t = u;
   /* For angles below 1e-3 linear interpolation has an error of angle^2 / 8 = 1e-7, the rounding error of a float. */
-  if (angle > 1e-3f) f = vl_sincos((float)(1 - u) * angle).sin, t = vl_sincos((float)u * angle).sin;
+  if (angle > 1e-3f) {
+    f = vl_sincos((float)(1 - u) * angle).sin;
+    t = vl_sincos((float)u * angle).sin;
+  }
   for (int i = 0; i < 3; i++) n[i] = f * from[i] + t * to[i];
   vl_normalize3(n);
 }
@@ -194,8 +199,12 @@ static bool misses(const Search *q, const Cubic *c, double half) {
 
 static void split(const double c[4], double a[4], double b[4]) {
   double m = 0.5 * (c[1] + c[2]);
-  a[0] = c[0], a[1] = 0.5 * (c[0] + c[1]), a[2] = 0.5 * (a[1] + m);
-  b[3] = c[3], b[2] = 0.5 * (c[2] + c[3]), b[1] = 0.5 * (m + b[2]);
+  a[0] = c[0];
+  a[1] = 0.5 * (c[0] + c[1]);
+  a[2] = 0.5 * (a[1] + m);
+  b[3] = c[3];
+  b[2] = 0.5 * (c[2] + c[3]);
+  b[1] = 0.5 * (m + b[2]);
   a[3] = b[0] = 0.5 * (a[2] + b[1]);
 }
 
@@ -208,7 +217,9 @@ static void search(Search *q, const Cubic *c, double u0, double u1, int depth) {
   }
   Cubic a, b;
   double middle = 0.5 * (u0 + u1);
-  split(c->x, a.x, b.x), split(c->y, a.y, b.y), split(c->z, a.z, b.z);
+  split(c->x, a.x, b.x);
+  split(c->y, a.y, b.y);
+  split(c->z, a.z, b.z);
   search(q, &a, u0, middle, depth - 1);
   search(q, &b, middle, u1, depth - 1);
 }
@@ -238,25 +249,38 @@ static bool curve_intersect(const vlWorldShape *s, uint32_t prim, const double g
   if (!(length > 0)) return false;
   /* An orthonormal basis perpendicular to the ray (Duff et al. 2017). */
   double sign = q.d[2] < 0 ? -1 : 1, a = -1 / (sign + q.d[2]), b = q.d[0] * q.d[1] * a;
-  x[0] = 1 + sign * q.d[0] * q.d[0] * a, x[1] = sign * b, x[2] = -sign * q.d[0];
-  y[0] = b, y[1] = sign + q.d[1] * q.d[1] * a, y[2] = -q.d[1];
+  x[0] = 1 + sign * q.d[0] * q.d[0] * a;
+  x[1] = sign * b;
+  x[2] = -sign * q.d[0];
+  y[0] = b;
+  y[1] = sign + q.d[1] * q.d[1] * a;
+  y[2] = -q.d[1];
   const float *p = s->positions + 12 * (size_t)q.segment;
   Cubic whole, c;
   for (int k = 0; k < 4; k++) {
     double r[3] = {p[3 * k] - o[0], p[3 * k + 1] - o[1], p[3 * k + 2] - o[2]};
-    whole.x[k] = vl_dot3(r, x), whole.y[k] = vl_dot3(r, y), whole.z[k] = vl_dot3(r, q.d);
+    whole.x[k] = vl_dot3(r, x);
+    whole.y[k] = vl_dot3(r, y);
+    whole.z[k] = vl_dot3(r, q.d);
   }
   piece_range(s, prim, &u0, &u1);
-  cut(whole.x, u0, u1, c.x), cut(whole.y, u0, u1, c.y), cut(whole.z, u0, u1, c.z);
-  q.z_min = t_min * length, q.z_max = t_max * length;
+  cut(whole.x, u0, u1, c.x);
+  cut(whole.y, u0, u1, c.y);
+  cut(whole.z, u0, u1, c.z);
+  q.z_min = t_min * length;
+  q.z_max = t_max * length;
   double width = fmax(width_at(s, q.segment, u0), width_at(s, q.segment, u1));
   if (misses(&q, &c, 0.5 * width)) return false;
   int depth = depth_for(&c, width, &q.flat);
   search(&q, &c, u0, u1, depth);
   if (!q.found) return false;
   hit->t = q.z_max / length;
-  hit->a = q.u, hit->b = q.v;
-  for (int i = 0; i < 3; i++) hit->p[i] = o[i] + q.z_max * q.d[i], hit->d[i] = q.d[i];
+  hit->a = q.u;
+  hit->b = q.v;
+  for (int i = 0; i < 3; i++) {
+    hit->p[i] = o[i] + q.z_max * q.d[i];
+    hit->d[i] = q.d[i];
+  }
   return hit->t > t_min && hit->t < t_max;
 }
 
@@ -312,12 +336,15 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
     point->ns[i] = point->n[i];
     point->error[i] = 0;
   }
-  point->uv[0] = (float)u, point->uv[1] = (float)v;
+  point->uv[0] = (float)u;
+  point->uv[1] = (float)v;
 }
 
 /* Gives the middle of a piece. Curves do not emit light, so no other samples are needed. */
 static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
-  (void)u, (void)v, (void)pdf;
+  (void)u;
+  (void)v;
+  (void)pdf;
   const float *p = s->positions + 12 * (size_t)(prim >> s->split);
   double u0, u1;
   piece_range(s, prim, &u0, &u1);
@@ -330,13 +357,16 @@ static void curve_sample(const vlWorldShape *s, uint32_t prim, float u, float v,
 }
 
 static double curve_pdf(const vlWorldShape *shape, uint32_t prim, const double at[3]) {
-  (void)shape, (void)prim, (void)at;
+  (void)shape;
+  (void)prim;
+  (void)at;
   return 0;
 }
 
 static vlResult curve_compile(vlWorld *world, const vlShapeDef *def, const vlMat4 *to_group, const vlMat4 *from_group,
                               vlWorldShape *shape, vlError *error) {
-  (void)to_group, (void)from_group;
+  (void)to_group;
+  (void)from_group;
   return copy_curves(world, def, shape) ? VL_OK : vl_fail_memory(error);
 }
 

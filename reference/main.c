@@ -40,12 +40,13 @@ static bool render_file(vlContext *context, options *o, vlScene *scene, vlError 
       vl_camera_make(&defs->camera, &camera, NULL, error) != VL_OK)
     return false;
   apply_options(o, defs, &camera);
-  static world w;
+  static world w; /* static: their memory is given back when the program ends */
+  static view_plane plane;
+  static vlImage *image;
   if (!check_scene(context, scene, &camera, error) || !make_world(context, scene, &w, error)) return false;
-  view_plane plane = make_view_plane(defs, (uint32_t)o->samples);
+  plane = make_view_plane(defs, (uint32_t)o->samples);
   unsigned long lost = render_scene(&w, &camera, medium_of(&w, defs->camera_medium), &plane, o);
   if (lost > 0) fprintf(stderr, "velo-reference: %lu samples were not finite\n", lost);
-  vlImage *image = NULL;
   return make_image(&plane, context, &image) && vl_image_write(image, o->output, NULL, error) == VL_OK;
 }
 

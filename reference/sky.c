@@ -50,9 +50,8 @@ spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambd
 
 /* The pixel's share of all samples over its solid angle, 4 pi / n^2. */
 double sky_density(const world *w, const light *l, vector direction) {
-  const double *sum = l->sums ? l->sums + pixel_at(l, direction) : NULL;
-  double times_even = sum ? (sum[1] - sum[0]) * square(l->map.width) : 1;
-  return times_even / (4 * PI) / w->light_count;
+  uint32_t i = l->sums ? pixel_at(l, direction) : 0;
+  return (l->sums ? (l->sums[i + 1] - l->sums[i]) * square(l->map.width) : 1) / (4 * PI) / w->light_count;
 }
 
 /* Halves the table until one pixel is left. */

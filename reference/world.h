@@ -92,8 +92,7 @@ bool make_world(vlContext *context, vlScene *scene, world *w, vlError *error);
 
 /* Where a ray meets a primitive: the distance, and the point in the primitive's own two coordinates, 0 to 1. */
 typedef struct meeting {
-  double t;
-  double a, b;
+  double t, a, b;
 } meeting;
 
 /* The nearest surface along the ray, or false. Surfaces that are partly transparent (alpha) count with that

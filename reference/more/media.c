@@ -36,7 +36,7 @@ static bool cell_value(const vlMediumDef *m, const float *values, const long at[
 static spectrum grid_value(const vlMediumDef *m, const float *values, vector p, const wavelengths *lambda) {
   if (!values) return gray(1);
   double x[3] = {p.x * m->nx - 0.5, p.y * m->ny - 0.5, p.z * m->nz - 0.5};
-  spectrum sum = gray(0), value;
+  spectrum sum = gray(0), value = gray(0);
   for (int corner = 0; corner < 8; corner++) {
     double weight = 1;
     long at[3];

@@ -5,6 +5,8 @@
 
 /* more/accelerator.c: makes the tree of boxes. */
 void make_accelerator(world *w);
+/* Makes the box of a primitive contain a point. */
+void include_point(primitive *p, vector point);
 
 /* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
 uint32_t more_corners(const vlShapeDef *def);

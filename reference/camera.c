@@ -29,19 +29,19 @@ static void through_lens(const vlCamera *c, sampler *s, vector *origin, vector *
 }
 
 bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r) {
-  if (is_more_camera(c)) return more_camera_ray(c, x, y, s, r);
   double y_plane = (y - c->cy) / c->fy;
   double x_plane = (x - c->cx - c->skew * y_plane) / c->fx;
+  if (c->distortion.steps > 0 && !without_distortion(c, &x_plane, &y_plane)) return false;
   vector origin = make_vector(0, 0, 0), direction = make_vector(0, 0, 1);
+  bool fisheye = c->projection == VL_PROJECTION_EQUIDISTANT || c->projection == VL_PROJECTION_EQUISOLID;
   bool flat = c->projection == VL_PROJECTION_PERSPECTIVE || c->projection == VL_PROJECTION_ORTHOGRAPHIC;
   if (c->projection == VL_PROJECTION_PERSPECTIVE)
     direction = pinhole_direction(x_plane, y_plane);
   else if (c->projection == VL_PROJECTION_ORTHOGRAPHIC) /* parallel rays, each from its own point of the view plane */
     origin = make_vector(x_plane, y_plane, 0);
-  else if (sqrt(x_plane * x_plane + y_plane * y_plane) <=
-           fmin(c->limit, c->projection == VL_PROJECTION_EQUIDISTANT ? PI : 2))
+  else if (fisheye && hypot(x_plane, y_plane) <= fmin(c->limit, c->projection == VL_PROJECTION_EQUIDISTANT ? PI : 2))
     direction = fisheye_direction(c, x_plane, y_plane);
-  else
+  else if (fisheye || !more_direction(c, x_plane, y_plane, &direction))
     return false;
   through_lens(c, s, &origin, &direction);
   frame uvw = load_matrix(c->world_from_camera);

@@ -16,7 +16,7 @@ bool read_lights(world *w, vlError *error) {
     light *l = add_light(w, def->space);
     l->def = def;
     if (def->kind == VL_LIGHT_INFINITE && !read_sky(w, l, error)) return false;
-    if (!read_more_light(w, l, error)) return false;
+    read_more_light(l);
   }
   for (uint32_t i = 0; i < w->primitive_count; i++) {
     primitive *p = &w->primitives[i];
@@ -109,7 +109,6 @@ bool sample_light(const world *w, vector point, sampler *s, const wavelengths *l
   }
   bool spot = l->def->kind == VL_LIGHT_SPOT;
   if (l->def->kind == VL_LIGHT_DISTANT) return true;
-  if (!spot && l->def->kind != VL_LIGHT_POINT) return sample_more_light(w, l, point, s, lambda, result);
   if (!aim_at(from, point, result)) return false;
   double share = spot ? spot_share(l->def, -dot(result->direction, axis)) : 1;
   result->radiance = scaled(share / square(result->distance), result->radiance);

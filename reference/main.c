@@ -3,8 +3,8 @@
  * more/command.h has the command line. */
 #include <stdio.h>
 
-#include "more/check.h"
 #include "more/command.h"
+#include "more/more.h"
 #include "world.h"
 
 /* The lecture's render_scene: for each pixel and each of its samples a primary ray, and what the ray brings back. Rows

@@ -1,5 +1,5 @@
 /* more/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
-#include "check.h"
+#include "more.h"
 
 #include "refuse.h"
 
@@ -8,55 +8,23 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
   if (def->positions_close) return refuse(error, def->source, "a moving mesh");
   if (def->displacement.texture.index) return refuse(error, def->source, "a displaced mesh");
   if (def->one_sided) return refuse(error, def->source, "a mesh with one side");
-  switch (def->kind) {
-    case VL_SHAPE_TRIANGLES:
-    case VL_SHAPE_SPHERE:
-    case VL_SHAPE_DISK:
-    case VL_SHAPE_CYLINDER:
-    case VL_SHAPE_BILINEAR:
-    case VL_SHAPE_CURVES: return true;
-    default: return refuse_kind(error, def->source, "shapes", (uint32_t)def->kind);
-  }
+  return true;
 }
 
 static bool check_material(const vlMaterialDef *def, vlError *error) {
   bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
   if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
   if (def->normal_map) return refuse(error, def->source, "a normal map");
-  switch (def->kind) {
-    case VL_MATERIAL_DIFFUSE:
-    case VL_MATERIAL_CONDUCTOR:
-    case VL_MATERIAL_DIELECTRIC:
-    case VL_MATERIAL_MIX:
-    case VL_MATERIAL_INTERFACE:
-    case VL_MATERIAL_COATED_DIFFUSE:
-    case VL_MATERIAL_COATED_CONDUCTOR:
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-    case VL_MATERIAL_THIN_DIELECTRIC:
-    case VL_MATERIAL_HAIR: return true;
-    default: return refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
-  }
+  bool missing =
+      def->kind == VL_MATERIAL_PRINCIPLED || def->kind == VL_MATERIAL_MEASURED || def->kind == VL_MATERIAL_SUBSURFACE;
+  return !missing || refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
 }
 
 static bool check_texture(const vlTextureDef *def, vlError *error) {
   if (def->uv_set) return refuse(error, def->source, "a texture over a second uv set");
   if (def->colors) return refuse(error, def->source, "a texture with vertex colours");
   if (def->wrap == VL_WRAP_OCTAHEDRAL) return refuse(error, def->source, "a texture that wraps as an octahedron");
-  switch (def->kind) {
-    case VL_TEXTURE_CONSTANT:
-    case VL_TEXTURE_SCALE:
-    case VL_TEXTURE_MIX:
-    case VL_TEXTURE_CHECKERBOARD:
-    case VL_TEXTURE_IMAGE:
-    case VL_TEXTURE_BILERP:
-    case VL_TEXTURE_DIRECTION_MIX:
-    case VL_TEXTURE_FBM:
-    case VL_TEXTURE_WRINKLED:
-    case VL_TEXTURE_WINDY:
-    case VL_TEXTURE_MARBLE:
-    case VL_TEXTURE_DOTS: return true;
-    default: return refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
-  }
+  return def->kind != VL_TEXTURE_VERTEX_COLOR || refuse_kind(error, def->source, "textures", (uint32_t)def->kind);
 }
 
 /* An image of the sky is square; the octahedral map has one side. */
@@ -71,13 +39,8 @@ static bool is_square(vlContext *context, const vlLightDef *def, vlError *error)
 
 static bool check_light(vlContext *context, const vlLightDef *def, vlError *error) {
   if (def->has_portal) return refuse(error, def->source, "a portal");
-  switch (def->kind) {
-    case VL_LIGHT_POINT:
-    case VL_LIGHT_SPOT:
-    case VL_LIGHT_DISTANT: return true;
-    case VL_LIGHT_INFINITE: return is_square(context, def, error);
-    default: return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
-  }
+  if (def->kind > VL_LIGHT_INFINITE) return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
+  return def->kind != VL_LIGHT_INFINITE || is_square(context, def, error);
 }
 
 static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
@@ -97,14 +60,12 @@ static bool check_medium(const vlMediumDef *def, vlError *error) {
 
 static bool check_camera(const vlCamera *c, vlSource source, vlError *error) {
   const vlLens *l = &c->lens;
-  switch (c->projection) {
-    case VL_PROJECTION_PERSPECTIVE:
-    case VL_PROJECTION_ORTHOGRAPHIC:
-    case VL_PROJECTION_EQUIDISTANT:
-    case VL_PROJECTION_EQUISOLID: break;
-    default: return refuse(error, source, "this projection");
-  }
-  if (c->distortion.steps > 0) return refuse(error, source, "lens distortion");
+  bool missing = c->projection == VL_PROJECTION_EQUAL_AREA || c->projection == VL_PROJECTION_CUBE ||
+                 c->projection == VL_PROJECTION_OPTICS;
+  bool lens = c->lens_radius > 0 && (c->projection == VL_PROJECTION_SINE || c->projection == VL_PROJECTION_FOV);
+  bool planes = c->near_plane > 0 || isfinite(c->far_plane);
+  if (missing || lens || (planes && c->projection > VL_PROJECTION_EQUISOLID))
+    return refuse(error, source, "this projection");
   if (c->moves || c->readout != 0) return refuse(error, source, "a moving camera or a rolling shutter");
   if (l->blades || l->aperture || l->ratio != 1 || l->tilt[0] != 0 || l->tilt[1] != 0 || l->vignetting ||
       l->hinge[0] != 0 || l->hinge[1] != 0 || c->eye_circle != 0)

@@ -2,7 +2,7 @@
  * coat, is scattered by the medium under it and by the base, and is reflected between base and coat until it leaves.
  * Walks give values with noise; directions are drawn from a simple density, so that density and value may be asked for
  * any direction. */
-#include "bsdfs.h"
+#include "more.h"
 
 #include "microfacet.h"
 

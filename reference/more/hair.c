@@ -1,7 +1,7 @@
 /* more/hair.c: hair by Chiang, Bitterli, Tappan and Burley 2016 (pbrt book 9.9). The hair runs along x. A direction has
  * the angle theta to the plane across the hair and phi around it. Light is reflected (p = 0), goes through (p = 1), is
  * reflected once inside (p = 2) or more often (p = 3); each way is a lobe Mp(theta) Ap Np(phi). */
-#include "bsdfs.h"
+#include "more.h"
 
 enum { LAST = 3 };
 

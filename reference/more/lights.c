@@ -17,17 +17,14 @@ static double sky_illuminance(const light *l) {
 }
 
 /* The power of a point is spread over the sphere, that of a spot over its cone, the soft edge counted half. */
-bool read_more_light(const world *w, light *l, vlError *error) {
+void read_more_light(light *l) {
   const vlLightDef *def = l->def;
   double inner = cos((double)def->cone_angle - (double)def->cone_delta), outer = cos((double)def->cone_angle);
-  (void)w;
-  (void)error;
   l->factor = (double)def->scale;
   if (def->kind == VL_LIGHT_INFINITE && !isnan(def->illuminance)) l->factor *= def->illuminance / sky_illuminance(l);
   if (def->kind == VL_LIGHT_DISTANT && !isnan(def->illuminance)) l->factor *= def->illuminance;
   if (def->kind == VL_LIGHT_POINT && !isnan(def->power)) l->factor *= def->power / (4 * PI);
   if (def->kind == VL_LIGHT_SPOT && !isnan(def->power)) l->factor *= def->power / (2 * PI * (1 - (inner + outer) / 2));
-  return true;
 }
 
 /* `power` is that of each primitive: radiance times area times pi, on each side. */
@@ -37,15 +34,4 @@ double emission_factor(const world *w, const light *l) {
   shade_record corner = {0};
   shape_surface(w, l->what, 0, 0, &corner);
   return (double)def->scale * def->power * corner.area_density / (PI * (def->two_sided ? 2 : 1));
-}
-
-bool sample_more_light(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
-                       light_sample *result) {
-  (void)w;
-  (void)l;
-  (void)point;
-  (void)s;
-  (void)lambda;
-  (void)result;
-  return false;
 }

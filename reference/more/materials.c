@@ -1,5 +1,4 @@
 /* more/materials.c: the materials of more/, by kind. */
-#include "bsdfs.h"
 #include "more.h"
 
 /* ---- hair -------------------------------------------------------------------------------------------------------- */

@@ -3,9 +3,8 @@
 #pragma once
 #include "world.h"
 
-/* more/accelerator.c: makes the tree of boxes. */
+/* more/accelerator.c: makes the tree of boxes; makes a box contain a point. */
 void make_accelerator(world *w);
-/* Makes the box of a primitive contain a point. */
 void include_point(primitive *p, vector point);
 
 /* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
@@ -26,6 +25,15 @@ void bound_curve(const world *w, primitive *p);
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b);
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+/* more/coated.c, more/hair.c, more/simple.c. Sampling finds wi; the weight only if specular. A coat draws numbers. */
+spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
+bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+spectrum hair_value(const bsdf *b, vector wo, vector wi, double *density);
+void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+spectrum absorption_of_hair_color(spectrum looks, double beta_n);
+spectrum diffuse_transmission_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_diffuse_transmission(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+void sample_thin_glass(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 /* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. */
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at);
 
@@ -45,13 +53,9 @@ void marble(vector p, double omega, uint32_t octaves, double variation, double r
 void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]);
 double number_of_texel(const vlTextureDef *def, uint32_t channels, const double value[4]);
 
-/* more/lights.c: what a light or an emission makes of its spectrum: its scale, or its power (pbrt-v4). Of a sample of
- * another light the core has set `density` to that of the choice of this light, `single`, an infinite distance, and the
- * light's colour. */
-bool read_more_light(const world *w, light *l, vlError *error);
+/* more/lights.c: what a light or an emission makes of its spectrum: its scale, or its power (pbrt-v4). */
+void read_more_light(light *l);
 double emission_factor(const world *w, const light *l);
-bool sample_more_light(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
-                       light_sample *result);
 
 /* more/media.c: what a homogeneous medium emits along a distance; media that are not the same everywhere, along a ray.
  * As in medium.h. */
@@ -62,6 +66,11 @@ spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double 
 bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
                       const wavelengths *lambda, spectrum *throughput, spectrum *emitted);
 
-/* more/cameras.c: whole rays, with their time, of cameras that the core does not have. */
-bool is_more_camera(const vlCamera *c);
-bool more_camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r);
+/* more/cameras.c: a point of the projection plane without the lens's distortion, and its direction. False: the camera
+ * sees nothing there. */
+bool without_distortion(const vlCamera *c, double *x, double *y);
+bool more_direction(const vlCamera *c, double x, double y, vector *direction);
+
+/* more/check.c: whether the renderer has all that a scene asks for; else an error with the name and the place of the
+ * first thing that it does not have. */
+bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error);

@@ -1,5 +1,5 @@
 /* more/simple.c: diffuse transmission, and thin glass (pbrt book 9.1.2, 9.5). */
-#include "bsdfs.h"
+#include "more.h"
 
 /* Diffuse on both sides: one colour comes back, another goes through. */
 spectrum diffuse_transmission_value(const bsdf *b, vector wo, vector wi, double *density) {

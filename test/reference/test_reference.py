@@ -114,6 +114,30 @@ def media_on_grids_agree_with_velo():
 
 
 @case
+def projections_and_distortions_agree_with_velo():
+    eye = ' "point3 eye" [ .2 1 -1 ] "point3 lookat" [ 0 .9 0 ] "vector3 up" [ 0 1 0 ]\n'
+    rest = HEAD[HEAD.index("Film"):] + ("WorldBegin\n"
+        'LightSource "infinite" "rgb L" [ 0.4 0.45 0.5 ]\nLightSource "point" "point3 from" [ 1 3 -1 ] "rgb I" [ 6 5 4 ]\n'
+        'Texture "board" "spectrum" "checkerboard" "rgb tex1" [ 0.6 0.15 0.1 ] "rgb tex2" [ 0.15 0.2 0.65 ] "float uscale" 9 "float vscale" 7\n'
+        'Material "diffuse" "texture reflectance" "board"\n'
+        'Shape "bilinearmesh" "point3 P" [ -3 0 -4  3 0 -4  -3 0 4  3 0 4 ]\nShape "bilinearmesh" "point3 P" [ -3 0 4  3 0 4  -3 3 3  3 2 4 ]\n')
+    for camera in ('"fisheye" "string mapping" "stereographic" "float fov" 200', '"fisheye" "string mapping" "orthographic" "float fov" 150',
+                   '"equirectangular"', '"cylindrical" "float fov" 200', '"panini" "float panini" 1.2 "float fov" 150',
+                   '"fov" "float omega" 0.9 "float fov" 120', '"division" "float lambda" -0.2 "float fov" 120',
+                   '"unified" "float xi" 0.8 "float fov" 120', '"eucm" "float alpha" 0.6 "float beta" 1.1 "float fov" 120',
+                   '"doublesphere" "float xi" -0.2 "float alpha" 0.6 "float fov" 120',
+                   '"opencv" "float fx" 10 "float fy" 11 "float cx" 7 "float cy" 8 "float skew" 1 "float coefficients" '
+                   "[ -0.1 0.02 0.01 -0.008 0.003 0.02 0.01 0.001 0.002 0.001 -0.003 0.002 0.05 -0.04 ]",
+                   '"opencvfisheye" "float fx" 6 "float fy" 6 "float cx" 8 "float cy" 8 "float coefficients" [ 0.05 -0.02 0.003 -0.0005 ]'):
+        path = scene("camera.pbrt", "")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("Camera " + camera + eye + rest)
+        options = ("--color", "rgb", "--max-depth", "1")
+        z = worst_z(render_velo(path, "velo_camera.exr", 256, *options), render(path, "camera.exr", 256, *options))
+        assert z < 4.8, "%s: z = %.1f" % (camera, z)
+
+
+@case
 def tubes_seen_obliquely_agree_with_velo():
     """The normals of a tube turn about its axis, also where the ray is not perpendicular to that."""
     path = scene("tube.pbrt", 'WorldBegin\nLightSource "distant" "point3 from" [ 1 .5 -1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 2 2 2 ]\n'

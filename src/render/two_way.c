@@ -49,8 +49,8 @@ struct vlTwoWayRun {
   char *memory; /* holds the workers' rows */
   vlCameraView *eyes;
   const vlFilmRays *rays;
-  float *choice;
-  uint32_t *medium; /* by light: vlTwoWay.medium */
+  float *choice, *extent; /* by light: vlTwoWay.choice, extent */
+  uint32_t *medium;       /* by light: vlTwoWay.medium */
   vlSplats splats;
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
@@ -412,6 +412,22 @@ static vlResult find_media(vlTwoWayRun *run, const vlCamera *camera, vlError *er
   return VL_OK;
 }
 
+/* Sums the areas of the lights of each shape. */
+static bool find_extents(vlTwoWayRun *run) {
+  const vlWorld *world = run->world;
+  size_t n = world->lights.count;
+  float *of_shape = vl_alloc_zero(run->context, world->shapes.count + 1, sizeof *of_shape);
+  run->extent = vl_alloc_zero(run->context, n + 1, sizeof *run->extent);
+  run->way.extent = run->extent;
+  bool good = of_shape && run->extent;
+  for (size_t i = 0; good && i < n; i++)
+    if (world->lights.items[i].shape != VL_NONE) of_shape[world->lights.items[i].shape] += world->lights.items[i].area;
+  for (size_t i = 0; good && i < n; i++)
+    if (world->lights.items[i].shape != VL_NONE) run->extent[i] = of_shape[world->lights.items[i].shape];
+  vl_free(run->context, of_shape);
+  return good;
+}
+
 vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,
                            const vlTraceDef *trace, const vlFilmRays *rays, vlTwoWayRun **made, vlError *error) {
   vlContext *context = world->context;
@@ -445,7 +461,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
-  bool good = run->choice && vl_splats_make(context, film, &run->splats) == VL_OK;
+  bool good = run->choice && find_extents(run) && vl_splats_make(context, film, &run->splats) == VL_OK;
   way->choice = run->choice;
   vlResult result = good ? make_workers(run, error) : vl_fail_memory(error);
   if (result == VL_OK) result = find_media(run, camera, error);
@@ -487,6 +503,7 @@ void vl_two_way_destroy(vlTwoWayRun *run) {
   vl_free(context, run->memory);
   vl_free(context, run->eyes);
   vl_free(context, run->choice);
+  vl_free(context, run->extent);
   vl_free(context, run->medium);
   vl_splats_free(context, &run->splats);
   vl_free(context, run->photons);

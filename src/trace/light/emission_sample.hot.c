@@ -82,6 +82,10 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
   return 0.0f;
 }
 
+float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 at) {
+  return choice_of(way, light) * point_density(world, &world->lights.items[light], at);
+}
+
 /* ---- area lights ------------------------------------------------------------------------------------------------- */
 
 typedef struct Spot {
@@ -159,6 +163,9 @@ void vl_light_emit_area(const vlEmissionQuery *q, vlEmission *out) {
   for (int c = 0; c < 4; c++) out->flux[c] *= scale;
   out->density = VL_INV_PI * at.pdf / sides;
   out->delta = light->invisible;
+  out->area_pdf = light->invisible ? 0.0f : at.pdf;
+  out->offset = at.offset;
+  out->side = sides > 1.0f ? 0.0f : vl_dot(side, at.n) < 0.0f ? -1.0f : 1.0f;
   out->valid = true;
 }
 
@@ -252,5 +259,6 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
 #undef EMIT
   for (int c = 0; c < 4; c++) r.flux[c] /= p;
   r.density *= p;
+  r.area_pdf *= p;
   return r;
 }

@@ -21,11 +21,25 @@ static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
 }
 
+/* Weight of a light that the camera sees directly, against light paths that start there (vl_show_lights). */
+static float seen_weight(const vlTracing *t, const vlPaths *p, uint32_t i, uint32_t light, const vlPoint *at) {
+  const vlTwoWay *way = t->def->two_way;
+  uint32_t lane = p->lane[i];
+  const vlCameraView *eye = vl_eye_of(t, lane);
+  if (!at || !eye->sees || way->light_only) return 1.0f;
+  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float per_square = 1.0f / (vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead)) * at->t * at->t);
+  float area_pdf = vl_emission_area_pdf(t->world, way, light, at->p);
+  return 1.0f / (1.0f + vl_shown(way, light, area_pdf, per_square, vl_abs(vl_dot(d, at->g))) / vl_last_odds(t, lane));
+}
+
 /* distance: to the light; at: the point of an area light. */
 static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, float distance,
                           const vlPoint *at, bool first) {
   float weight = 1.0f;
-  if (!first) {
+  if (first) {
+    weight = seen_weight(t, p, i, met->light, at);
+  } else {
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     weight = hit_weight(t, p, i, met->pdf, vl_emission_density(t->world, t->def->two_way, met->light, d, distance, at));
   }
@@ -50,7 +64,7 @@ static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first)
   if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
-/* first: no other strategy competes, as for camera rays. */
+/* first: for camera rays. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
   uint32_t missed[VL_SKY_BLOCK], count = 0;

@@ -109,6 +109,9 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     r->carry[i] = e.delta ? 0.0f : 1.0f; /* without 1 / (density cosine), which arrive() applies */
     vl_set_lane3(r->lx, r->ly, r->lz, i, e.at);
     vl_set_lane3(r->lnx, r->lny, r->lnz, i, e.n);
+    r->a[k] = e.area_pdf; /* these three until the first vertex, for vl_show_lights */
+    r->b[k] = e.offset;
+    r->cosine[k] = e.side;
   }
   return count;
 }
@@ -278,6 +281,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
   bool media = vl_has_media(&t);
   if (media) vl_volume_start(&t, n, scratch->volume.shadow_medium);
+  vl_show_lights(&t, r, batch, n);
   for (uint32_t depth = 0; n > 0 && depth < most && !vl_is_cancelled(def->cancel); depth++) {
     if (media)
       vl_volume_travel(&t, n, depth, false);

@@ -3,6 +3,9 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
+/* In place of the number of bounces, for the random numbers of media: differs from that of any vertex. */
+enum { LIGHT_ITSELF = 1 << 16 };
+
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v) {
   vlCameraSample r;
   __builtin_memset(&r, 0, sizeof r);
@@ -146,4 +149,52 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     count++;
   }
   vl_two_way_splats(t, r, b, p, count, depth);
+}
+
+void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) {
+  const vlTwoWay *way = t->def->two_way;
+  if (!way->eye.sees || way->light_only) return;
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *v = &s->volume;
+  vlShade *sh = &s->shade;
+  const vlPaths *p = &s->a;
+  vlShadowRays *q = &s->shadow;
+  if (way->eye.lens_radius > 0.0f)
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+  uint32_t count = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
+    uint32_t light = r->light[lane];
+    if (!(r->a[i] > 0.0f)) continue;
+    vlVec3 at = vl_lane3(r->lx, r->ly, r->lz, lane);
+    vlVec3 g = vl_lane3(r->lnx, r->lny, r->lnz, lane);
+    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), at, sh->u1[i], sh->u2[i]);
+    float cosine = vl_dot(view.w, g);
+    if (!view.seen || !(r->cosine[i] * cosine >= 0.0f) || cosine == 0.0f) continue;
+    float shown = vl_shown(way, light, r->a[i], view.per_square, vl_abs(cosine));
+    if (!(shown > 0.0f)) continue;
+    vlVec3 o = vl_offset_origin(at, g, r->b[i], view.w);
+    vlVec3 d = vl_sub(view.from, o);
+    q->t_max[count] = vl_min(view.end, VL_ONE_MINUS_EPSILON);
+    if (vl_has_media(t)) {
+      const vlWorldShape *shape = &t->world->shapes.items[t->world->lights.items[light].shape];
+      q->t_max[count] = vl_min(view.end, VL_SHADOW_END) * vl_length(d);
+      d = vl_normalize(d);
+      v->shadow_medium[count] = vl_medium_beyond(shape, g, d, way->medium[light]);
+      v->from[count] = i;
+      vl_shadow_from_medium(t, count, lane);
+      for (int c = 0; c < 4; c++) v->density[c][count] = 1.0f;
+    }
+    vl_set_lane3(q->ox, q->oy, q->oz, count, o);
+    vl_set_lane3(q->dx, q->dy, q->dz, count, d);
+    q->time[count] = vl_path_time(p, i);
+    q->lane[count] = lane;
+    r->own[count] = shown;
+    r->others[count] = 1.0f;
+    for (int c = 0; c < 4; c++) q->radiance[c][count] = r->flux[c][lane] * r->density[lane];
+    r->x[count] = view.x;
+    r->y[count] = view.y;
+    count++;
+  }
+  vl_two_way_splats(t, r, b, p, count, LIGHT_ITSELF);
 }

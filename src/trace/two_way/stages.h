@@ -142,6 +142,9 @@ typedef struct vlEmission {
   float flux[4];
   float density; /* as vl_emission_density, but for point lights without 1 / distance^2 */
   bool delta;    /* no ray can hit the light */
+  /* Of area lights that rays can hit: density of the point per area; as vlSurface.offset; the side that emits: along n
+   * (1), against it (-1), or both (0). */
+  float area_pdf, offset, side;
   uint32_t light;
 } vlEmission;
 vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const float lambda[4], float u_choice, float u,
@@ -151,6 +154,16 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
  * cosine at the point. */
 float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 w, float distance,
                           const vlPoint *at);
+
+/* vlEmission.area_pdf at a point of an area light. */
+float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t light, vlVec3 at);
+/* The number of light paths by which a point of an area light is shown to the camera itself (two_way.h), relative to
+ * the camera rays that hit it: both are densities per film area. per_square: vlCameraSample; cosine: at the light. */
+static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf, float per_square, float cosine) {
+  return way->extent[light] * per_square < 1.0f ? way->paths * area_pdf / (per_square * cosine) : 0.0f;
+}
+/* Shows the points at which the n light paths start to the camera. */
+void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
 
 /* Whether the BSDF of lane i is all specular, so that the vertex cannot be connected. */
 static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {

@@ -20,6 +20,12 @@
  * on the light's side, this must hold for the vertex before. C is a constant; the weights sum to one for any. A
  * connection itself competes with (S_t + H) fwd'_(t+1) cos_t / distance^2 and the same of the other side.
  *
+ * The camera also sees lights directly: a ray hits one, with density P_1, or the point where a light path starts is
+ * connected to the camera, with density N p(z_0) / p(z_1), p(z_0) the density per area of such points. Only the second
+ * finds lights that are much smaller than a pixel. Where a light covers several pixels every ray hits it, and has no
+ * noise, but the number of light paths that start there has. So the second is used only where the shape, if it faced
+ * the camera, would cover less than a pixel.
+ *
  * In media, H = N 4/3 pi radius^3, and the medium's density at the vertex (vl_medium_extinction) replaces cos. It does
  * not depend on the wavelength, so both kinds of paths compute the same weights. The probabilities of flights are the
  * same in both directions and cancel, too. Light samples and connections make their segments without a flight; there,
@@ -116,6 +122,7 @@ typedef struct vlTwoWay {
   float turn;            /* with connections: random number in [0, 1) of the pass, for the wavelengths of all groups */
   vlLightVertices inner; /* of this pass; paths is 0 without connections */
   const float *choice;   /* lights + 1 elements: cumulated probabilities that a light path starts at each light */
+  const float *extent;   /* by light: the area of its shape, of which it may be one face */
   const uint32_t
       *medium; /* by light: the medium in which its paths start (vlTraceKernels.light_media); null without media */
   vlSampler sampler; /* sampler of the light paths */

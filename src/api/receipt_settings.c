@@ -110,7 +110,10 @@ static const Field noise_fields[] = {FIELD_DOUBLE(vlRenderDef, noise), FIELD_CHO
 static const Field develop_fields[] = {FIELD_FLOAT(vlDevelopDef, exposure), FIELD_END};
 
 bool vl_receipt_put(json_t *parent, const char *key, json_t *value) {
-  if (!parent || !value) return json_decref(value), false;
+  if (!parent || !value) {
+    json_decref(value);
+    return false;
+  }
   return (key ? json_object_set_new(parent, key, value) : json_array_append_new(parent, value)) == 0;
 }
 
@@ -139,11 +142,18 @@ static json_t *value_of(const Field *field, const char *at, uint32_t i, bool *un
   const char *text = NULL;
   switch (field->type) {
     case BOOL: return json_boolean(*(const bool *)(const void *)(at + i * sizeof(bool)));
-    case FLOAT: memcpy(&f, at + i * sizeof f, sizeof f); return *unset = isnan(f), *unset ? NULL : number((double)f);
-    case DOUBLE: memcpy(&d, at + i * sizeof d, sizeof d); return *unset = vl_is_unset(d), *unset ? NULL : number(d);
+    case FLOAT:
+      memcpy(&f, at + i * sizeof f, sizeof f);
+      *unset = isnan(f);
+      return *unset ? NULL : number((double)f);
+    case DOUBLE:
+      memcpy(&d, at + i * sizeof d, sizeof d);
+      *unset = vl_is_unset(d);
+      return *unset ? NULL : number(d);
     case STRING:
       memcpy(&text, at + i * sizeof text, sizeof text);
-      return *unset = !text, *unset ? NULL : json_string(text);
+      *unset = !text;
+      return *unset ? NULL : json_string(text);
     case COUNT:
     case CHOICE:
     case FAMILY: memcpy(&u, at + i * sizeof u, sizeof u); break;
@@ -162,7 +172,10 @@ static bool put_field(json_t *object, const Field *field, const void *def) {
   json_t *list = json_array();
   for (uint32_t i = 0; i < field->count; i++) {
     json_t *value = value_of(field, at, i, &unset);
-    if (!vl_receipt_put(list, NULL, unset ? json_null() : value)) return json_decref(list), false;
+    if (!vl_receipt_put(list, NULL, unset ? json_null() : value)) {
+      json_decref(list);
+      return false;
+    }
   }
   return vl_receipt_put(object, field->name, list);
 }
@@ -172,7 +185,10 @@ static bool put_def(json_t *tree, const char *name, const Field *fields, const v
   if (!def) return true;
   json_t *object = json_object();
   for (const Field *field = fields; field->name; field++)
-    if (!put_field(object, field, def)) return json_decref(object), false;
+    if (!put_field(object, field, def)) {
+      json_decref(object);
+      return false;
+    }
   return vl_receipt_put(tree, name, object);
 }
 

@@ -194,7 +194,8 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
                           .pixel_spread = footprint * r->film_rays.camera.pixel_spread,
                           .pixel_width = footprint * r->film_rays.camera.pixel_width};
   memcpy(r->crop, f->crop, sizeof r->crop);
-  r->tile_x0 = r->crop[0] / VL_RENDER_TILE, r->tile_y0 = r->crop[1] / VL_RENDER_TILE;
+  r->tile_x0 = r->crop[0] / VL_RENDER_TILE;
+  r->tile_y0 = r->crop[1] / VL_RENDER_TILE;
   r->tiles_x = (r->crop[2] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_x0;
   r->tiles_y = (r->crop[3] + VL_RENDER_TILE - 1) / VL_RENDER_TILE - r->tile_y0;
 }
@@ -221,7 +222,10 @@ static void fill_stats(const vlRenderRun *r, vlRenderStats *stats) {
   stats->seconds = vl_seconds() - r->start;
   for (uint32_t i = 0; i < vl_context_threads(r->world->context); i++) {
     const vlRenderWorker *w = &r->workers[i];
-    if (w->not_finite && !stats->not_finite) stats->worst_x = (uint32_t)w->bad_x, stats->worst_y = (uint32_t)w->bad_y;
+    if (w->not_finite && !stats->not_finite) {
+      stats->worst_x = (uint32_t)w->bad_x;
+      stats->worst_y = (uint32_t)w->bad_y;
+    }
     stats->not_finite += w->not_finite;
     stats->paths += w->paths;
     stats->bounce_rays += w->bounce_rays;
@@ -295,7 +299,8 @@ static void prepare_pilot(vlRenderRun *r, const vlPilot *pilot) {
   if (!pilot) return;
   r->shares = r->film_rays.uniform = false;
   r->film_rays.spread = pilot->spread;
-  r->trace.pixel_spread *= pilot->spread, r->trace.pixel_width *= pilot->spread;
+  r->trace.pixel_spread *= pilot->spread;
+  r->trace.pixel_width *= pilot->spread;
 }
 
 static void end_pilot(const vlRenderRun *r, vlPilot *pilot) {

@@ -90,7 +90,9 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   world->scene_number = scene->number;
   world->previous = usable(d.previous, &d);
   world->def.previous = NULL;
-  world->def.cancel = NULL, world->def.progress = NULL, world->def.progress_user = NULL;
+  world->def.cancel = NULL;
+  world->def.progress = NULL;
+  world->def.progress_user = NULL;
   world->task = &task;
   vlError local;
   vl_error_clear(&local);
@@ -113,8 +115,10 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
     vl_world_destroy(world);
     return r;
   }
-  for (int i = 0; i < 3; i++)
-    world->info.bounds_min[i] = world->bounds_min[i], world->info.bounds_max[i] = world->bounds_max[i];
+  for (int i = 0; i < 3; i++) {
+    world->info.bounds_min[i] = world->bounds_min[i];
+    world->info.bounds_max[i] = world->bounds_max[i];
+  }
   world->info.build_seconds = vl_seconds() - start;
   for (size_t i = 0; i < world->images.count; i++)
     world->info.texture_bytes += vl_mipmap_bytes(world->images.items[i].mipmap);

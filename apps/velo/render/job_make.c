@@ -89,7 +89,8 @@ static int take_camera_file(Job *job, vlContext *context, vlSceneDefs *defs, con
 static void take_receipt_camera(Job *job, vlSceneDefs *defs) {
   const ReceiptCamera *camera = job->receipt_camera;
   defs->camera = camera->def;
-  defs->film.width = camera->size[0], defs->film.height = camera->size[1];
+  defs->film.width = camera->size[0];
+  defs->film.height = camera->size[1];
   memcpy(defs->film.crop, camera->crop, sizeof camera->crop);
 }
 
@@ -220,7 +221,9 @@ static int override_spectrum(vlSceneDefs *defs, const Arguments *arguments) {
           "--spectrum \"%s\": must be N or N:MIN:MAX, N at most 1000 buckets from MIN to MAX, inside of "
           "360 to 830 nm",
           v->text);
-    defs->film.buckets = count, defs->film.lambda_min = low, defs->film.lambda_max = high;
+    defs->film.buckets = count;
+    defs->film.lambda_min = low;
+    defs->film.lambda_max = high;
   }
   if (defs->film.buckets && defs->build.color == VL_COLOR_RGB)
     return report_usage("--color rgb: there is no spectrum then%s",

@@ -108,11 +108,14 @@ vlResult receipt_make(const ReceiptPlan *plan, vlContext *context, const Job *jo
   vlReceiptDef def = vl_default_receipt_def();
   def.commit = velo_commit;
   def.scene = job->path;
-  def.command = words.words, def.command_count = words.count;
+  def.command = words.words;
+  def.command_count = words.count;
   def.defs = &defs;
-  def.load = &plan->opening->load, def.complete = &plan->opening->complete;
+  def.load = &plan->opening->load;
+  def.complete = &plan->opening->complete;
   def.samples = which->samples;
-  def.outputs = which->outputs, def.output_count = which->output_count;
+  def.outputs = which->outputs;
+  def.output_count = which->output_count;
   if (is_autofocused(job, plan->arguments)) def.focus_distance = job->camera.focus_distance;
   return vl_receipt_make(context, &def, receipt, NULL);
 }

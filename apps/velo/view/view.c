@@ -47,11 +47,17 @@ static int run_view(const Command *command, const Arguments *arguments) {
 
 #ifndef VELO_HAS_VIEW
 int serve_start(const Job *job, const vlWorld *world, vlView view, float exposure, Serve **serve) {
-  (void)job, (void)world, (void)view, (void)exposure, (void)serve;
+  (void)job;
+  (void)world;
+  (void)view;
+  (void)exposure;
+  (void)serve;
   return report_failure(STATUS_OTHER, "--serve: this velo was built without libwebsockets, which the option needs");
 }
 void serve_film(Serve *serve, const vlFilm *film, const vlProgress *progress) {
-  (void)serve, (void)film, (void)progress;
+  (void)serve;
+  (void)film;
+  (void)progress;
 }
 void serve_stop(Serve *serve) {
   (void)serve;

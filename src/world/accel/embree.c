@@ -191,8 +191,12 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   const vlWorldShape *shape = g->members ? &g->world->shapes.items[g->members[prim]] : g->shape;
   if (g->members) prim = 0;
   vl_world_prim_bounds(shape, prim, low, high);
-  args->bounds_o->lower_x = low[0], args->bounds_o->lower_y = low[1], args->bounds_o->lower_z = low[2];
-  args->bounds_o->upper_x = high[0], args->bounds_o->upper_y = high[1], args->bounds_o->upper_z = high[2];
+  args->bounds_o->lower_x = low[0];
+  args->bounds_o->lower_y = low[1];
+  args->bounds_o->lower_z = low[2];
+  args->bounds_o->upper_x = high[0];
+  args->bounds_o->upper_y = high[1];
+  args->bounds_o->upper_z = high[2];
 }
 
 /* Whether the shape's texture lets ray `id` pass at a hit. */
@@ -384,7 +388,8 @@ const char *vl_accel_fast_set(void) {
 }
 #else
 static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
-  (void)bits, (void)error;
+  (void)bits;
+  (void)error;
   *name = NULL;
   return VL_OK;
 }
@@ -615,11 +620,18 @@ static void fill_packet(struct RTCRayHit8 *q, int valid[PACKET], const vlRays *r
   for (uint32_t k = 0; k < PACKET; k++) {
     uint32_t i = at[k];
     valid[k] = first + k < n ? -1 : 0;
-    q->ray.org_x[k] = r->ox[i], q->ray.org_y[k] = r->oy[i], q->ray.org_z[k] = r->oz[i];
-    q->ray.dir_x[k] = r->dx[i], q->ray.dir_y[k] = r->dy[i], q->ray.dir_z[k] = r->dz[i];
+    q->ray.org_x[k] = r->ox[i];
+    q->ray.org_y[k] = r->oy[i];
+    q->ray.org_z[k] = r->oz[i];
+    q->ray.dir_x[k] = r->dx[i];
+    q->ray.dir_y[k] = r->dy[i];
+    q->ray.dir_z[k] = r->dz[i];
     q->ray.tnear[k] = r->t_min ? r->t_min[i] : 0.0f;
     q->ray.tfar[k] = r->t_max ? r->t_max[i] : INFINITY;
-    q->ray.time[k] = r->time ? r->time[i] : 0, q->ray.mask[k] = (unsigned)-1, q->ray.id[k] = i, q->ray.flags[k] = 0;
+    q->ray.time[k] = r->time ? r->time[i] : 0;
+    q->ray.mask[k] = (unsigned)-1;
+    q->ray.id[k] = i;
+    q->ray.flags[k] = 0;
     q->hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
     q->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     if (!is_near(r, i)) { /* Embree may check lanes that are not valid; this one hits nothing */
@@ -661,7 +673,9 @@ static inline void fill_ray(struct RTCRay *q, const vlRays *r, uint32_t i) {
   memcpy(&q->org_x, &origin, sizeof origin);
   memcpy(&q->dir_x, &direction, sizeof direction);
   q->tfar = r->t_max ? r->t_max[i] : INFINITY;
-  q->mask = (unsigned)-1, q->id = i, q->flags = 0;
+  q->mask = (unsigned)-1;
+  q->id = i;
+  q->flags = 0;
 }
 
 void vl_embree_closest(const vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,

@@ -20,8 +20,10 @@ vlLocalRay vl_local_ray(const vlWorld *world, const vlRays *r, uint32_t i, uint3
 
 static float ray_hash(const vlLocalRay *r, uint32_t shape, uint32_t prim, float t) {
   uint32_t h = vl_hash2(vl_hash2(shape, prim), r->instance);
-  for (int i = 0; i < 3; i++)
-    h = vl_hash2(h, vl_float_bits(r->world_o[i])), h = vl_hash2(h, vl_float_bits(r->world_d[i]));
+  for (int i = 0; i < 3; i++) {
+    h = vl_hash2(h, vl_float_bits(r->world_o[i]));
+    h = vl_hash2(h, vl_float_bits(r->world_d[i]));
+  }
   return vl_unit_float(vl_hash2(h, vl_float_bits(t)));
 }
 
@@ -63,9 +65,13 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   float b0 = vl_dot(ray_d, vl_cross(c[1], c[2])), b1 = vl_dot(ray_d, vl_cross(c[2], c[0])),
         b2 = vl_dot(ray_d, vl_cross(c[0], c[1]));
   float sum = b0 + b1 + b2, inv = sum != 0 ? 1 / sum : 0;
-  b0 *= inv, b1 *= inv, b2 *= inv;
+  b0 *= inv;
+  b1 *= inv;
+  b2 *= inv;
   static const float unit[6] = {0, 0, 1, 0, 1, 1};
-  b[0] = b0, b[1] = b1, b[2] = b2;
+  b[0] = b0;
+  b[1] = b1;
+  b[2] = b2;
   at->u = at->v = 0;
   for (int k = 0; k < 3; k++) {
     const float *t = s->uvs ? s->uvs + 2 * (size_t)f[k] : unit + 2 * k;

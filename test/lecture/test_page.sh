@@ -5,7 +5,8 @@ command -v node >/dev/null 2>&1 || {
   skip page "needs node"
   exit 77
 }
-cp "$VELO_SOURCE_DIR"/web/lecture/*.js "$VELO_SOURCE_DIR/test/lecture/page.js" "$work"
+cp "$VELO_SOURCE_DIR"/web/lecture/*.js "$work"
+cp "$VELO_SOURCE_DIR/test/lecture/page.js" "$work/test_page.js"
 echo '{ "type": "module" }' >"$work/package.json"
 
 # The rays of some pixels; the lecture's r counts upwards.
@@ -22,4 +23,4 @@ if [ -x "$VELO" ]; then
 fi
 
 cd "$work" || exit 1
-node page.js "$VELO_SOURCE_DIR/docs"
+node test_page.js "$VELO_SOURCE_DIR/docs"

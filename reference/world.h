@@ -61,7 +61,6 @@ typedef struct light {
   const primitive *what;
   double factor;    /* on the colour */
   vlSpectrum white; /* of what an image shows */
-  more_light more;
   /* the sky: its image, and the table from which directions are drawn in proportion to it */
   image_map map;
   matrix world_from_light, light_from_world;

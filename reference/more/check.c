@@ -108,9 +108,9 @@ bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlE
   for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++) {
     if (!check_material(material, error)) return false;
   }
-  const vlLightDef *light;
-  for (uint32_t i = 1; (light = vl_scene_light(scene, (vlLightId){i})); i++) {
-    if (!check_light(context, light, error)) return false;
+  const vlLightDef *lamp;
+  for (uint32_t i = 1; (lamp = vl_scene_light(scene, (vlLightId){i})); i++) {
+    if (!check_light(context, lamp, error)) return false;
   }
   const vlMediumDef *medium;
   for (uint32_t i = 1; (medium = vl_scene_medium(scene, (vlMediumId){i})); i++) {

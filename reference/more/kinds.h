@@ -17,7 +17,3 @@ typedef struct more_bsdf {
   spectrum absorption;         /* hair: per radius */
   spectrum transmittance;      /* diffuse transmission */
 } more_bsdf;
-
-typedef struct more_light {
-  int unused;
-} more_light;

@@ -21,7 +21,9 @@ static const char *file_name(void) {
   return name;
 }
 
-static vlResult load(const unsigned char *file, size_t size, vlError *error, void (*look)(const vlWorldMedium *m)) {
+/* max_memory: of the context; 0: no limit. peak: receives the most bytes that it held; may be null. */
+static vlResult load_within(const unsigned char *file, size_t size, size_t max_memory, size_t *peak, vlError *error,
+                            void (*look)(const vlWorldMedium *m)) {
   FILE *f = fopen(file_name(), "wb");
   assert_non_null(f);
   assert_int_equal(fwrite(file, 1, size, f), size);
@@ -29,7 +31,10 @@ static vlResult load(const unsigned char *file, size_t size, vlError *error, voi
   vlContext *context;
   vlScene *scene;
   vlWorld *world = NULL;
-  assert_int_equal(vl_context_create(NULL, &context), VL_OK);
+  vlContextDef context_def = vl_default_context_def();
+  context_def.threads = 1;
+  context_def.max_memory = max_memory;
+  assert_int_equal(vl_context_create(&context_def, &context), VL_OK);
   assert_int_equal(vl_scene_create(context, &scene), VL_OK);
   vlMediumDef def = vl_default_medium_def(VL_MEDIUM_NANOVDB);
   def.path = file_name();
@@ -38,10 +43,14 @@ static vlResult load(const unsigned char *file, size_t size, vlError *error, voi
   if (r == VL_OK && look) look(&world->media.items[0]);
   vl_world_destroy(world);
   vl_scene_destroy(scene);
-  assert_int_equal(vl_context_memory(context, NULL), 0);
+  assert_int_equal(vl_context_memory(context, peak), 0);
   vl_context_destroy(context);
   remove(file_name());
   return r;
+}
+
+static vlResult load(const unsigned char *file, size_t size, vlError *error, void (*look)(const vlWorldMedium *m)) {
+  return load_within(file, size, 0, NULL, error, look);
 }
 
 static void look(const vlWorldMedium *m) {
@@ -164,7 +173,118 @@ static void shaken(void **state) {
   free(grid);
 }
 
+/* ---- memory ------------------------------------------------------------------------------------------------------ */
+
+static void share_lower_nodes(unsigned char *g) { /* all 32768 children are one node: 512 MB of bricks */
+  memset(g + UPPER_AT + 32 + 4096, 0xff, 4096);
+  for (size_t n = 0; n < 32768; n++) put_u64(g + UPPER_AT + UPPER_TABLE + 8 * n, LOWER_AT - UPPER_AT);
+}
+
+static void share_leaves(unsigned char *g) { /* 4096 children are one leaf, 8 MB of values */
+  memset(g + LOWER_AT + 32 + 512, 0xff, 512);
+  for (size_t n = 0; n < 4096; n++) put_u64(g + LOWER_AT + LOWER_TABLE + 8 * n, LEAF_AT - LOWER_AT);
+}
+
+static void set_root_tiles(unsigned char *g, uint32_t count, const uint64_t *keys, int64_t child, float value) {
+  unsigned char *tiles = g + ROOT_AT + ROOT;
+  put_u32(g + ROOT_AT + 24, count);
+  for (uint32_t i = 0; i < count; i++) {
+    put_u64(tiles + (size_t)TILE * i, keys[i]);
+    put_u64(tiles + (size_t)TILE * i + 8, (uint64_t)child);
+    put_f(tiles + (size_t)TILE * i + 20, value);
+  }
+}
+
+/* A tile whose value is not the background is 32768 blocks; the tiles lie over the rest of the file. */
+static void fill_root(unsigned char *g) {
+  uint64_t keys[5000];
+  for (uint64_t i = 0; i < 5000; i++) keys[i] = i << 42;
+  set_root_tiles(g, 5000, keys, 0, 3);
+}
+
+/* A table of 16384 x 4096 blocks. */
+static void spread_root(unsigned char *g) {
+  const uint64_t keys[2] = {0, (uint64_t)0x200 << 42 | (uint64_t)0x80 << 21};
+  set_root_tiles(g, 2, keys, UPPER_AT - ROOT_AT, 0);
+}
+
+/* Nodes that are shared and parts that lie apart take no more memory than a whole file of this size could. */
+static void takes_no_more_than_its_size(void **state) {
+  (void)state;
+  static const struct {
+    void (*damage)(unsigned char *grid);
+    const char *word;
+    size_t most; /* bytes; the file itself, the grid and the arrays while they grow */
+  } cases[] = {{share_lower_nodes, "damaged", 1 << 20},
+               {share_leaves, "damaged", 3 << 19},
+               {fill_root, "fills too much space", 80u << 20},
+               {spread_root, "too far", 1 << 20}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    size_t size, peak;
+    vlError error = {0};
+    unsigned char *grid = make_grid();
+    cases[i].damage(grid);
+    unsigned char *file = make_file(grid, 0, &size);
+    const vlResult r = load_within(file, size, 0, &peak, &error, NULL);
+    if (r != VL_ERROR_SCENE || !strstr(error.message, cases[i].word)) fail_msg("%zu: %d, %s", i, r, error.message);
+    if (peak > cases[i].most) fail_msg("%zu: %zu bytes", i, peak);
+    free(file);
+    free(grid);
+  }
+}
+
+/* A packed grid unpacks to what its file says: 260 MB of 256 KB, which the context's limit refuses before it is there.
+ */
+static void unpacks_within_the_limit(void **state) {
+  (void)state;
+  enum { UNPACKED = 256 << 20 };
+  const size_t limit = 32 << 20;
+  size_t size, peak;
+  vlError error = {0};
+  unsigned char *grid = make_grid(), *file = make_file(grid, 1, &size), *zeros = calloc(1, UNPACKED);
+  uLongf packed = compressBound(UNPACKED);
+  unsigned char *bomb = malloc(208 + packed);
+  assert_int_equal(compress(bomb + 208, &packed, zeros, UNPACKED), Z_OK);
+  put(bomb, file, 200);
+  put_u64(bomb + 16, UNPACKED);
+  put_u64(bomb + 24, packed + 8);
+  put_u64(bomb + 200, packed);
+  assert_true(packed < 512 << 10);
+  assert_int_equal(load_within(bomb, 208 + packed, limit, &peak, &error, NULL), VL_ERROR_MEMORY);
+  assert_true(peak <= limit);
+  free(bomb);
+  free(zeros);
+  free(file);
+  free(grid);
+}
+
+/* Whatever the limit is: the file is read, or the error is MEMORY, and no more is held. */
+static void keeps_the_limit(void **state) {
+  (void)state;
+  size_t size, whole, refusals = 0;
+  vlError error = {0};
+  unsigned char *grid = make_grid(), *file = make_file(grid, 1, &size);
+  assert_int_equal(load_within(file, size, 0, &whole, &error, NULL), VL_OK);
+  for (size_t limit = 100000; limit < whole + whole / 2; limit += whole / 40) {
+    size_t peak;
+    const vlResult r = load_within(file, size, limit, &peak, &error, NULL);
+    if (r != VL_OK && r != VL_ERROR_MEMORY) fail_msg("%zu: %d, %s", limit, r, error.message);
+    assert_true(peak <= limit);
+    assert_true(r == VL_ERROR_MEMORY || limit > SIZE);
+    refusals += r == VL_ERROR_MEMORY;
+  }
+  assert_true(refusals > 20);
+  assert_int_equal(load_within(file, size, whole, NULL, &error, NULL), VL_OK);
+  free(file);
+  free(grid);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(read_back), cmocka_unit_test(refused), cmocka_unit_test(shaken)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(read_back),
+                                     cmocka_unit_test(refused),
+                                     cmocka_unit_test(shaken),
+                                     cmocka_unit_test(takes_no_more_than_its_size),
+                                     cmocka_unit_test(unpacks_within_the_limit),
+                                     cmocka_unit_test(keeps_the_limit)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

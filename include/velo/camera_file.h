@@ -106,6 +106,9 @@ VL_API vlResult vl_camera_read(vlContext *context, const char *path, const vlCam
  * MEMORY; UNSUPPORTED: the dialect cannot hold a field that the camera has; the message names it. */
 VL_API vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def,
                                 const vlCameraRecord *record, vlError *error);
+/** Whether vl_camera_write would write several files into a folder, which `path` or its folder is, and not a file of
+ * that name. dialect: VL_CAMERA_DIALECT_AUTO: that of the name. */
+VL_API bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect);
 
 #ifdef __cplusplus
 }

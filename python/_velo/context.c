@@ -99,16 +99,19 @@ static void log_message(void *user, vlLogLevel level, const vlError *where, cons
   PyGILState_Release(state);
 }
 
-enum { MOST_THREADS = 1024 };
+/* More threads than a few for each processor wait for each other: a thousand on two processors take seconds. */
+enum { MOST_THREADS = 1024, MOST_PER_PROCESSOR = 4 };
 
 static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"threads", "max_memory", "keep_inputs", NULL};
   vlContextDef def = vl_default_context_def();
+  const uint32_t most_threads = MOST_PER_PROCESSOR * def.threads;
   PyObject *threads = NULL, *most = NULL, *keep_inputs = NULL;
   int64_t memory = 0;
   if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|OOO:Context", names, &threads, &most, &keep_inputs))
     return NULL;
   if (threads && !read_count(threads, "threads", 1, MOST_THREADS, &def.threads)) return NULL;
+  if (def.threads > most_threads) def.threads = most_threads;
   if (most && !read_whole(most, "max_memory", 0, INT64_MAX, &memory)) return NULL;
   if (keep_inputs && !read_flag(keep_inputs, "keep_inputs", &def.keep_inputs)) return NULL;
   def.max_memory = (size_t)memory;
@@ -189,7 +192,8 @@ static PyGetSetDef context_members[] = {
 };
 static PyType_Slot context_slots[] = {
     {Py_tp_doc,
-     "Memory, log and worker threads of all objects. threads: default the processors; max_memory: bytes, 0: no limit; "
+     "Memory, log and worker threads of all objects. threads: default the processors, at most four for each; "
+     "max_memory: bytes, 0: no limit; "
      "keep_inputs: files that were read are not overwritten, which is a UsageError."},
     {Py_tp_new, context_new},
     {Py_tp_dealloc, context_dealloc},

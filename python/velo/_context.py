@@ -31,7 +31,7 @@ def context_or_default(context: Any) -> Any:
 
 
 def set_threads(threads: int) -> None:
-    """Gives the default context this many workers. Objects that exist keep the context that they were made from."""
+    """Gives the default context this many workers, from 1 to 1024; at most four for each processor are used. Objects that exist keep the context that they were made from."""
     global _default
     _default = _velo.Context(threads=threads)
 

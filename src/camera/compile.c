@@ -8,6 +8,7 @@
 #include "camera/rays.h"
 #include "math/approx_double.h"
 #include "math/elementary.h"
+#include "math/transform.h"
 
 /* Number of pixels by which a plane that wraps around extends beyond its edges. No filter is wider. */
 static const double overhang = 16.0;
@@ -20,10 +21,9 @@ static double central_spread(const vlCameraCompiled *c) {
 }
 
 /* The factor by which a pose scales lengths: its mean over all directions. */
-static double scale_of(const double m[16]) {
-  double det =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  return vl_precise_cbrt(fabs(det));
+static double scale_of(const double pose[16]) {
+  const vlMat4 m = vl_mat4_load(pose);
+  return vl_mat4_scale_of(&m);
 }
 
 static void compile_lens(const vlCamera *camera, vlCameraCompiled *c) {

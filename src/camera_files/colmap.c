@@ -320,7 +320,7 @@ static void put_lines(vlCameraText *cameras, vlCameraText *images, const vlColma
   vl_camera_put(images, " 1 %s\n\n", r->name);
 }
 
-vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record) {
+static vlResult write_model(const vlCameraFile *file, const vlCameraRecord *record) {
   char cameras[4096], images[4096];
   vlCamera c;
   double p[12], r[9];
@@ -354,4 +354,4 @@ vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *
 
 /* The row has no functions: a model consists of two files, so vl_camera_read and vl_camera_write call COLMAP's
  * functions directly. */
-const vlCameraFormat vl_format_colmap = {.name = "colmap"};
+const vlCameraFormat vl_format_colmap = {.name = "colmap", .write_folder = write_model};

@@ -196,6 +196,12 @@ static vlCameraDialect dialect_of_name(const char *path) {
   return VL_CAMERA_DIALECT_AUTO;
 }
 
+bool vl_camera_writes_folder(const char *path, vlCameraDialect dialect) {
+  if (!dialect && path) dialect = dialect_of_name(path);
+  const vlCameraFormat *format = (unsigned)dialect < VL_CAMERA_DIALECT_COUNT ? vl_camera_formats[dialect] : NULL;
+  return format && format->write_folder;
+}
+
 vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFileDef *def, const vlCameraRecord *record,
                          vlError *error) {
   vlCameraFileDef standard;
@@ -211,10 +217,10 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
                    path);
   const vlCameraFormat *format = vl_camera_formats[dialect];
   vlCameraFile file = {.context = context, .path = path, .dialect = format->name, .def = def, .error = error};
-  if (!format->write && dialect != VL_CAMERA_DIALECT_COLMAP)
+  if (format->write_folder) return format->write_folder(&file, record);
+  if (!format->write)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s", format->name,
                    format->not_written);
-  if (dialect == VL_CAMERA_DIALECT_COLMAP) return vl_camera_write_colmap(&file, record);
   vlCameraText text = {.context = context};
   result = format->write(&file, record, &text);
   if (result == VL_OK && text.failed) result = vl_fail_memory(error);

@@ -220,6 +220,7 @@ typedef vlResult vlCameraReadTree(const vlCameraFile *file, const json_t *tree, 
 /* A function that reads a camera from the file's text. */
 typedef vlResult vlCameraReadText(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record);
 typedef vlResult vlCameraWriteText(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text);
+typedef vlResult vlCameraWriteFolder(const vlCameraFile *file, const vlCameraRecord *record);
 
 /* A row of the table of dialects. Each row is defined at the end of the dialect's own file. */
 typedef struct vlCameraFormat {
@@ -231,7 +232,8 @@ typedef struct vlCameraFormat {
   vlCameraReadTree *read;
   vlCameraReadText *read_text;
   vlCameraWriteText *write;
-  const char *not_written; /* why there is no writer */
+  vlCameraWriteFolder *write_folder; /* in place of write: the path is that of a folder of files, or of one of them */
+  const char *not_written;           /* why there is no writer */
 } vlCameraFormat;
 
 extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap, vl_format_nerf,
@@ -263,6 +265,5 @@ typedef struct vlCameraSink {
 } vlCameraSink;
 /* Reads all cameras of a file of any dialect except COLMAP's. */
 vlResult vl_camera_read_each(const vlCameraFile *file, const vlCameraSink *sink);
-vlResult vl_camera_write_colmap(const vlCameraFile *file, const vlCameraRecord *record);
 
 #endif

@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "color/color.h"
-#include "math/elementary.h"
 #include "scene/lamps.h"
 #include "scene/solid.h"
 #include "schema/schema.h"
@@ -67,7 +66,7 @@ static double triangle_area(const double p[3][3]) {
 /* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled uniformly. */
 static double shape_area(const vlShapeDef *d) {
   vlMat4 m = vl_mat4_load(d->group_from_shape);
-  double r = d->radius, turn = d->phi_max, scale = vl_precise_cbrt(fabs(vl_mat4_determinant3(m))), sum = 0;
+  double r = d->radius, turn = d->phi_max, scale = vl_mat4_scale_of(&m), sum = 0;
   if (d->kind == VL_SHAPE_SPHERE || d->kind == VL_SHAPE_CYLINDER)
     return turn * r * ((double)d->z_max - (double)d->z_min) * scale * scale;
   if (d->kind == VL_SHAPE_DISK)

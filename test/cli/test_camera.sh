@@ -55,6 +55,10 @@ expect_text info_json_size '"width": 640'
 
 mkdir -p model
 check convert_colmap_folder "$VELO" camera convert cam.yaml model --to colmap
+mkdir other_model
+check convert_to_a_folder "$VELO" camera convert cam.yaml other_model
+same convert_to_a_folder_is_colmap model/cameras.txt other_model/cameras.txt
+check convert_to_a_file_of_it "$VELO" camera convert cam.yaml other_model/cameras.txt
 expect_code 0 colmap_half_pixel grep -q ' 500 500 320 240' model/cameras.txt
 check convert_back "$VELO" camera convert model back.yaml
 check project_back "$VELO" camera project --camera back.yaml points.csv

@@ -1,7 +1,10 @@
 """What the tests of the Python module share: the module itself, and lines `ok NAME`, `not ok NAME`, `skip NAME: why` that
 tools/run_tests counts."""
 import contextlib
+import functools
 import os
+import resource
+import signal
 import sys
 import tempfile
 import traceback
@@ -66,6 +69,54 @@ def raises(kind, *texts):
             assert text in str(error), "%r is not in %r" % (text, str(error))
         return
     raise AssertionError("nothing was raised, %s was expected" % kind.__name__)
+
+
+# ---- calls with values that they must refuse ----
+
+class _TooLong(BaseException):
+    pass
+
+
+def _ring(*unused):
+    raise _TooLong()
+
+
+def attempt(call, **changes):
+    """None: accepted; the velo.Error; or the text of what must not happen. Within limited."""
+    import velo
+    signal.alarm(20)
+    try:
+        call(**changes)
+        return None
+    except velo.Error as error:
+        return error
+    except _TooLong:
+        return "hangs"
+    except Exception as error:
+        return "%s: %s" % (type(error).__name__, str(error)[:200])
+    finally:
+        signal.alarm(0)
+
+
+def limited(function):
+    """Runs with a limit of memory and without waiting for ever."""
+    @functools.wraps(function)
+    def run():
+        old = resource.getrlimit(resource.RLIMIT_AS)
+        previous = signal.signal(signal.SIGALRM, _ring)
+        if "san" not in os.environ.get("LD_PRELOAD", ""):
+            resource.setrlimit(resource.RLIMIT_AS, (6 << 30, old[1]))
+        try:
+            function()
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, old)
+            signal.signal(signal.SIGALRM, previous)
+    return run
+
+
+def report(problems):
+    """Fails where there are problems, which are texts."""
+    assert not problems, "%d problems:\n  %s" % (len(problems), "\n  ".join(problems[:60]).encode(errors="backslashreplace").decode())
 
 
 def work(name):

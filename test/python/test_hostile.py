@@ -5,11 +5,9 @@ exception, no hang, no more memory. Numbers that are no values of an argument ar
 import inspect
 import math
 import os
-import resource
-import signal
 
 import cases
-from cases import case, work
+from cases import attempt, case, limited, report, work
 
 numpy = cases.need("numpy")
 import velo
@@ -231,30 +229,6 @@ SPECTRA = ("Spectrum", "rgb", "blackbody", "sampled", "named")
 
 # ---- running --------------------------------------------------------------------------------------------------------
 
-class TooLong(BaseException):
-    pass
-
-
-def ring(*unused):
-    raise TooLong()
-
-
-def attempt(call, **changes):
-    """None: accepted; the velo.Error; or the text of what must not happen."""
-    signal.alarm(20)
-    try:
-        call(**changes)
-        return None
-    except velo.Error as error:
-        return error
-    except TooLong:
-        return "hangs"
-    except Exception as error:
-        return "%s: %s" % (type(error).__name__, str(error)[:200])
-    finally:
-        signal.alarm(0)
-
-
 def slots(call):
     """Name and kind of each argument and keyword."""
     for name, (_, kind) in call.arguments.items():
@@ -287,27 +261,6 @@ def mentions(message, name):
     words = {"group": "scene's groups", "handle": "Handle", "instance": "Handle", "shape": "Handle", "K": "K", "camera_from_world": "camera"}
     return name in message or words.get(name, name).rstrip("s") in message or name.replace("_", " ") in message or "kind" in message \
         or "dialect" in message or "family" in message or "array" in message or "channel" in message
-
-
-def limited(function):
-    """Runs with a limit of memory and without waiting for ever."""
-    def run():
-        old = resource.getrlimit(resource.RLIMIT_AS)
-        previous = signal.signal(signal.SIGALRM, ring)
-        sanitized = "san" in os.environ.get("LD_PRELOAD", "")
-        if not sanitized:
-            resource.setrlimit(resource.RLIMIT_AS, (6 << 30, old[1]))
-        try:
-            function()
-        finally:
-            resource.setrlimit(resource.RLIMIT_AS, old)
-            signal.signal(signal.SIGALRM, previous)
-    run.__name__ = function.__name__
-    return run
-
-
-def report(problems):
-    assert not problems, "%d problems:\n  %s" % (len(problems), "\n  ".join(problems[:60]).encode(errors="backslashreplace").decode())
 
 
 @case
@@ -409,6 +362,12 @@ def a_size_that_does_not_fit_is_refused_at_once():
     with cases.raises(velo.OutOfMemoryError, "max_memory allows"):
         small.render(spp=1, resolution=(2000, 2000))
     assert time.monotonic() - start < 5
+
+
+@case
+def more_threads_than_processors_need_are_not_made():
+    most = 4 * velo.Context().threads
+    assert velo.Context(threads=1000).threads == min(1000, most) and velo.Context(threads=2).threads == 2
 
 
 @case

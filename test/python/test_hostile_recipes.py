@@ -3,16 +3,13 @@
 recipe may be refused by a velo.Error that names the place, or make a stage: no other exception, no hang, no more memory."""
 import copy
 import dataclasses
-import json
 import math
 import os
-import resource
-import signal
 import subprocess
 import sys
 
 import cases
-from cases import case, work
+from cases import attempt, case, limited, report, work
 
 numpy = cases.need("numpy")
 import velo
@@ -57,14 +54,6 @@ NEVER = ("nan", "inf", "-inf", "10**400", "nans", "nan pair", "texts", "date", "
          "number names", "long", "text", "true")
 
 
-class TooLong(BaseException):
-    pass
-
-
-def ring(*unused):
-    raise TooLong()
-
-
 def places(data, path=()):
     """The path of each value."""
     yield path
@@ -82,40 +71,6 @@ def changed(data, path, value):
         place = place[name]
     place[path[-1]] = value
     return result
-
-
-def attempt(call):
-    signal.alarm(20)
-    try:
-        call()
-        return None
-    except velo.Error as error:
-        return error
-    except TooLong:
-        return "hangs"
-    except Exception as error:
-        return "%s: %s" % (type(error).__name__, str(error)[:150])
-    finally:
-        signal.alarm(0)
-
-
-def limited(function):
-    def run():
-        old = resource.getrlimit(resource.RLIMIT_AS)
-        previous = signal.signal(signal.SIGALRM, ring)
-        if "san" not in os.environ.get("LD_PRELOAD", ""):
-            resource.setrlimit(resource.RLIMIT_AS, (6 << 30, old[1]))
-        try:
-            function()
-        finally:
-            resource.setrlimit(resource.RLIMIT_AS, old)
-            signal.signal(signal.SIGALRM, previous)
-    run.__name__ = function.__name__
-    return run
-
-
-def report(problems):
-    assert not problems, "%d problems:\n  %s" % (len(problems), "\n  ".join(problems[:50]).encode(errors="backslashreplace").decode())
 
 
 def make(data):

@@ -168,12 +168,11 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   if (status < 0)
     status = camera_load(context, in, v[CONVERT_FROM].given ? (int)v[CONVERT_FROM].integer : 0,
                          v[CONVERT_FRAME].given ? v[CONVERT_FRAME].text : NULL, &v[CONVERT_SIZE], NULL, &record);
-  /* COLMAP's model is a folder of files, each of which is checked when it is written. */
-  bool is_file = !v[CONVERT_TO].given || (vlCameraDialect)v[CONVERT_TO].integer != VL_CAMERA_DIALECT_COLMAP;
-  if (status < 0 && is_file) status = output_check(context, out, VL_OUTPUT_PLAIN);
+  vlCameraFileDef def = vl_default_camera_file_def();
+  def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
+  /* each file of a folder is checked when it is written */
+  if (status < 0 && !vl_camera_writes_folder(out, def.dialect)) status = output_check(context, out, VL_OUTPUT_PLAIN);
   if (status < 0) {
-    vlCameraFileDef def = vl_default_camera_file_def();
-    def.dialect = v[CONVERT_TO].given ? (vlCameraDialect)v[CONVERT_TO].integer : VL_CAMERA_DIALECT_AUTO;
     def.drop = arguments->texts;
     def.drop_count = (uint32_t)arguments->text_count;
     vlError error = {0};

@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
-#include "math/elementary.h"
 #include "math/motion.h"
 
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
@@ -210,7 +209,7 @@ static int place_moving(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t n
 static bool place_mesh(vlGltf *g, size_t mesh, const vlGltfNode *node, size_t node_index, vlMat4 local) {
   vlMat4 pose = vl_mat4_multiply(node->world, local);
   vlGltfMesh *m = &g->meshes[mesh];
-  g->scale = vl_precise_cbrt(fabs(vl_mat4_determinant3(pose)));
+  g->scale = vl_mat4_scale_of(&pose);
   bool deforms = vl_gltf_deforms(g, node), flat = is_flat(pose);
   if (flat && vl_gltf_once(g, VL_GLTF_REPORTED_FLAT))
     vl_gltf_warn(g, VL_LOG_INFO, VL_GLTF_ITEM(NULL, "nodes", node_index), "its scale makes it flat");

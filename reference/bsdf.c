@@ -11,24 +11,23 @@ static spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *densi
 
 spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
   vector o = to_local(b->frame, wo), i = to_local(b->frame, wi);
-  *density = 0;
+  *density = b->kind == BSDF_PHASE ? phase(b->g, o, i) : 0;
   switch (b->kind) {
     case BSDF_DIFFUSE: return diffuse_value(b, o, i, density);
     case BSDF_CONDUCTOR: return conductor_value(b, o, i, density);
     case BSDF_DIELECTRIC: return dielectric_value(b, o, i, density);
-    case BSDF_PHASE: return gray(*density = phase(b->g, o, i));
+    case BSDF_PHASE: return gray(*density);
     default: return more_bsdf_value(b, o, i, s, density);
   }
 }
 
 static bool sample_direction(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
-  switch (b->kind) {
-    case BSDF_DIFFUSE: result->wi = face_forward(sample_cosine_hemisphere(s), make_vector(0, 0, wo.z)); return true;
-    case BSDF_CONDUCTOR: sample_conductor(b, wo, s, result); return true;
-    case BSDF_DIELECTRIC: return sample_dielectric(b, wo, s, result);
-    case BSDF_PHASE: result->wi = sample_phase(b->g, s); return true;
-    default: return sample_more_bsdf(b, wo, s, result);
-  }
+  if (b->kind == BSDF_DIELECTRIC) return sample_dielectric(b, wo, s, result);
+  if (b->kind == BSDF_MORE) return sample_more_bsdf(b, wo, s, result);
+  if (b->kind == BSDF_CONDUCTOR) sample_conductor(b, wo, s, result);
+  if (b->kind == BSDF_DIFFUSE) result->wi = face_forward(sample_cosine_hemisphere(s), make_vector(0, 0, wo.z));
+  if (b->kind == BSDF_PHASE) result->wi = sample_phase(b->g, s);
+  return true;
 }
 
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {

@@ -59,7 +59,7 @@ done
 # Stopped while it denoises: the image is there, no denoised copy is, and none is said to be.
 for try in 1 2 3 4 5 6; do
   rm -f stopped.exr stopped_clean.exr
-  "$VELO" render room.pbrt --resolution $((400 + 200 * try))x300 --spp 2 -o stopped.exr --denoise stopped_clean.exr >said 2>&1 &
+  "$VELO" render room.pbrt -t 1 --resolution $((400 * try))x300 --spp 2 -o stopped.exr --denoise stopped_clean.exr >said 2>&1 &
   process=$!
   while [ ! -e stopped.exr ] && kill -0 $process 2>/dev/null; do sleep 0.01; done
   kill -TERM $process 2>/dev/null

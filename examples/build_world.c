@@ -2,6 +2,7 @@
  * camera with eye (300, 400, 500), lookat (0, 0, -50) and view-plane distance 400, three spheres on a plane, one lamp.
  *
  *   build_world IMAGE [IMAGE...]     the suffix selects the format: .exr is linear, .png is for displays
+ *   build/release/bin/example_build_world examples/build_world.jpg
  *
  * To compile it against an installed velo:
  *   cc -std=c17 build_world.c $(pkg-config --cflags --libs velo) -o build_world

@@ -21,12 +21,12 @@ static void rays_of(void *user, const vlOwnFilmPoints *points, const vlOwnRays *
   }
 }
 
-static void change(vlSceneDefs *defs) {
+int main(int count, char **arguments) {
   static double right_angle = 1.5707963267948966;
   static const vlOwnCamera fisheye = {.name = "my fisheye", .rays = rays_of, .user = &right_angle};
-  defs->camera.own = &fisheye;
-}
-
-int main(int count, char **arguments) {
-  return example_run(count, arguments, change);
+  Example e = example_open(count, arguments, NULL);
+  e.defs->camera.own = &fisheye;
+  example_render(&e);
+  example_write(&e, arguments[2]);
+  return example_close(&e);
 }

@@ -27,11 +27,11 @@ static void numbers_of(void *user, const vlOwnSamples *s) {
   for (uint32_t i = 0; s->v && i < s->count; i++) s->v[i] = number(s, i, s->dimension + 1);
 }
 
-static void change(vlSceneDefs *defs) {
-  static const vlOwnSampler sampler = {.name = "Kronecker", .numbers = numbers_of};
-  defs->render.own_sampler = &sampler;
-}
-
 int main(int count, char **arguments) {
-  return example_run(count, arguments, change);
+  static const vlOwnSampler sampler = {.name = "Kronecker", .numbers = numbers_of};
+  Example e = example_open(count, arguments, NULL);
+  e.defs->render.own_sampler = &sampler;
+  example_render(&e);
+  example_write(&e, arguments[2]);
+  return example_close(&e);
 }

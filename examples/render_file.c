@@ -2,6 +2,7 @@
  * so the image has the same bytes as that of `velo render SCENE -o IMAGE`.
  *
  *   render_file SCENE IMAGE     the suffix of IMAGE selects the format; .exr and .pfm are linear
+ *   build/release/bin/example_render_file examples/corner.pbrt examples/render_file.jpg
  *
  * To compile it against an installed velo:
  *   cc -std=c17 render_file.c $(pkg-config --cflags --libs velo) -o render_file

@@ -234,6 +234,9 @@ typedef struct vlRenderDef {
   /** A sampler of one's own (velo/own.h), in place of `sampler` for all paths that begin at the camera. Must outlive
    * the call. `sampler` then still gives the numbers of light paths and the length of the sequence. Default null. */
   const vlOwnSampler *own_sampler;
+  /** A tracer of one's own (velo/trace.h), in place of `tracer`; must outlive the call. It gets surfaces and lights;
+   * media are not there for it. Default null. */
+  const struct vlOwnTracer *own_tracer;
 } vlRenderDef;
 /** The default def. */
 VL_API vlRenderDef vl_default_render_def(void);

@@ -26,6 +26,7 @@
 #include "velo/receipt.h"
 #include "velo/render.h"
 #include "velo/scene.h"
+#include "velo/trace.h"
 #include "velo/trajectory.h"
 #include "velo/upgrade.h"
 #include "velo/vanishing.h"

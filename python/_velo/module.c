@@ -129,8 +129,8 @@ PyMODINIT_FUNC PyInit__velo(void) {
     Py_INCREF(type);
     types[i] = (PyTypeObject *)type;
   }
-  PyMethodDef *tables[] = {camera_functions, film_functions,  image_functions,
-                           render_functions, world_functions, own_functions};
+  PyMethodDef *tables[] = {camera_functions, film_functions, image_functions,    render_functions,
+                           world_functions,  own_functions,  own_trace_functions};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
     if (PyModule_AddFunctions(module, tables[i]) < 0) return NULL;
   return module;

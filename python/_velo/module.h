@@ -74,6 +74,7 @@ typedef struct Own {
   PyObject *error;             /* the first exception outside of a long call; null: none */
   vlOwnCamera camera;
   vlOwnSampler sampler;
+  vlOwnTracer tracer;
 } Own;
 
 /* The id of a texture, material, medium, emission, shape or group in a scene. */
@@ -252,6 +253,7 @@ int find_kind(const vlKindFamily *family, const char *thing, PyObject *name);
 /* The code of one's own behind a def's pointers; null: none. */
 const Own *own_of_camera(const vlCamera *camera);
 const Own *own_of_sampler(const vlRenderDef *def);
+const Own *own_of_tracer(const vlRenderDef *def);
 /* An Own of this kind from a Python value; null with an exception. */
 Own *own_read(PyObject *value, vlOwnKind kind, const char *what);
 /* Raises the exception that its function left outside of a long call, if any. False: raised. own may be null. */
@@ -281,6 +283,6 @@ PyObject *scene_mesh(Scene *self, PyObject *handle);
 PyObject *scene_instance(Scene *self, PyObject *handle);
 PyObject *camera_object(const vlCameraDef *def, PyObject *keep);
 extern PyMethodDef camera_functions[], film_functions[], image_functions[], render_functions[], world_functions[],
-    own_functions[];
+    own_functions[], own_trace_functions[];
 
 #endif

@@ -3,34 +3,32 @@
 #include <math.h>
 #include <string.h>
 
-#include "module.h"
+#include "own.h"
 
 /* ---- calls ------------------------------------------------------------------------------------------------------- */
 
-/* An argument: `count` numbers of `size` bytes. */
-static PyObject *view_of(const void *data, uint32_t count, size_t size, bool written) {
-  return PyMemoryView_FromMemory((char *)(uintptr_t)data, (Py_ssize_t)(count * size),
-                                 written ? PyBUF_WRITE : PyBUF_READ);
+static PyObject *view_of(const Column *c) {
+  if (!c->data) return Py_INCREF(Py_None), Py_None;
+  return PyMemoryView_FromMemory((char *)(uintptr_t)c->data, (Py_ssize_t)(c->count * c->size),
+                                 c->written ? PyBUF_WRITE : PyBUF_READ);
 }
 
-/* Calls function(*arguments), whose first `plain` are done and the rest views of `columns`; steals arguments. */
-typedef struct Column {
-  const void *data;
-  size_t size;
-  bool written;
-} Column;
-static bool call_columns(Own *own, PyObject *function, uint32_t count, const long *plain, Py_ssize_t plain_count,
-                         const Column *columns, Py_ssize_t column_count) {
-  PyObject *arguments = PyTuple_New(plain_count + column_count), *result = NULL;
+bool own_call(Own *own, PyObject *function, PyObject *first, const long *plain, Py_ssize_t plain_count,
+              const Column *columns, Py_ssize_t column_count) {
+  Py_ssize_t head = first ? 1 : 0;
+  PyObject *arguments = PyTuple_New(head + plain_count + column_count), *result = NULL;
   bool good = arguments != NULL;
+  if (good && first) {
+    Py_INCREF(first);
+    good = PyTuple_SetItem(arguments, 0, first) == 0;
+  }
   for (Py_ssize_t i = 0; i < plain_count && good; i++) {
     PyObject *number = PyLong_FromLong(plain[i]);
-    good = number && PyTuple_SetItem(arguments, i, number) == 0;
+    good = number && PyTuple_SetItem(arguments, head + i, number) == 0;
   }
   for (Py_ssize_t i = 0; i < column_count && good; i++) {
-    PyObject *view = columns[i].data ? view_of(columns[i].data, count, columns[i].size, columns[i].written)
-                                     : (Py_INCREF(Py_None), Py_None);
-    good = view && PyTuple_SetItem(arguments, plain_count + i, view) == 0;
+    PyObject *view = view_of(&columns[i]);
+    good = view && PyTuple_SetItem(arguments, head + plain_count + i, view) == 0;
   }
   if (good) result = PyObject_CallObject(function, arguments);
   Py_XDECREF(arguments);
@@ -55,12 +53,14 @@ static bool call_columns(Own *own, PyObject *function, uint32_t count, const lon
 static void rays(void *user, const vlOwnFilmPoints *p, const vlOwnRays *r) {
   Own *own = user;
   PyGILState_STATE state = PyGILState_Ensure();
-  const size_t d = sizeof(double);
-  const Column columns[] = {{p->x, d, false},    {p->y, d, false}, {p->lens_u, d, false}, {p->lens_v, d, false},
-                            {p->time, d, false}, {r->ox, d, true}, {r->oy, d, true},      {r->oz, d, true},
-                            {r->dx, d, true},    {r->dy, d, true}, {r->dz, d, true},      {r->weight, d, true}};
+  const void *const in[] = {p->x, p->y, p->lens_u, p->lens_v, p->time};
+  void *const out[] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->weight};
+  enum { IN = sizeof in / sizeof *in, OUT = sizeof out / sizeof *out };
+  Column columns[IN + OUT];
+  for (int i = 0; i < IN + OUT; i++)
+    columns[i] = (Column){i < IN ? in[i] : out[i - IN], sizeof(double), p->count, i >= IN};
   const long plain[] = {p->width, p->height};
-  if (!call_columns(own, own->function, p->count, plain, 2, columns, sizeof columns / sizeof *columns))
+  if (!own_call(own, own->function, NULL, plain, 2, columns, IN + OUT))
     for (uint32_t i = 0; i < p->count; i++) r->dx[i] = (double)NAN;
   PyGILState_Release(state);
 }
@@ -69,10 +69,13 @@ static void pixels(void *user, const vlOwnSpacePoints *p) {
   Own *own = user;
   PyGILState_STATE state = PyGILState_Ensure();
   const size_t d = sizeof(double);
-  const Column columns[] = {
-      {p->x, d, false}, {p->y, d, false}, {p->z, d, false}, {p->film_x, d, true}, {p->film_y, d, true}};
+  const Column columns[] = {{p->x, d, p->count, false},
+                            {p->y, d, p->count, false},
+                            {p->z, d, p->count, false},
+                            {p->film_x, d, p->count, true},
+                            {p->film_y, d, p->count, true}};
   const long plain[] = {p->width, p->height};
-  if (!call_columns(own, own->pixels, p->count, plain, 2, columns, sizeof columns / sizeof *columns))
+  if (!own_call(own, own->pixels, NULL, plain, 2, columns, sizeof columns / sizeof *columns))
     for (uint32_t i = 0; i < p->count; i++) p->film_x[i] = (double)NAN;
   PyGILState_Release(state);
 }
@@ -81,9 +84,13 @@ static void numbers(void *user, const vlOwnSamples *s) {
   Own *own = user;
   PyGILState_STATE state = PyGILState_Ensure();
   const size_t n = sizeof(float);
-  const Column columns[] = {{s->x, n, false}, {s->y, n, false}, {s->index, n, false}, {s->u, n, true}, {s->v, n, true}};
+  const Column columns[] = {{s->x, n, s->count, false},
+                            {s->y, n, s->count, false},
+                            {s->index, n, s->count, false},
+                            {s->u, n, s->count, true},
+                            {s->v, n, s->count, true}};
   const long plain[] = {s->dimension, s->seed};
-  call_columns(own, own->function, s->count, plain, 2, columns, sizeof columns / sizeof *columns);
+  own_call(own, own->function, NULL, plain, 2, columns, sizeof columns / sizeof *columns);
   PyGILState_Release(state);
 }
 
@@ -99,7 +106,7 @@ static void own_dealloc(Own *self) {
 /* own_new(kind, name, function, pixels or None, lens) */
 static PyObject *own_new(PyObject *module, PyObject *arguments) {
   (void)module;
-  static const char *const kinds[] = {"camera", "sampler", NULL};
+  static const char *const kinds[] = {"camera", "sampler", "tracer", NULL};
   PyObject *kind, *name, *function, *other;
   int lens;
   if (!PyArg_ParseTuple(arguments, "OOOOp:own_new", &kind, &name, &function, &other, &lens)) return NULL;
@@ -118,6 +125,7 @@ static PyObject *own_new(PyObject *module, PyObject *arguments) {
     if (other != Py_None) Py_INCREF(other), self->pixels = other;
     self->camera = (vlOwnCamera){self->name, rays, self->pixels ? pixels : NULL, lens, self};
     self->sampler = (vlOwnSampler){self->name, numbers, self};
+    self->tracer = (vlOwnTracer){self->name, own_radiance, self};
   }
   Py_XDECREF(keep);
   return (PyObject *)self;
@@ -136,6 +144,10 @@ const Own *own_of_camera(const vlCamera *camera) {
 
 const Own *own_of_sampler(const vlRenderDef *def) {
   return def && def->own_sampler ? def->own_sampler->user : NULL;
+}
+
+const Own *own_of_tracer(const vlRenderDef *def) {
+  return def && def->own_tracer ? def->own_tracer->user : NULL;
 }
 
 bool own_check(const Own *own) {

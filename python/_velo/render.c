@@ -51,7 +51,12 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
     if (names && !append_names(names, scene_rows.rows, scene_rows.count)) Py_CLEAR(names);
     return raise_unknown("keyword of render", name, names), NULL;
   }
-  if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.tracer") == 0) {
+  if (strcmp(row->member, "render.tracer") == 0 && is_object(value, TYPE_OWN)) {
+    Own *own = own_read(value, VL_OWN_TRACER, "tracer");
+    if (!own || !keep_object(self->keep, value)) return NULL;
+    self->defs.render.own_tracer = &own->tracer;
+  } else if (row->type == VL_PARAMETER_CHOICE && strcmp(row->member, "render.tracer") == 0) {
+    self->defs.render.own_tracer = NULL;
     int kind = find_kind(vl_kind_family_find("tracers"), "tracer", value);
     if (kind < 0) return NULL;
     self->defs.render.tracer = (vlTracer)kind;
@@ -206,6 +211,7 @@ static PyObject *render(PyObject *module, PyObject *arguments) {
   if (!long_call_begin(&call, world->context, callback)) return NULL;
   call.film = film;
   call.own[0] = own_of_camera(&camera->camera), call.own[1] = own_of_sampler(&settings->defs.render);
+  call.own[2] = own_of_tracer(&settings->defs.render);
   Rendering r = {.world = world->world, .camera = &camera->camera, .film = film->film, .def = settings->defs.render};
   r.def.cancel = call.cancel;
   r.def.progress = call.callback ? long_call_progress : NULL;

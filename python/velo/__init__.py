@@ -19,7 +19,8 @@ from velo._errors import (CancelledError, Error, ForkError, MissingFileError, Ou
 from velo.camera import Camera, Projection, Rays, TrajectoryFrame, read_camera, read_trajectory
 from velo.film import Film, merge_films, read_film
 from velo.image import Image, read_image
-from velo.own import FilmPoints, OwnCamera, OwnSampler, Samples
+from velo.own import (FilmPoints, OwnCamera, OwnSampler, OwnTracer, Paths, Samples, Trace, TraceBounce, TraceHits, TraceLights,
+                      TraceRays)
 from velo.scene import Handle, Mesh, Model, Scene, World, load, settings_names
 from velo.spectrum import Spectrum, blackbody, named, rgb, sampled, spectrum_names
 
@@ -44,9 +45,9 @@ def kinds(family: str) -> dict[str, dict[str, str]]:
 
 __all__ = [
     "Camera", "CancelledError", "Context", "Error", "Film", "FilmPoints", "ForkError", "Handle", "Image", "Mesh",
-    "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "Progress", "Projection",
-    "Rays", "Samples", "Scene", "SceneError", "Spectrum", "Step", "TrajectoryFrame", "UnsupportedError", "UsageError",
-    "World", "blackbody", "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera",
-    "read_film", "read_image", "read_trajectory", "rgb", "sampled", "sensor_names", "set_threads", "settings_names",
-    "spectrum_names",
+    "MissingFileError", "Model", "OutOfMemoryError", "OutputError", "OwnCamera", "OwnSampler", "OwnTracer", "Paths",
+    "Progress", "Projection", "Rays", "Samples", "Scene", "SceneError", "Spectrum", "Step", "Trace", "TraceBounce",
+    "TraceHits", "TraceLights", "TraceRays", "TrajectoryFrame", "UnsupportedError", "UsageError", "World", "blackbody",
+    "channel_names", "default_context", "kinds", "load", "merge_films", "named", "read_camera", "read_film", "read_image",
+    "read_trajectory", "rgb", "sampled", "sensor_names", "set_threads", "settings_names", "spectrum_names",
 ]

@@ -1,4 +1,4 @@
-"""Code of one's own in a render (docs/own-code.md): a camera and a sampler given by Python functions over numpy arrays.
+"""Code of one's own in a render (docs/own-code.md): a camera, a sampler and a tracer given by Python functions over numpy arrays.
 
 The library's threads call the functions, each call with up to 1024 elements and the GIL. Functions must be pure: what they
 give for an element depends on that element alone."""
@@ -121,6 +121,170 @@ class OwnSampler:
         return f"<velo.OwnSampler {self.name}>"
 
 
+# ---- tracers ------------------------------------------------------------------------------------------------------------
+
+_BATCH = 1024
+
+
+def _layout(*members: tuple[str, str, int]) -> list[Any]:
+    """Members (name, type, rows) of a struct of velo/trace.h, each row with an element for each lane."""
+    return [(name, kind, (rows, _BATCH) if rows else (_BATCH,)) for name, kind, rows in members]
+
+
+_RAYS: list[Any] = [("count", "u4")] + _layout(("origin", "f4", 3), ("direction", "f4", 3), ("t_min", "f4", 0), ("t_max", "f4", 0),
+                                               ("width", "f4", 0))
+_HITS: list[Any] = [("count", "u4")] + _layout(("t", "f4", 0), ("position", "f4", 3), ("normal", "f4", 3), ("shading", "f4", 3),
+                                               ("uv", "f4", 2), ("object", "u4", 0), ("material", "u4", 0),
+                                               ("reflectance", "f4", 4), ("emission", "f4", 4))
+_LIGHTS: list[Any] = _layout(("direction", "f4", 3), ("radiance", "f4", 4), ("pdf", "f4", 0), ("delta", "u1", 0)) + [("rays", _RAYS)]
+_BOUNCE: list[Any] = _layout(("weight", "f4", 4), ("pdf", "f4", 0), ("specular", "u1", 0)) + [("rays", _RAYS)]
+
+
+def _view(data: Any, name: str, count: int) -> Any:
+    array = data[name]
+    return array[:, :count].T if array.ndim == 2 else array[:count]
+
+
+class TraceRays:
+    """Rays of n lanes, in world space. The arrays share their memory with the struct that velo reads: they may be written."""
+
+    def __init__(self, data: Any, count: int) -> None:
+        self._data = data
+        self.origin = _view(data, "origin", count)  #: n x 3, scene units
+        self.direction = _view(data, "direction", count)  #: n x 3, unit; of rays to lights: any length
+        self.t_min = _view(data, "t_min", count)  #: n: where the ray begins to count, in lengths of its direction
+        self.t_max = _view(data, "t_max", count)  #: n: where it ends; below 0: no ray
+        self.width = _view(data, "width", count)  #: n: width of the footprint at the origin, scene units
+
+
+class TraceHits:
+    """The nearest hits of n rays."""
+
+    def __init__(self, data: Any, count: int) -> None:
+        self.t = _view(data, "t", count)  #: n: distance, scene units; inf: nothing was hit, and all but emission is 0
+        self.position = _view(data, "position", count)  #: n x 3, world space
+        self.normal = _view(data, "normal", count)  #: n x 3: of the surface, on the side of the ray's origin
+        self.shading = _view(data, "shading", count)  #: n x 3: the material's normal, on the surface's outside
+        self.uv = _view(data, "uv", count)  #: n x 2: texture coordinates
+        self.object = _view(data, "object", count)  #: n: id as in ground truth; 0: nothing
+        self.material = _view(data, "material", count)  #: n: id; 0: nothing
+        self.reflectance = _view(data, "reflectance", count)  #: n x 4 channels; 1 for materials that have none
+        self.emission = _view(data, "emission", count)  #: n x 4: radiance of the light that was hit, or of the sky
+
+
+class TraceLights:
+    """Samples of the direct light at n hits."""
+
+    def __init__(self, data: Any, count: int) -> None:
+        self.direction = _view(data, "direction", count)  #: n x 3: towards the light, unit
+        self.radiance = _view(data, "radiance", count)  #: n x 4: what arrives if nothing is in between, divided by pdf
+        self.pdf = _view(data, "pdf", count)  #: n: per steradian; 0: no sample
+        self.delta = _view(data, "delta", count)  #: n: 1: light from a single point or direction
+        self.rays = TraceRays(data["rays"], count)  #: the way to the light, for Trace.occluded
+
+
+class TraceBounce:
+    """Directions in which n paths go on."""
+
+    def __init__(self, data: Any, count: int) -> None:
+        self.weight = _view(data, "weight", count)  #: n x 4: BSDF times cosine, divided by pdf; 0: the path ends
+        self.pdf = _view(data, "pdf", count)  #: n: per steradian
+        self.specular = _view(data, "specular", count)  #: n: 1: a mirror or smooth glass
+        self.rays = TraceRays(data["rays"], count)  #: for Trace.hits
+
+
+class Trace:
+    """A batch of n paths that is being traced. It lives during the call of the tracer. Lane i is path i in all arrays."""
+
+    def __init__(self, trace: Any, count: int) -> None:
+        self._trace = trace
+        self._count = count
+
+    def _ask(self, question: str, number: int, given: Any, layout: Any) -> Any:
+        data = _numpy().zeros((), dtype=layout)
+        _velo.trace_ask(self._trace, question, number, given, data)
+        return data
+
+    def _padded(self, direction: Any) -> Any:
+        rows = _numpy().zeros((3, _BATCH), dtype="f4")
+        rows[:, :self._count] = _rows(direction, "direction", (self._count, 3), "f4").T
+        return rows
+
+    def hits(self, rays: TraceRays) -> TraceHits:
+        """The nearest hits of rays. The other methods then ask about these hits."""
+        return TraceHits(self._ask("hits", 0, rays._data, _HITS), self._count)
+
+    def occluded(self, rays: TraceRays) -> Any:
+        """n flags, for n rays (n x 3): True where a surface lies on the ray."""
+        return self._ask("occluded", 0, rays._data, ("u1", _BATCH))[:self._count].astype(bool)
+
+    def leave(self, direction: Any) -> TraceRays:
+        """Rays that leave the last hits in these directions (n x 3, unit, world space), without meeting the surface that they
+        leave."""
+        return TraceRays(self._ask("leave", 0, self._padded(direction), _RAYS), self._count)
+
+    def lights(self, bounce: int = 0) -> TraceLights:
+        """A sample of a light for each of the last hits. bounce: 0 for hits of the camera's rays; selects the numbers."""
+        return TraceLights(self._ask("lights", bounce, None, _LIGHTS), self._count)
+
+    def bsdf(self, direction: Any) -> tuple[Any, Any]:
+        """The BSDF of the last hits for light from these directions (n x 3, unit, world space), times the cosine: n x 4; and the
+        density with which bounce samples them: n."""
+        data = self._ask("bsdf", 0, self._padded(direction), ("f4", (5, _BATCH)))
+        return data[:4, :self._count].T, data[4, :self._count]
+
+    def bounce(self, bounce: int = 0) -> TraceBounce:
+        """Samples the BSDFs of the last hits. bounce: as lights."""
+        return TraceBounce(self._ask("bounce", bounce, None, _BOUNCE), self._count)
+
+    def numbers(self, purpose: int = 0) -> Any:
+        """n x 2: numbers in [0, 1) of the render's sampler. Those of different purposes are independent."""
+        return self._ask("numbers", purpose, None, ("f4", (2, _BATCH)))[:, :self._count].T
+
+
+class Paths(NamedTuple):
+    """The paths that a tracer computes: n lanes."""
+    rays: TraceRays  #: the camera's
+    x: Any  #: n: column of the pixel
+    y: Any  #: n: row
+    index: Any  #: n: index of the sample in its pixel
+    time: Optional[Any]  #: n: time in the world's motion, 0 to 1; None: nothing moves
+    wavelengths: Optional[Any]  #: n x 4, nm; None in an RGB world
+    white: Any  #: n x 4: the channels of white light of luminance 1
+    max_depth: int  #: the keyword of render
+
+
+class OwnTracer:
+    """A tracer of one's own, for Scene.render(tracer=...).
+
+    radiance(trace: Trace, paths: Paths): radiance of each path: n x 4 channels (wavelengths, or R, G, B and one that is not
+    used), or n numbers, which stand for white light. NaN: the sample is left out and counted. name: stands in receipts and
+    films."""
+
+    def __init__(self, radiance: Callable[[Trace, Paths], Any], *, name: str) -> None:
+        numpy = _numpy()
+        _callable(radiance, "radiance")
+
+        def call(trace: Any, count: int, max_depth: int, rays: Any, x: Any, y: Any, index: Any, time: Any, wavelengths: Any,
+                 white: Any, result: Any, alpha: Any) -> None:
+            def channels(column: Any) -> Any:
+                return numpy.frombuffer(column, "f4").reshape(4, _BATCH)[:, :count].T
+            data = numpy.frombuffer(rays, dtype=_RAYS)[0]
+            paths = Paths(TraceRays(data, count), numpy.frombuffer(x, "i4"), numpy.frombuffer(y, "i4"),
+                          numpy.frombuffer(index, "u4"), None if time is None else numpy.frombuffer(time, "f4"),
+                          None if wavelengths is None else channels(wavelengths), channels(white), max_depth)
+            value = numpy.asarray(radiance(Trace(trace, count), paths), dtype="f4")
+            if value.ndim == 1:
+                value = _rows(value, "radiance", (count,), "f4")[:, None] * paths.white
+            channels(result)[:] = _rows(value, "radiance", (count, 4), "f4")
+
+        self.name = name
+        self._own = _velo.own_new("tracer", name, call, None, False)
+
+    def __repr__(self) -> str:
+        return f"<velo.OwnTracer {self.name}>"
+
+
 def bare(value: Any) -> Any:
     """The extension's object behind code of one's own; other values as they are."""
-    return value._own if isinstance(value, (OwnCamera, OwnSampler)) else value
+    return value._own if isinstance(value, (OwnCamera, OwnSampler, OwnTracer)) else value

@@ -308,7 +308,7 @@ class Scene(_velo.Scene):
         denoise: denoises the colours.
         Further keywords: the members of vlRenderDef, vlFilmDef, vlBuildDef and vlDevelopDef: spp, seed, tracer, sampler,
         max_depth, filter, exposure, color, transparent, noise, time_limit, ... (velo.settings_names()). tracer="auto": the
-        tracer that choose_tracer names. sampler may be a velo.OwnSampler.
+        tracer that choose_tracer names. sampler may be a velo.OwnSampler, tracer a velo.OwnTracer.
 
         KeyboardInterrupt ends the render; scene.film keeps its finished passes."""
         denoise = _check.flag(denoise, "denoise")

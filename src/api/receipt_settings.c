@@ -8,6 +8,7 @@
 #include "camera/parts.h"
 #include "trace/sampler/sampler.h"
 #include "velo/schema.h"
+#include "velo/trace.h"
 #include "world/accel/accel.h"
 
 typedef enum Type { BOOL, COUNT, FLOAT, DOUBLE, CHOICE, FAMILY, STRING } Type;
@@ -203,8 +204,10 @@ static bool put_build(json_t *tree, const vlBuildDef *build) {
 static bool put_render(json_t *tree, vlRenderDef render) {
   if (!render.sequence) render.sequence = vl_sampler_sequence(render.sampler, render.spp);
   const char *sampler = render.own_sampler ? render.own_sampler->name : NULL;
+  const char *tracer = render.own_tracer ? render.own_tracer->name : NULL;
   return put_def(tree, "render", render_fields, &render) &&
          (!sampler || vl_receipt_put(json_object_get(tree, "render"), "own_sampler", json_string(sampler))) &&
+         (!tracer || vl_receipt_put(json_object_get(tree, "render"), "own_tracer", json_string(tracer))) &&
          (!(render.noise > 0) || put_def(json_object_get(tree, "render"), "adaptive", noise_fields, &render));
 }
 

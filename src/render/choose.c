@@ -135,6 +135,7 @@ static vlResult run_once(Race *race, uint32_t i, uint32_t half, vlTracerTrial *t
   vlRenderDef def = race->def;
   def.seed = seeds[half];
   def.tracer = rows[i].tracer;
+  def.own_tracer = NULL;
   def.light_paths = rows[i].divisor > 1 ? (uint32_t)(race->pixels / rows[i].divisor) : VL_AS_MANY_AS_PIXELS;
   vlResult result = vl_film_create(race->world->context, &race->film, &film);
   if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");

@@ -12,6 +12,7 @@
 #include "render/block.h"
 #include "trace/tracer/record.h"
 #include "velo/focus.h"
+#include "velo/trace.h"
 
 enum { MOST_PATHS = 1 << 20 };
 
@@ -279,6 +280,9 @@ void vl_pixel_paths_destroy(vlPixelPaths *paths) {
 
 static vlResult check(const vlFilmDef *film, const vlRenderDef *def, uint32_t x, uint32_t y, uint32_t count,
                       vlError *error) {
+  if (def->own_tracer)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "paths: those of the own tracer \"%s\" are not recorded",
+                   vl_short_text(def->own_tracer->name).text);
   if (def->tracer != VL_TRACER_PATH && def->tracer != VL_TRACER_VOLPATH)
     return vl_fail(error, VL_ERROR_ARGUMENT, "paths: only the tracers path and volpath are recorded");
   if (x < film->crop[0] || y < film->crop[1] || x >= film->crop[2] || y >= film->crop[3])

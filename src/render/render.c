@@ -12,6 +12,7 @@
 #include "render/support.h"
 #include "velo/focus.h"
 #include "velo/schema.h"
+#include "velo/trace.h"
 
 enum { MAX_PASS = 16, PASS_SECONDS = 5 };
 static const double NEARLY = 0.97; /* share of the time limit after which no new pass begins */
@@ -56,6 +57,7 @@ static vlFilmOwn own_names(const vlCamera *camera, const vlRenderDef *def) {
   vlFilmOwn own = {0};
   if (camera->own) memcpy(own.name[VL_OWN_CAMERA], camera->own->name, strlen(camera->own->name));
   if (def->own_sampler) memcpy(own.name[VL_OWN_SAMPLER], def->own_sampler->name, strlen(def->own_sampler->name));
+  if (def->own_tracer) memcpy(own.name[VL_OWN_TRACER], def->own_tracer->name, strlen(def->own_tracer->name));
   return own;
 }
 
@@ -76,6 +78,8 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
   vlResult result = VL_OK;
   if (def->own_sampler)
     result = vl_own_check("sampler", def->own_sampler->name, def->own_sampler->numbers != NULL, error);
+  if (result == VL_OK && def->own_tracer)
+    result = vl_own_check("tracer", def->own_tracer->name, def->own_tracer->radiance != NULL, error);
   if (result != VL_OK) return result;
   vlFilmOwn own = own_names(camera, def);
   vlFilmSequence sequence = vl_film_sequence(film);
@@ -139,6 +143,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
 static vlTracer tracer_of(vlRenderRun *r, const vlCamera *camera) {
   const vlWorld *world = r->world;
   vlTracer tracer = r->def->tracer;
+  if (r->def->own_tracer) return VL_TRACER_PATH; /* no light paths */
   if (tracer == VL_TRACER_BIDIRECTIONAL && r->def->light_paths == 0) return VL_TRACER_VOLPATH;
   if (world->has_subsurface && (tracer == VL_TRACER_PATH || tracer == VL_TRACER_RANDOM_WALK))
     vl_log(world->context, VL_LOG_WARNING, NULL,
@@ -182,6 +187,7 @@ void vl_render_prepare(vlRenderRun *r, const vlCamera *camera) {
    * factor is constant, so that more samples refine the same image. */
   const float footprint = r->def->sharp_textures ? 0.0f : 0.25f;
   r->trace = (vlTraceDef){.tracer = tracer_of(r, camera),
+                          .own = r->def->own_tracer,
                           .sampler = &r->film_rays.sampler,
                           .isa = isa,
                           .cancel = r->def->cancel,

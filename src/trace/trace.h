@@ -59,6 +59,7 @@ typedef struct vlMediaFit {
 
 typedef struct vlTraceDef {
   vlTracer tracer;
+  const struct vlOwnTracer *own; /* in place of tracer (tracer/own.h); null: none */
   const vlSampler *sampler;
   vlIsa isa;
   uint32_t max_depth;

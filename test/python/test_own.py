@@ -135,6 +135,48 @@ def a_sampler_gives_the_mean_of_velos():
     assert abs(numpy.mean(means[0]) - numpy.mean(means[1])) < 4 * error < 0.1 * numpy.mean(means[0]), (means, error)
 
 
+def occlusion(trace, paths):
+    hits = trace.hits(paths.rays)
+    u, v = trace.numbers().T
+    z = 1 - 2 * u
+    r = numpy.sqrt(1 - z * z)
+    direction = hits.normal + numpy.stack((r * numpy.cos(2 * numpy.pi * v), r * numpy.sin(2 * numpy.pi * v), z), axis=1)
+    direction /= numpy.maximum(numpy.linalg.norm(direction, axis=1, keepdims=True), 1e-6)
+    return numpy.where(numpy.isfinite(hits.t) & ~trace.occluded(trace.leave(direction)), 1.0, 0.0)
+
+
+@case
+def a_tracer_gives_the_mean_of_velos():
+    it = scene()
+    own = velo.OwnTracer(occlusion, name="occlusion")
+    means = [[numpy.asarray(it.render(tracer=tracer, resolution=(32, 24), spp=8, seed=seed))[..., :3].mean() for seed in range(8)]
+             for tracer in ("ambientocclusion", own)]
+    error = math.hypot(*(numpy.std(mean, ddof=1) / math.sqrt(8) for mean in means))
+    assert abs(numpy.mean(means[0]) - numpy.mean(means[1])) < 4 * error < 0.1 * numpy.mean(means[0]), (means, error)
+
+
+@case
+def a_tracer_asks_during_its_call_only():
+    it = scene()
+    kept = []
+
+    def keep(trace, paths):
+        kept.append((trace, trace.hits(paths.rays)))
+        lights, step = trace.lights(), trace.bounce()
+        value, pdf = trace.bsdf(lights.direction)
+        assert value.shape == (len(paths.x), 4) and pdf.shape == paths.x.shape == step.pdf.shape
+        assert paths.white.shape == paths.wavelengths.shape == step.weight.shape
+        return numpy.full((len(paths.x), 4), numpy.nan)
+    image = it.render(tracer=velo.OwnTracer(keep, name="keep"), resolution=(16, 16), spp=1)
+    assert not numpy.asarray(image).any()
+    with raises(velo.UsageError, "over"):
+        kept[0][0].lights()
+    with raises(ZeroDivisionError):
+        it.render(tracer=velo.OwnTracer(lambda trace, paths: 1 / 0, name="fails"), resolution=(16, 16), spp=1)
+    with raises(velo.UsageError, "radiance"):
+        it.render(tracer=velo.OwnTracer(lambda trace, paths: numpy.zeros((2, 2)), name="shape"), resolution=(16, 16), spp=1)
+
+
 @case
 def the_same_bits_for_any_number_of_threads():
     images = []

@@ -1,8 +1,9 @@
-/* Cameras and samplers of one's own (velo/own.h): the same bits as velo's own where they compute the same, wrong values
- * are counted, names are kept in films and receipts. */
+/* Cameras, samplers and tracers of one's own (velo/own.h): the same bits as velo's own where they compute the same,
+ * wrong values are counted, names are kept in films and receipts. */
 #include "render/shots.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 #include <unistd.h>
 
 #include "api/small_world.h"
@@ -389,6 +390,202 @@ static void wrong_samplers(void **state) {
   stage_close(&s);
 }
 
+/* ---- tracers ------------------------------------------------------------------------------------------------------
+ */
+
+/* What a tracer of at most max_depth bounces gives, by light samples alone; lamps are seen at first and in mirrors. */
+static void by_lights(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)user;
+  vlTraceHits hits;
+  vlTraceLights lights;
+  vlTraceBounce next = {.rays = *paths->rays};
+  uint8_t occluded[VL_OWN_BATCH];
+  float bsdf[4][VL_OWN_BATCH], beta[4][VL_OWN_BATCH];
+  memset(next.specular, 1, sizeof next.specular);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = 0; i < VL_OWN_BATCH; i++) beta[c][i] = 1;
+  for (uint32_t bounce = 0; bounce <= paths->max_depth; bounce++) {
+    vl_world_trace(trace, &next.rays, &hits);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = 0; i < paths->count; i++)
+        if (next.specular[i]) paths->radiance[c][i] += beta[c][i] * hits.emission[c][i];
+    if (bounce == paths->max_depth) break;
+    vl_trace_lights(trace, bounce, &lights);
+    vl_world_occluded(trace, &lights.rays, occluded);
+    vl_trace_bsdf(trace, lights.direction, bsdf, NULL);
+    vl_trace_bounce(trace, bounce, &next);
+    for (int c = 0; c < 4; c++)
+      for (uint32_t i = 0; i < paths->count; i++) {
+        if (!occluded[i]) paths->radiance[c][i] += beta[c][i] * bsdf[c][i] * lights.radiance[c][i];
+        beta[c][i] *= next.weight[c][i];
+      }
+  }
+}
+static const vlOwnTracer light_tracer = {.name = "by lights", .radiance = by_lights};
+
+/* Ambient occlusion, cosine-weighted. */
+static void occlusion(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)user;
+  vlTraceHits hits;
+  vlTraceRays rays;
+  float u[VL_OWN_BATCH], v[VL_OWN_BATCH], direction[3][VL_OWN_BATCH] = {{0}};
+  uint8_t occluded[VL_OWN_BATCH];
+  vl_world_trace(trace, paths->rays, &hits);
+  vl_trace_numbers(trace, 0, u, v);
+  for (uint32_t i = 0; i < paths->count; i++) {
+    float z = 1 - 2 * u[i], r = sqrtf(fmaxf(0, 1 - z * z)), angle = 6.2831853f * v[i], sum = 0;
+    const float sphere[3] = {r * cosf(angle), r * sinf(angle), z};
+    for (int k = 0; k < 3; k++) direction[k][i] = hits.normal[k][i] + sphere[k];
+    for (int k = 0; k < 3; k++) sum += direction[k][i] * direction[k][i];
+    for (int k = 0; k < 3; k++) direction[k][i] /= sqrtf(fmaxf(sum, 1e-12f));
+  }
+  vl_trace_leave(trace, direction, &rays);
+  vl_world_occluded(trace, &rays, occluded);
+  for (int c = 0; c < 4; c++)
+    for (uint32_t i = 0; i < paths->count; i++)
+      if (hits.t[i] < INFINITY && !occluded[i]) paths->radiance[c][i] = paths->white[c][i];
+}
+static const vlOwnTracer occlusion_tracer = {.name = "occlusion", .radiance = occlusion};
+
+static void mean_of(vlTracer tracer, const vlOwnTracer *own, vlColorMode color, uint32_t depth, double *mean,
+                    double *error) {
+  enum { SEEDS = 24 };
+  double sum = 0, square = 0;
+  for (uint32_t seed = 0; seed < SEEDS; seed++) {
+    Stage s = small_stage(NULL, NULL);
+    s.build.color = color;
+    s.render.tracer = tracer;
+    s.render.own_tracer = own;
+    s.render.max_depth = depth;
+    s.render.seed = seed;
+    Image p = stage_finish(&s);
+    assert_int_equal(p.stats.not_finite, 0);
+    if (depth) assert_true(p.stats.shadow_rays > 0);
+    double all = 0;
+    for (uint32_t i = 0; i < p.width * p.height; i++) all += fmin((double)p.rgba[4 * i + 1], 20); /* no fireflies */
+    sum += all, square += all * all;
+    image_free(&p);
+  }
+  *mean = sum / SEEDS, *error = sqrt((square / SEEDS - *mean * *mean) / (SEEDS - 1));
+}
+
+/* The means are those of velo's tracers. */
+static void tracer_means(void **state) {
+  (void)state;
+  const struct {
+    vlTracer tracer;
+    const vlOwnTracer *own;
+    vlColorMode color;
+    uint32_t depth;
+  } cases[] = {{VL_TRACER_AMBIENT_OCCLUSION, &occlusion_tracer, VL_COLOR_SPECTRAL, 1},
+               {VL_TRACER_AMBIENT_OCCLUSION, &occlusion_tracer, VL_COLOR_RGB, 1},
+               {VL_TRACER_PATH, &light_tracer, VL_COLOR_SPECTRAL, 0},
+               {VL_TRACER_PATH, &light_tracer, VL_COLOR_SPECTRAL, 1},
+               {VL_TRACER_PATH, &light_tracer, VL_COLOR_RGB, 2}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    double a, b, ea, eb;
+    mean_of(cases[i].tracer, NULL, cases[i].color, cases[i].depth, &a, &ea);
+    mean_of(cases[i].tracer, cases[i].own, cases[i].color, cases[i].depth, &b, &eb);
+    double z = (b - a) / hypot(ea, eb);
+    print_message("own tracer, case %d: mean %.5g, velo's %.5g, z = %.2f\n", (int)i, b, a, z);
+    assert_true(fabs(z) < 4);
+    assert_true(hypot(ea, eb) < 0.01 * a); /* a difference of 5 % would be seen */
+  }
+}
+
+static Image render_traced(vlContext *context, const void *what) {
+  Stage s = small_stage(context, NULL);
+  s.render.own_tracer = what;
+  s.render.max_depth = 2;
+  s.render.spp = 2;
+  return stage_finish(&s);
+}
+
+static void tracer_bits(void **state) {
+  (void)state;
+  Image p = assert_same_bits(render_traced, &light_tracer, 2);
+  image_free(&p);
+}
+
+/* What the world answers about a first hit, checked against ground truth's definition; about lanes without rays. */
+typedef struct Look {
+  atomic_uint wrong, hits, misses;
+} Look;
+static void look_at(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  Look *look = user;
+  vlTraceHits hits;
+  vlTraceLights lights;
+  vlTraceBounce next;
+  float bsdf[4][VL_OWN_BATCH], pdf[VL_OWN_BATCH];
+  vlTraceRays rays = *paths->rays;
+  uint8_t occluded[VL_OWN_BATCH];
+  for (uint32_t i = 0; i < paths->count; i += 2) rays.t_max[i] = -1; /* every second lane has no ray */
+  vl_world_trace(trace, &rays, &hits);
+  vl_world_occluded(trace, &rays, occluded);
+  vl_trace_lights(trace, 0, &lights);
+  vl_trace_bsdf(trace, lights.direction, bsdf, pdf);
+  vl_trace_bounce(trace, 0, &next);
+  for (uint32_t i = 0; i < paths->count; i++) {
+    bool hit = hits.t[i] < INFINITY, wrong = hit != (occluded[i] == 1);
+    float length = 0, towards = 0;
+    for (int k = 0; k < 3; k++) {
+      float at = rays.origin[k][i] + hits.t[i] * rays.direction[k][i];
+      if (hit && fabsf(at - hits.position[k][i]) > 1e-3f) wrong = true;
+      length += hits.normal[k][i] * hits.normal[k][i];
+      towards += hits.normal[k][i] * rays.direction[k][i];
+    }
+    if (hit && (fabsf(length - 1) > 1e-4f || towards > 0 || !hits.object[i] || !hits.material[i])) wrong = true;
+    if (!hit && (length != 0 || hits.object[i] || lights.pdf[i] != 0 || next.pdf[i] != 0 || bsdf[0][i] != 0))
+      wrong = true;
+    if (i % 2 == 0 && (hit || hits.emission[0][i] != 0)) wrong = true;
+    atomic_fetch_add(hit ? &look->hits : &look->misses, 1);
+    if (wrong) atomic_fetch_add(&look->wrong, 1);
+    for (int c = 0; c < 4; c++) paths->radiance[c][i] = NAN;
+  }
+}
+
+static void what_the_world_answers(void **state) {
+  (void)state;
+  Look look = {0};
+  const vlOwnTracer own = {.name = "look", .radiance = look_at, .user = &look};
+  Image p = image_in(render_traced, &own, 2, VL_ISA_AUTO);
+  assert_int_equal(look.wrong, 0);
+  assert_true(look.hits > 500 && look.misses > 500);
+  assert_true(p.stats.not_finite >= SMALL_WIDTH * SMALL_HEIGHT * 2); /* NaN: all samples are left out */
+  image_free(&p);
+}
+
+static void wrong_tracers(void **state) {
+  (void)state;
+  Stage s = small_stage(NULL, NULL);
+  vlWorld *world;
+  vlFilm *film;
+  vlCamera camera;
+  vlPixelPaths *paths;
+  vlError error = {0};
+  const vlOwnTracer nameless = {.radiance = occlusion}, empty = {.name = "empty"};
+  assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
+  assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
+  assert_int_equal(vl_film_create(s.context, &s.film, &film), VL_OK);
+  s.render.own_tracer = &nameless;
+  assert_int_equal(vl_render(world, &camera, film, &s.render, NULL, &error), VL_ERROR_ARGUMENT);
+  s.render.own_tracer = &empty;
+  assert_int_equal(vl_render(world, &camera, film, &s.render, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "own tracer \"empty\""));
+  s.render.own_tracer = &occlusion_tracer;
+  assert_int_equal(vl_trace_paths(world, &camera, &s.film, &s.render, 3, 3, 0, 4, &paths, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "\"occlusion\""));
+  assert_int_equal(vl_render(world, &camera, film, &s.render, NULL, &error), VL_OK);
+  assert_string_equal(vl_film_own(film, VL_OWN_TRACER), "occlusion");
+  s.render.own_tracer = NULL;
+  s.render.spp = 8;
+  assert_int_equal(vl_render(world, &camera, film, &s.render, NULL, &error), VL_ERROR_ARGUMENT);
+  assert_non_null(strstr(error.message, "own tracer"));
+  vl_film_destroy(film);
+  vl_world_destroy(world);
+  stage_close(&s);
+}
+
 /* ---- names --------------------------------------------------------------------------------------------------------
  */
 
@@ -463,6 +660,7 @@ static void names_in_receipts(void **state) {
   for (int k = 0; k < 2; k++) {
     defs->camera.own = k ? &pinhole : NULL;
     defs->render.own_sampler = k ? &own_sampler : NULL;
+    defs->render.own_tracer = k ? &light_tracer : NULL;
     vlReceiptDef def = vl_default_receipt_def();
     def.defs = defs;
     assert_int_equal(vl_receipt_make(s.context, &def, &receipt[k], &error), VL_OK);
@@ -472,7 +670,7 @@ static void names_in_receipts(void **state) {
   assert_int_equal(vl_receipt_parse(s.context, text, strlen(text), &parsed, &error), VL_OK);
   assert_string_equal(vl_receipt_own(parsed, VL_OWN_CAMERA), "pinhole");
   assert_string_equal(vl_receipt_own(parsed, VL_OWN_SAMPLER), "hash");
-  assert_null(vl_receipt_own(parsed, VL_OWN_TRACER));
+  assert_string_equal(vl_receipt_own(parsed, VL_OWN_TRACER), "by lights");
   vlCameraDef camera;
   assert_int_equal(vl_receipt_camera(parsed, &camera, NULL, NULL, &error), VL_ERROR_UNSUPPORTED);
   assert_non_null(strstr(error.message, "\"pinhole\""));
@@ -488,11 +686,12 @@ static void names_in_receipts(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_velo),   cmocka_unit_test(same_in_motion),    cmocka_unit_test(same_on_all_machines),
-      cmocka_unit_test(other_sizes),    cmocka_unit_test(ground_truth),      cmocka_unit_test(no_rays),
-      cmocka_unit_test(what_it_gets),   cmocka_unit_test(wrong_cameras),     cmocka_unit_test(what_tracers_lack),
-      cmocka_unit_test(sampler_mean),   cmocka_unit_test(sampler_bits),      cmocka_unit_test(wrong_samplers),
-      cmocka_unit_test(names_in_films), cmocka_unit_test(names_in_receipts),
+      cmocka_unit_test(same_as_velo),  cmocka_unit_test(same_in_motion), cmocka_unit_test(same_on_all_machines),
+      cmocka_unit_test(other_sizes),   cmocka_unit_test(ground_truth),   cmocka_unit_test(no_rays),
+      cmocka_unit_test(what_it_gets),  cmocka_unit_test(wrong_cameras),  cmocka_unit_test(what_tracers_lack),
+      cmocka_unit_test(sampler_mean),  cmocka_unit_test(sampler_bits),   cmocka_unit_test(wrong_samplers),
+      cmocka_unit_test(tracer_means),  cmocka_unit_test(tracer_bits),    cmocka_unit_test(what_the_world_answers),
+      cmocka_unit_test(wrong_tracers), cmocka_unit_test(names_in_films), cmocka_unit_test(names_in_receipts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

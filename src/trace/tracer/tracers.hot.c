@@ -1,6 +1,7 @@
 /* trace/tracer/tracers.hot.c: calls the tracer, and defines the tracers that end at the first hit: raycast and ambient
  * occlusion. The path tracer is in path.hot.c. */
 #include "math/warp.h"
+#include "trace/tracer/own.h"
 #include "trace/two_way/stages.h"
 
 static void start_paths(vlTracing *t) {
@@ -152,6 +153,10 @@ void vl_trace_light_path(vlTracing *t) {
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
   vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
   start_paths(&t);
+  if (def->own) {
+    vl_own_tracer(&t);
+    return;
+  }
   switch (def->tracer) {
     case VL_TRACER_PATH: vl_trace_path(&t); break;
     case VL_TRACER_RAYCAST: vl_trace_raycast(&t); break;

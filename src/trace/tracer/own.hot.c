@@ -11,7 +11,9 @@ static void clear(float (*rows)[VL_OWN_BATCH], int count) {
 }
 
 static void put3(float (*rows)[VL_OWN_BATCH], uint32_t lane, vlVec3 v) {
-  rows[0][lane] = v.x, rows[1][lane] = v.y, rows[2][lane] = v.z;
+  rows[0][lane] = v.x;
+  rows[1][lane] = v.y;
+  rows[2][lane] = v.z;
 }
 
 static vlVec3 get3(float (*rows)[VL_OWN_BATCH], uint32_t lane) {
@@ -22,8 +24,11 @@ static void no_rays(vlTraceRays *r, uint32_t count) {
   r->count = count;
   clear(r->origin, 3);
   clear(r->direction, 2);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++)
-    r->direction[2][i] = 1.0f, r->t_min[i] = r->width[i] = 0.0f, r->t_max[i] = -1.0f;
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    r->direction[2][i] = 1.0f;
+    r->t_min[i] = r->width[i] = 0.0f;
+    r->t_max[i] = -1.0f;
+  }
 }
 
 static uint32_t lanes_of(const vlTrace *w, const vlTraceRays *r) {
@@ -37,23 +42,42 @@ static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
   const vlTraceBatch *b = &w->batch;
   for (uint32_t i = 0; i < VL_PAD(count); i++) {
     uint32_t k = i < count ? i : count - 1;
-    p->ox[i] = r->origin[0][k], p->oy[i] = r->origin[1][k], p->oz[i] = r->origin[2][k];
-    p->dx[i] = r->direction[0][k], p->dy[i] = r->direction[1][k], p->dz[i] = r->direction[2][k];
-    w->t_min[i] = r->t_min[k], w->t_max[i] = i < count ? r->t_max[k] : -1.0f;
+    p->ox[i] = r->origin[0][k];
+    p->oy[i] = r->origin[1][k];
+    p->oz[i] = r->origin[2][k];
+    p->dx[i] = r->direction[0][k];
+    p->dy[i] = r->direction[1][k];
+    p->dz[i] = r->direction[2][k];
+    w->t_min[i] = r->t_min[k];
+    w->t_max[i] = i < count ? r->t_max[k] : -1.0f;
     p->pdf[i] = p->eta_scale[i] = 1.0f;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
-    p->cone[i] = r->width[k], p->spread[i] = w->t.def->pixel_spread;
+    p->cone[i] = r->width[k];
+    p->spread[i] = w->t.def->pixel_spread;
     p->specular[i] = 1; /* all of a light's radiance counts */
-    p->px[i] = b->px[k], p->py[i] = b->py[k], p->index[i] = b->index[k], p->lane[i] = k;
-    for (int c = 0; c < 4; c++) p->beta[c][i] = 1.0f, p->lambda[c][i] = b->lambda[c] ? b->lambda[c][k] : 0.0f;
+    p->px[i] = b->px[k];
+    p->py[i] = b->py[k];
+    p->index[i] = b->index[k];
+    p->lane[i] = k;
+    for (int c = 0; c < 4; c++) {
+      p->beta[c][i] = 1.0f;
+      p->lambda[c][i] = b->lambda[c] ? b->lambda[c][k] : 0.0f;
+    }
   }
 }
 
 static void clear_hits(vlTraceHits *h, uint32_t count) {
   h->count = count;
-  clear(h->position, 3), clear(h->normal, 3), clear(h->shading, 3), clear(h->uv, 2);
-  clear(h->reflectance, 4), clear(h->emission, 4);
-  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) h->t[i] = VL_INFINITY, h->object[i] = h->material[i] = 0;
+  clear(h->position, 3);
+  clear(h->normal, 3);
+  clear(h->shading, 3);
+  clear(h->uv, 2);
+  clear(h->reflectance, 4);
+  clear(h->emission, 4);
+  for (uint32_t i = 0; i < VL_OWN_BATCH; i++) {
+    h->t[i] = VL_INFINITY;
+    h->object[i] = h->material[i] = 0;
+  }
 }
 
 static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
@@ -63,10 +87,12 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   const vlWorld *world = t->world;
   uint32_t count = lanes_of(w, r);
   clear_hits(h, count);
-  w->hits = 0, w->lanes = count;
+  w->hits = 0;
+  w->lanes = count;
   if (count == 0) return;
   start(w, r, count);
-  w->batch.t_min = w->t_min, w->batch.t_max = w->t_max;
+  w->batch.t_min = w->t_min;
+  w->batch.t_max = w->t_max;
   for (int c = 0; c < 4; c++) w->batch.radiance[c] = h->emission[c];
   vl_stage_hits(t, count, true);
   if (w->begun) w->batch.bounce_rays += count;
@@ -87,8 +113,10 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
     put3(h->position, lane, vl_lane3(f->px, f->py, f->pz, k));
     put3(h->normal, lane, vl_dot(g, d) > 0.0f ? vl_neg(g) : g);
     put3(h->shading, lane, vl_lane3(f->nx, f->ny, f->nz, k));
-    h->uv[0][lane] = f->u[k], h->uv[1][lane] = f->v[k];
-    h->object[lane] = shape + 1, h->material[lane] = world->shapes.items[shape].material + 1;
+    h->uv[0][lane] = f->u[k];
+    h->uv[1][lane] = f->v[k];
+    h->object[lane] = shape + 1;
+    h->material[lane] = world->shapes.items[shape].material + 1;
     bool has = world->materials.items[s->hits_b.material[k]].reflectance >= 0;
     for (int c = 0; c < 4; c++) h->reflectance[c][lane] = has ? s->shade.reflectance[c][k] : 1.0f;
   }
@@ -131,7 +159,9 @@ static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
   vlTraceScratch *s = w->t.s;
   const vlSurface *f = &s->surface;
   const vlLightSamples *l = &s->light;
-  clear(out->direction, 3), clear(out->radiance, 4), clear(&out->pdf, 1);
+  clear(out->direction, 3);
+  clear(out->radiance, 4);
+  clear(&out->pdf, 1);
   __builtin_memset(out->delta, 0, sizeof out->delta);
   no_rays(&out->rays, w->lanes);
   if (w->hits == 0 || w->t.world->lights.count == 0) return;
@@ -159,7 +189,9 @@ static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL
   if (w->hits == 0) return;
   for (uint32_t k = 0; k < VL_PAD(w->hits); k++) {
     uint32_t lane = s->b.lane[k < w->hits ? k : w->hits - 1];
-    s->light.wx[k] = d[0][lane], s->light.wy[k] = d[1][lane], s->light.wz[k] = d[2][lane];
+    s->light.wx[k] = d[0][lane];
+    s->light.wy[k] = d[1][lane];
+    s->light.wz[k] = d[2][lane];
   }
   vl_stage_light_bsdf(&w->t, w->hits);
   for (uint32_t k = 0; k < w->hits; k++) {
@@ -172,7 +204,8 @@ static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL
 static void bounce(vlTrace *w, uint32_t number, vlTraceBounce *out) {
   vlTraceScratch *s = w->t.s;
   vlPaths *from = &s->b, *to = &s->a;
-  clear(out->weight, 4), clear(&out->pdf, 1);
+  clear(out->weight, 4);
+  clear(&out->pdf, 1);
   __builtin_memset(out->specular, 0, sizeof out->specular);
   no_rays(&out->rays, w->lanes);
   if (w->hits == 0) return;
@@ -207,7 +240,8 @@ static void make_rays(const vlTracing *t, vlTraceRays *r) {
   for (uint32_t i = 0; i < b->n; i++) {
     put3(r->origin, i, vl_lane3(b->ox, b->oy, b->oz, i));
     put3(r->direction, i, vl_lane3(b->dx, b->dy, b->dz, i));
-    r->t_min[i] = b->t_min[i], r->t_max[i] = b->t_max[i];
+    r->t_min[i] = b->t_min[i];
+    r->t_max[i] = b->t_max[i];
     r->width[i] = t->def->pixel_width;
   }
 }
@@ -241,5 +275,6 @@ void vl_own_tracer(vlTracing *t) {
   vl_own_tracer_call(&w, t->def->own, &paths);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < b->n; i++) b->radiance[c][i] = radiance[c][i];
-  b->bounce_rays += w.batch.bounce_rays, b->shadow_rays += w.batch.shadow_rays;
+  b->bounce_rays += w.batch.bounce_rays;
+  b->shadow_rays += w.batch.shadow_rays;
 }

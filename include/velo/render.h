@@ -21,10 +21,14 @@ extern "C" {
 typedef struct vlWorld vlWorld;
 /** The guarantee for the image's bits. PORTABLE: the same scene, options and version give the same bits on every x86-64
  * machine and for any number of threads; a crop has the same pixels as the whole image. FAST: the bits are the same
- * only on machines for which Embree, which intersects the rays, selects the same instruction set. Between other
+ * only on machines for which Embree, which finds the surfaces, selects the same instruction set. Between other
  * machines a few pixels differ, where surfaces are coplanar or a ray meets an edge.
  * docs/decisions/0013-the-bits-of-embree.md has measurements. */
 typedef enum vlBits { VL_BITS_PORTABLE, VL_BITS_FAST } vlBits;
+/** What finds the surfaces that rays meet: the library EMBREE, or velo's own tree BVH, which runs everywhere and takes
+ * longer. With VL_BITS_PORTABLE both give the same bits (docs/decisions/0022-a-portable-accelerator.md). AUTO: Embree,
+ * if velo was built with it and, for VL_BITS_PORTABLE, on x86-64, where its instruction set can be chosen; else BVH. */
+typedef enum vlAccelerator { VL_ACCELERATOR_AUTO, VL_ACCELERATOR_EMBREE, VL_ACCELERATOR_BVH } vlAccelerator;
 /** How to compile a scene. */
 typedef struct vlBuildDef {
   uint32_t cookie;
@@ -40,6 +44,8 @@ typedef struct vlBuildDef {
    * set, for tests. VL_BITS_PORTABLE accepts only the first two. The build returns UNSUPPORTED for a set that is not
    * accepted or that the machine lacks. */
   vlBits bits;
+  /** Default VL_ACCELERATOR_AUTO. The build returns UNSUPPORTED for EMBREE where AUTO would not choose it. */
+  vlAccelerator accelerator;
   /** A world of the same context. What has not changed since is shared with it: meshes, their part of the accelerator,
    * images, tables of materials. The result is the same, bit for bit, as without it. Things of one scene are recognised
    * by their ids (velo/edit.h), those of a scene that was loaded again by their contents. Image files are read again if

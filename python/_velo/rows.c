@@ -25,6 +25,7 @@ static const char *const views[] = {"standard", "khronos_neutral", "agx", "raw",
 static const char *const colors[] = {"spectral", "rgb", NULL};
 static const char *const light_samplers[] = {"bvh", "power", "uniform", NULL};
 static const char *const bits[] = {"portable", "fast", NULL};
+static const char *const accelerators[] = {"auto", "embree", "bvh", NULL};
 static const char *const environments[] = {"auto", "none", "studio", "sky", "white", "file", NULL};
 static const char *const framings[] = {"auto", "corner", "front", NULL};
 static const char *const modes[] = {"centre", "nearest", "coverage", NULL};
@@ -80,6 +81,7 @@ static const vlParameter scene_array[] = {
     SCENE(BOOL, build.imitate_pbrt),
     SCENE(BOOL, build.regularize),
     CHOICE(vlSceneDefs, build.bits, bits),
+    CHOICE(vlSceneDefs, build.accelerator, accelerators),
     SCENE(FLOAT, develop.exposure),
 };
 const Rows scene_rows = ROWS(scene_array);

@@ -21,7 +21,7 @@ AnyCamera = Union[Camera, OwnCamera, None]
 _LOAD = ("permissive", "strict", "search_path", "time", "time_close", "scene", "animation", "variant", "camera")
 _ENVIRONMENTS = ("auto", "none", "studio", "sky", "white", "file")
 # Settings that the world depends on; the others belong to the film and the render.
-_BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
+_BUILD = ("color", "light_sampler", "imitate_pbrt", "regularize", "bits", "accelerator")
 _MOST_RACED = 64  # samples for which a race is planned, as by velo render: longer renders have the same tracer
 
 
@@ -270,7 +270,7 @@ class Scene(_velo.Scene):
 
         previous: a world of another scene to share with, one that the same file was loaded into for example. progress: called
         about ten times a second with a velo.Step; False ends the build with a CancelledError. Keywords: color, light_sampler,
-        regularize, bits."""
+        regularize, bits, accelerator."""
         _check.instance(previous, World, "previous", optional=True)
         return self._build(self.settings(**keywords), previous, _check.callback(progress, "progress"))
 

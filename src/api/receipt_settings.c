@@ -193,11 +193,13 @@ static bool put_def(json_t *tree, const char *name, const Field *fields, const v
   return vl_receipt_put(tree, name, object);
 }
 
-/* Adds the build settings. With fast bits the image also depends on Embree's instruction set, which is added, too. */
+/* Adds the build settings. With fast bits the image also depends on the accelerator, that is on Embree's instruction
+ * set, which is added, too. */
 static bool put_build(json_t *tree, const vlBuildDef *build) {
   if (!put_def(tree, "build", build_fields, build)) return false;
-  return build->bits == VL_BITS_PORTABLE ||
-         vl_receipt_put(json_object_get(tree, "build"), "embree", json_string(vl_accel_fast_set()));
+  if (build->bits == VL_BITS_PORTABLE) return true;
+  const char *set = vl_accel_fast_set(build);
+  return vl_receipt_put(json_object_get(tree, "build"), set ? "embree" : "accelerator", json_string(set ? set : "bvh"));
 }
 
 /* Adds the render settings. A default length of the sequence is replaced by its number. */

@@ -74,6 +74,8 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
   if (d.cookie != VL_COOKIE_BUILD) return vl_fail(error, VL_ERROR_ARGUMENT, "world build: " VL_BAD_COOKIE);
   if (d.bits != VL_BITS_PORTABLE && d.bits != VL_BITS_FAST)
     return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such kind of bits");
+  if (d.accelerator < VL_ACCELERATOR_AUTO || d.accelerator > VL_ACCELERATOR_BVH)
+    return vl_fail(error, VL_ERROR_ARGUMENT, "world build: no such accelerator");
   vlResult r = vl_scene_result(scene, error);
   if (r != VL_OK) return r;
   if (scene->meshes_dropped)

@@ -44,6 +44,7 @@ enum {
   RENDER_VERBOSE,
   RENDER_ISA,
   RENDER_BITS,
+  RENDER_ACCELERATOR,
   RENDER_CHANNELS,
   RENDER_CHANNELS_MODE,
   RENDER_CHANNELS_TIME,
@@ -100,8 +101,8 @@ enum {
 };
 
 extern const Choice light_sampler_choices[], sensor_choices[], regularize_choices[], filter_samples_choices[],
-    color_choices[], view_choices[], isa_choices[], bits_choices[], shard_choices[], stereo_choices[], eye_choices[],
-    framing_choices[], walls_choices[], up_choices[];
+    color_choices[], view_choices[], isa_choices[], bits_choices[], accelerator_choices[], shard_choices[],
+    stereo_choices[], eye_choices[], framing_choices[], walls_choices[], up_choices[];
 
 extern const Option render_options[];
 extern const Section render_sections[];

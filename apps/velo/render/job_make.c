@@ -54,6 +54,7 @@ const Choice stereo_choices[] = {{"none", VL_STEREO_NONE},
                                  {NULL, 0}};
 const Choice eye_choices[] = {{"both", VL_EYE_BOTH}, {"left", VL_EYE_LEFT}, {"right", VL_EYE_RIGHT}, {NULL, 0}};
 const Choice bits_choices[] = {{"portable", VL_BITS_PORTABLE}, {"fast", VL_BITS_FAST}, {NULL, 0}};
+const Choice accelerator_choices[] = {{"embree", VL_ACCELERATOR_EMBREE}, {"bvh", VL_ACCELERATOR_BVH}, {NULL, 0}};
 const Choice shard_choices[] = {{"samples", 0}, {"tiles", 1}, {NULL, 0}};
 const Choice isa_choices[] = {
     {"base", VL_ISA_BASE}, {"v2", VL_ISA_V2}, {"v3", VL_ISA_V3}, {"v4", VL_ISA_V4}, {NULL, 0}};
@@ -355,6 +356,7 @@ int job_make(Job *job, vlContext *context, vlScene *scene, const char *path, con
   fix_sequence(&defs->render);
   if (v[RENDER_TIME].given) defs->render.time_limit = v[RENDER_TIME].number;
   if (v[RENDER_BITS].given) defs->build.bits = (vlBits)v[RENDER_BITS].integer;
+  if (v[RENDER_ACCELERATOR].given) defs->build.accelerator = (vlAccelerator)v[RENDER_ACCELERATOR].integer;
   if (v[RENDER_IMITATE_PBRT].given) defs->build.imitate_pbrt = true;
   return override_spectrum(defs, arguments);
 }

@@ -261,6 +261,10 @@ const Option render_options[] = {
      "portable (default): the same image on every machine; fast: takes less time, and a few pixels may differ between "
      "machines:",
      0, 0, bits_choices},
+    {RENDER_ACCELERATOR, 0, "accelerator", OPTION_CHOICE, "NAME",
+     "what finds the surfaces that rays meet; default: embree where it gives the image that --bits promises, else bvh, "
+     "velo's own. With portable bits the image does not depend on it:",
+     0, 0, accelerator_choices},
     {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE",
      "limit of the memory that is used: 500M, 2G, 1.5GiB. A render that needs more fails before it starts, with a list "
      "of what needs how much",

@@ -19,6 +19,8 @@ bool receipt_option_counts(const Arguments *arguments, int option) {
       RENDER_NO_RECEIPT, RENDER_FILM,      RENDER_CHECKPOINT,    RENDER_CONTINUE, RENDER_SAMPLES,     RENDER_SHARD,
       RENDER_SHARD_BY,   RENDER_TILES,     RENDER_SKIP_EXISTING, RENDER_ANIMATE,  RENDER_FPS,         RENDER_TURNTABLE,
       RENDER_SERVE,      RENDER_OVERWRITE, RENDER_STRICT_OPTIONS};
+  const OptionValue *bits = &arguments->values[RENDER_BITS];
+  if (option == RENDER_ACCELERATOR) return bits->given && bits->integer == VL_BITS_FAST;
   if (option == RENDER_VIEW || option == RENDER_EXPOSURE) return arguments->values[RENDER_NOISE].given;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (option == others[i]) return false;

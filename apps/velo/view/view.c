@@ -11,8 +11,9 @@
 
 /* The options that go with --lecture: its scenes have all the rest. */
 static bool goes_with_lecture(int option) {
-  static const int all[] = {VIEW_PORT,  VIEW_LISTEN,    VIEW_NO_OPEN, VIEW_LECTURE,      VIEW_LANGUAGE,
-                            RENDER_SPP, RENDER_THREADS, RENDER_BITS,  RENDER_MAX_MEMORY, RENDER_QUIET};
+  static const int all[] = {VIEW_PORT,          VIEW_LISTEN,       VIEW_NO_OPEN,   VIEW_LECTURE,
+                            VIEW_LANGUAGE,      RENDER_SPP,        RENDER_THREADS, RENDER_BITS,
+                            RENDER_ACCELERATOR, RENDER_MAX_MEMORY, RENDER_QUIET};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
     if (all[i] == option) return true;
   return false;
@@ -150,6 +151,8 @@ const Option view_options[] = {
      NULL},
     {RENDER_BITS, 0, "bits", OPTION_CHOICE, "NAME", "the same image on every machine, or less time:", 0, 0,
      bits_choices},
+    {RENDER_ACCELERATOR, 0, "accelerator", OPTION_CHOICE, "NAME", "what finds the surfaces that rays meet:", 0, 0,
+     accelerator_choices},
     {RENDER_MAX_MEMORY, 0, "max-memory", OPTION_BYTES, "SIZE", "limit of the memory, such as 2G", 0, 0, NULL},
     {RENDER_SANDBOX, 0, "sandbox", OPTION_FOLDERS, "FOLDER",
      "files that the scene names must be in this folder, and the system confines velo where it can", 0, 0, NULL},

@@ -106,7 +106,7 @@ class Stage:
         self.recipe = recipe
         self.context = context
         self._world: Any = None  # of the last frame
-        self._build = {name: recipe.render[name] for name in ("color", "light_sampler", "imitate_pbrt", "regularize", "bits")
+        self._build = {name: recipe.render[name] for name in ("color", "light_sampler", "imitate_pbrt", "regularize", "bits", "accelerator")
                        if name in recipe.render}
         with at_place("recipe.render"):
             settings = {name: value for name, value in recipe.render.items() if name not in ("denoise", "tracer") or value != "auto"}

@@ -1,10 +1,11 @@
-/* world/accel/accel.h: nearest-hit and occlusion queries: by Embree (embree.h), or for worlds of few primitives by
- * brute force (brute_force.h). Queries return ids. velo recomputes t, u and v in its own arithmetic, because Embree's
- * values differ between its instruction sets. */
+/* world/accel/accel.h: nearest-hit and occlusion queries: by Embree (embree.h) or velo's own tree (bvh.h), or for
+ * worlds of few primitives by brute force (brute_force.h). Queries return ids. velo recomputes t, u and v in its own
+ * arithmetic, because Embree's values differ between its instruction sets. */
 #ifndef WORLD_ACCEL_ACCEL_H
 #define WORLD_ACCEL_ACCEL_H
 
 #include "base/context.h"
+#include "velo/render.h"
 
 #define VL_NONE 0xffffffffu
 
@@ -30,26 +31,30 @@ typedef struct vlAccelBundle {
 } vlAccelBundle;
 
 typedef struct vlAccel {
-  void *device;  /* RTCDevice */
-  void *scene;   /* RTCScene of the whole world */
-  void **groups; /* RTCScene of each group; of group 0 if split or if there are no instances, else null */
+  vlAccelerator kind; /* never AUTO */
+  void *device;       /* RTCDevice; null for BVH */
+  void *scene;        /* RTCScene of the whole world; or vlBvh of the instances, null if there are none */
+  void **groups; /* RTCScene of each group; of group 0 if split or if there are no instances, else null. Or vlBvh */
   uint32_t group_count;
-  /* The shapes of group 0 are in a scene of their own, which `scene` contains as instance 0. It can then be shared
-   * with the previous world, although instances have moved. The numbers of the other instances are the same. */
+  /* For Embree: the shapes of group 0 are in a scene of their own, which `scene` contains as instance 0. It can then be
+   * shared with the previous world, although instances have moved. The numbers of the other instances are the same. */
   bool split;
   vlAccelBundle *bundles;           /* one per group */
   uint32_t *members;                /* memory of the members of all bundles */
   struct vlBruteForce *brute_force; /* of a world of few primitives, where it answers all queries; else null */
   const struct vlBruteForceKernels *brute_force_kernels;
   const struct vlOccluderKernels *occluder_kernels;
+  const struct vlBvhKernels *bvh_kernels;
   vlRayLogFn *log; /* null except in benchmarks */
   void *log_user;
 } vlAccel;
 
 vlResult vl_accel_build(struct vlWorld *world, vlError *error);
+/* The accelerator of a build with this def; never AUTO. Error: UNSUPPORTED. */
+vlResult vl_accel_choose(const vlBuildDef *def, vlAccelerator *kind, vlError *error);
 /* The name of the instruction set that Embree uses for VL_BITS_FAST: the one that VELO_EMBREE names, else the widest.
- */
-const char *vl_accel_fast_set(void);
+ * Null: the build uses the BVH. */
+const char *vl_accel_fast_set(const vlBuildDef *def);
 void vl_accel_destroy(vlContext *context, vlAccel *accel);
 
 /* Ids of the nearest hit of rays [0, n); shape is VL_NONE for a miss. t: distance along the ray in units of its

@@ -83,10 +83,9 @@ static inline uint32_t instance_of(const vlWorld *world, unsigned inst) {
   return world->accel.split && inst == 0 ? VL_NONE : inst;
 }
 
-/* inst: as instance_of returns it. */
-static vlLocalRay local_ray(const vlEmbreeQuery *q, unsigned id, uint32_t inst) {
-  uint32_t instance = inst == VL_NONE ? VL_NONE : inst - q->world->groups.items[0].count;
-  return vl_local_ray(q->world, q->rays, id, instance);
+/* Index of an instance that instance_of returned. */
+static inline uint32_t index_of(const vlWorld *world, uint32_t inst) {
+  return inst == VL_NONE ? VL_NONE : inst - world->groups.items[0].count;
 }
 
 /* ---- filters ----------------------------------------------------------------------------------------------------- */
@@ -96,14 +95,8 @@ static bool filter_rejects(const struct RTCFilterFunctionNArguments *args, unsig
   uint32_t inst = instance_of(q->world, *hit_row(args->hit, args->N, INST, i));
   uint32_t prim = *hit_row(args->hit, args->N, PRIM, i);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, *hit_row(args->hit, args->N, GEOM, i), &prim);
-  if (shadow && shape->pass_shadow) return true;
-  if (shape->alpha < 0 && !shape->one_sided) return false;
-  vlTextureCorner corner = {.shape = shape, .prim = prim};
-  vlTextureQuery at = {.corner = &corner};
-  vlLocalRay r = local_ray(q, *hit_row(args->ray, args->N, ID, i), inst);
-  bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
-  if (behind && shape->one_sided) return true;
-  return shape->alpha >= 0 && vl_alpha_passes(q->world, shape, &r, prim, 0, &at);
+  return vl_triangle_lets_pass(q->world, q->rays, *hit_row(args->ray, args->N, ID, i), index_of(q->world, inst), shape,
+                               prim, shadow);
 }
 
 /* Reads the hit of ray i of n as Embree passes it to a filter; the t of the ray is then the t of the hit. */
@@ -199,41 +192,13 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *args) {
   args->bounds_o->upper_z = high[2];
 }
 
-/* Whether the shape's texture lets ray `id` pass at a hit. */
-static __attribute__((noinline)) bool alpha_passes(const vlEmbreeQuery *q, const vlWorldShape *shape, uint32_t prim,
-                                                   unsigned id, uint32_t inst, const vlShapeHit *hit) {
-  vlLocalRay r = local_ray(q, id, inst);
-  vlSurfacePoint point;
-  vl_shape_point(shape, prim, hit, &point);
-  vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
-                       vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
-  return vl_alpha_passes(q->world, shape, &r, prim, (float)hit->t, &at);
-}
-
 static bool user_hit(const EmbreeContext *context, void *ray, unsigned n, unsigned i, uint32_t geometry, uint32_t prim,
                      bool shadow, double *t) {
   const vlEmbreeQuery *q = query_of(context);
-  uint32_t inst = instance_of(q->world, context->instID[0]), id = *hit_row(ray, n, ID, i);
+  uint32_t inst = instance_of(q->world, context->instID[0]);
   const vlWorldShape *shape = vl_accel_shape(q->world, inst, geometry, &prim);
-  if (shadow && shape->pass_shadow) return false;
-  const vlRays *rays = q->rays;
-  double o[3] = {rays->ox[id], rays->oy[id], rays->oz[id]}, d[3] = {rays->dx[id], rays->dy[id], rays->dz[id]};
-  if (inst != VL_NONE) {
-    vlLocalRay r = local_ray(q, id, inst);
-    memcpy(o, r.o, sizeof o);
-    memcpy(d, r.d, sizeof d);
-  }
-  double t_min = *ray_row(ray, n, TNEAR, i), t_max = *ray_row(ray, n, TFAR, i);
-  vlShapeHit hit;
-  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
-    if (shape->alpha >= 0 && alpha_passes(q, shape, prim, id, inst, &hit)) {
-      t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
-      continue;
-    }
-    *t = hit.t;
-    return true;
-  }
-  return false;
+  return vl_ray_meets_shape(q->world, q->rays, *hit_row(ray, n, ID, i), index_of(q->world, inst), shape, prim, shadow,
+                            (double)*ray_row(ray, n, TNEAR, i), (double)*ray_row(ray, n, TFAR, i), t);
 }
 
 static void user_intersect(const struct RTCIntersectFunctionNArguments *args) {
@@ -376,7 +341,7 @@ static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   return vl_fail(error, VL_ERROR_ARGUMENT, "VELO_EMBREE=%s: not one of sse4.2, avx, avx2, avx512", wish);
 }
 
-const char *vl_accel_fast_set(void) {
+const char *vl_embree_fast_set(void) {
   const char *wish = getenv("VELO_EMBREE"), *widest = NULL;
   EmbreeSet sets[SETS];
   list_sets(sets);
@@ -394,7 +359,7 @@ static vlResult choose_set(vlBits bits, const char **name, vlError *error) {
   return VL_OK;
 }
 
-const char *vl_accel_fast_set(void) {
+const char *vl_embree_fast_set(void) {
   return "neon";
 }
 #endif
@@ -533,33 +498,21 @@ vlResult vl_embree_build(vlWorld *world, vlError *error) {
   vlResult r = open_device(world, &device, error);
   if (r != VL_OK) return r;
   a->device = device;
-  a->groups = vl_alloc_zero(world->context, world->groups.count, sizeof *a->groups);
-  a->bundles = vl_alloc_zero(world->context, world->groups.count, sizeof *a->bundles);
-  a->members = vl_alloc_array(world->context, world->shapes.count + 1, sizeof *a->members);
-  if (!a->groups || !a->bundles || !a->members) return vl_fail_memory(error);
-  a->group_count = (uint32_t)world->groups.count;
   Builder b = {world, device, vl_alloc_array(world->context, world->shapes.count + 1, sizeof *b.geometries)};
   if (!b.geometries) return vl_fail_memory(error);
   for (size_t i = 0; i < world->shapes.count; i++)
     b.geometries[i] = (AccelGeometry){world, &world->shapes.items[i], NULL};
-  uint32_t bundled_count = 0;
-  for (size_t k = world->groups.count; k-- > 0;)
-    bundled_count += vl_accel_find_bundle(world, &world->groups.items[k], &a->bundles[k], a->members + bundled_count);
   for (size_t k = world->groups.count; r == VL_OK && k-- > 1;) r = make_group(&b, (uint32_t)k, error);
   if (r == VL_OK) r = make_whole(&b, error);
   vl_free(world->context, b.geometries);
   return r == VL_OK ? device_error(device, error) : r;
 }
 
-void vl_embree_destroy(vlContext *context, vlAccel *a) {
+void vl_embree_destroy(vlAccel *a) {
   for (uint32_t k = 0; k < a->group_count; k++)
     if (a->groups[k]) rtcReleaseScene(a->groups[k]);
   if (a->scene) rtcReleaseScene(a->scene);
   if (a->device) rtcReleaseDevice(a->device);
-  vl_free(context, a->groups);
-  vl_free(context, a->bundles);
-  vl_free(context, a->members);
-  memset(a, 0, sizeof *a);
 }
 
 /* ---- tracing ----------------------------------------------------------------------------------------------------- */
@@ -602,7 +555,7 @@ static void store_ids(const vlWorld *world, unsigned geom, unsigned prim, unsign
     return;
   }
   uint32_t number = instance_of(world, inst);
-  *instance = number == VL_NONE ? VL_NONE : number - world->groups.items[0].count;
+  *instance = index_of(world, number);
   *prim_out = prim;
   *shape = (uint32_t)(vl_accel_shape(world, number, geom, prim_out) - world->shapes.items);
 }

@@ -13,10 +13,11 @@ typedef struct vlEmbreeQuery {
   vlOccluders *occluders; /* learns the triangles that block the rays; null: nothing does */
 } vlEmbreeQuery;
 
-/* Builds Embree's scenes and the members of vlAccel that describe them. */
+/* Builds Embree's scenes. The bundles of vlAccel are made, and its groups are null. */
 vlResult vl_embree_build(struct vlWorld *world, vlError *error);
-/* Frees them and sets *accel to 0. */
-void vl_embree_destroy(vlContext *context, vlAccel *accel);
+void vl_embree_destroy(vlAccel *accel);
+/* The instruction set for VL_BITS_FAST (vl_accel_fast_set). */
+const char *vl_embree_fast_set(void);
 void vl_embree_closest(const struct vlWorld *world, uint32_t n, const vlRays *rays, bool coherent, uint32_t *shape,
                        uint32_t *prim, uint32_t *instance, float *t);
 /* Rays whose occluded[i] is already 1 are left out. occluders: learns which triangles block rays; null: nothing does.

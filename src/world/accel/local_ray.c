@@ -1,6 +1,8 @@
 /* world/accel/local_ray.c: see local_ray.h. */
 #include "world/accel/local_ray.h"
 
+#include <string.h>
+
 #include "math/hash.h"
 #include "world/shape/moving.h"
 
@@ -83,4 +85,49 @@ bool vl_local_triangle(const vlWorldShape *s, uint32_t prim, const vlLocalRay *r
   at->p = vl_vec3(p[0], p[1], p[2]);
   at->n = vl_cross(vl_sub(c[1], c[0]), vl_sub(c[2], c[0]));
   return s->flip ? sum < 0 : sum > 0; /* sum is the direction times the normal of the face order */
+}
+
+bool vl_triangle_lets_pass(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
+                           const vlWorldShape *shape, uint32_t prim, bool shadow) {
+  if (shadow && shape->pass_shadow) return true;
+  if (shape->alpha < 0 && !shape->one_sided) return false;
+  vlTextureCorner corner = {.shape = shape, .prim = prim};
+  vlTextureQuery at = {.corner = &corner};
+  vlLocalRay r = vl_local_ray(world, rays, i, instance);
+  bool behind = vl_local_triangle(shape, prim, &r, &at, corner.weights);
+  if (behind && shape->one_sided) return true;
+  return shape->alpha >= 0 && vl_alpha_passes(world, shape, &r, prim, 0, &at);
+}
+
+/* Whether the shape's texture lets ray i pass at a hit. */
+static __attribute__((noinline)) bool texture_passes(const vlWorld *world, const vlRays *rays, uint32_t i,
+                                                     uint32_t instance, const vlWorldShape *shape, uint32_t prim,
+                                                     const vlShapeHit *hit) {
+  vlLocalRay r = vl_local_ray(world, rays, i, instance);
+  vlSurfacePoint point;
+  vl_shape_point(shape, prim, hit, &point);
+  vlTextureQuery at = {point.uv[0], point.uv[1], vl_vec3((float)point.p[0], (float)point.p[1], (float)point.p[2]),
+                       vl_vec3((float)point.n[0], (float)point.n[1], (float)point.n[2]), NULL};
+  return vl_alpha_passes(world, shape, &r, prim, (float)hit->t, &at);
+}
+
+bool vl_ray_meets_shape(const vlWorld *world, const vlRays *rays, uint32_t i, uint32_t instance,
+                        const vlWorldShape *shape, uint32_t prim, bool shadow, double t_min, double t_max, double *t) {
+  if (shadow && shape->pass_shadow) return false;
+  double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+  if (instance != VL_NONE) {
+    vlLocalRay r = vl_local_ray(world, rays, i, instance);
+    memcpy(o, r.o, sizeof o);
+    memcpy(d, r.d, sizeof d);
+  }
+  vlShapeHit hit;
+  while (vl_shape_intersect(shape, prim, o, d, t_min, t_max, &hit)) {
+    if (shape->alpha >= 0 && texture_passes(world, rays, i, instance, shape, prim, &hit)) {
+      t_min = hit.t * (1 + 1e-12); /* past this hit, by several thousand rounding errors of a double */
+      continue;
+    }
+    *t = hit.t;
+    return true;
+  }
+  return false;
 }

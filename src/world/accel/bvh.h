@@ -1,0 +1,95 @@
+/* world/accel/bvh.h: the functions of accel.h by velo's own bounding volume hierarchy (BVH), in plain C. It runs
+ * wherever velo does and gives the hits that Embree gives with VL_BITS_PORTABLE: triangles are intersected by the same
+ * operations in the same order (bvh.hot.c), and the rule of nearest.h decides between hits
+ * (docs/decisions/0022-a-portable-accelerator.md). */
+#ifndef WORLD_ACCEL_BVH_H
+#define WORLD_ACCEL_BVH_H
+
+#include <stdatomic.h>
+
+#include "base/isa.h"
+#include "world/accel/accel.h"
+
+enum {
+  VL_BVH_WIDTH = 8, /* children of a node */
+  VL_BVH_FOUR = 4,  /* triangles that are tested at a time */
+  /* Nodes are split at the median from this depth on, which bounds the depth by that plus 32. */
+  VL_BVH_DEPTH = 64,
+  VL_BVH_STACK = (VL_BVH_DEPTH + 32) * (VL_BVH_WIDTH - 1) + 1
+};
+
+/* What a child is: the upper 2 bits of its number; then 3 bits: count - 1, for leaves; then 27 bits: the first node,
+ * block or item. */
+typedef enum vlBvhKind { VL_BVH_NODE, VL_BVH_FOURS, VL_BVH_MOVING, VL_BVH_OTHERS } vlBvhKind;
+enum { VL_BVH_MOST = 1 << 27, VL_BVH_LEAF = 8 };
+static inline uint32_t vl_bvh_child(vlBvhKind kind, uint32_t count, uint32_t first) {
+  return (uint32_t)kind << 30 | (count - 1) << 27 | first;
+}
+static inline vlBvhKind vl_bvh_kind(uint32_t child) {
+  return (vlBvhKind)(child >> 30);
+}
+static inline uint32_t vl_bvh_count(uint32_t child) {
+  return (child >> 27 & 7) + 1;
+}
+static inline uint32_t vl_bvh_first(uint32_t child) {
+  return child & (VL_BVH_MOST - 1);
+}
+
+/* Boxes of the children: rows low x, high x, low y, high y, low z, high z. Places without a child have low > high. */
+typedef float vlBvhBoxes[6][VL_BVH_WIDTH];
+typedef struct vlBvhNode {
+  vlBvhBoxes boxes; /* if the tree moves, at time 0 */
+  uint32_t child[VL_BVH_WIDTH];
+} vlBvhNode;
+
+/* Numbers of a primitive, as Embree has them (bundle.h): in a tree of instances `geometry` is the instance. */
+typedef struct vlBvhItem {
+  uint32_t geometry, primitive;
+} vlBvhItem;
+
+/* Triangles at rest, as a structure of arrays. Places without a triangle have three equal corners. */
+typedef struct vlBvhFour {
+  float corner[3][3][VL_BVH_FOUR]; /* [corner][axis] */
+  uint32_t geometry[VL_BVH_FOUR], primitive[VL_BVH_FOUR];
+} vlBvhFour;
+/* Added to `geometry` of triangles of which a ray may pass: they have an alpha, one side, or an interface. */
+#define VL_BVH_ASKS 0x80000000u
+
+/* A tree over the shapes of a group, or over the world's instances. Worlds share trees (decision 15): a tree reads
+ * nothing of a world, and queries give the world. */
+typedef struct vlBvh {
+  atomic_uint users;
+  uint32_t root;
+  float low[3], high[3]; /* box of all primitives over all times; empty: low > high */
+  bool moves;
+  vlBvhNode *nodes;
+  vlBvhBoxes *later; /* of a tree that moves: boxes at time 1, one per node; between, boxes are interpolated */
+  vlBvhFour *fours;
+  vlBvhItem *items;
+  float (*maps)[12]; /* of a tree of instances: group from world, as Embree computes it; unused for moving instances */
+  uint32_t node_count, four_count, item_count;
+} vlBvh;
+
+/* Builds the tree of group k, and that of all instances of a world whose groups are built. *tree is null after an
+ * error: MEMORY, CANCELLED. */
+vlResult vl_bvh_make_group(const struct vlWorld *world, uint32_t k, vlBvh **tree, vlError *error);
+vlResult vl_bvh_make_instances(const struct vlWorld *world, vlBvh **tree, vlError *error);
+void vl_bvh_release(vlContext *context, vlBvh *tree); /* null is allowed */
+
+/* Group from world for an instance, and for a moving one at `time`, by the operations of Embree: a ray is in the same
+ * place of the group, bit for bit. */
+void vl_bvh_map(const float from_group[12], float to_group[12]);
+
+/* As those of embree.h. */
+vlResult vl_bvh_build(struct vlWorld *world, vlError *error);
+void vl_bvh_destroy(vlContext *context, vlAccel *accel);
+
+typedef struct vlBvhKernels {
+  void (*closest)(const struct vlWorld *world, uint32_t n, const vlRays *rays, uint32_t *shape, uint32_t *prim,
+                  uint32_t *instance, float *t);
+  void (*occluded)(const struct vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
+                   uint8_t *occluded);
+} vlBvhKernels;
+VL_KERNEL_TABLE(vlBvhKernels, vl_bvh)
+
+#endif

@@ -1,0 +1,348 @@
+/* world/accel/bvh.hot.c: rays through the trees of bvh.h.
+ *
+ * Triangles: Pluecker coordinates relative to the ray's origin (as Embree's robust intersector; Davidovic et al. 2012,
+ * "3D rasterization: a bridge between rasterization and ray tracing"). Its sums and products are computed in the order
+ * in which Embree computes them without fused multiply-add, so that a ray hits the same triangles. Boxes are tested
+ * like Embree's, too: three rounding steps wider. A ray along the face of a box is inside of it. */
+#include <math.h>
+#include <string.h>
+
+#include "math/vec.h"
+#include "world/accel/bvh.h"
+#include "world/accel/local_ray.h"
+#include "world/accel/nearest.h"
+#include "world/accel/occluders.h"
+
+enum { W = VL_BVH_WIDTH, F = VL_BVH_FOUR };
+
+/* The nearest hit so far. instance: index; VL_NONE for none. */
+typedef struct Hit {
+  float t;
+  uint32_t instance, geometry, primitive;
+} Hit;
+
+/* A ray in the space of a tree. */
+typedef struct Ray {
+  float o[3], d[3];
+  float near[3], far[3]; /* 1 / d, rounded down and up; infinity if d is 0 */
+  int side[3];           /* row of vlBvhBoxes that a ray meets first */
+} Ray;
+
+/* A ray's way through the world. */
+typedef struct Query {
+  const vlWorld *world;
+  const vlRays *rays;
+  vlOccluders *occluders;
+  uint32_t id;       /* of the ray */
+  uint32_t instance; /* in which the ray is; VL_NONE: in none */
+  float t_min, limit, time;
+  Hit hit;
+} Query;
+
+/* A place of the stack: the tree below `child` begins at the distance `near`. */
+typedef struct Place {
+  uint32_t child;
+  float near;
+} Place;
+
+static Ray ray_of(const float o[3], const float d[3]) {
+  Ray r;
+  for (int i = 0; i < 3; i++) {
+    float inverse = d[i] != 0.0f ? 1.0f / d[i] : __builtin_inff();
+    r.o[i] = o[i], r.d[i] = d[i];
+    r.near[i] = inverse * (1.0f - 3 * 0x1p-23f);
+    r.far[i] = inverse * (1.0f + 3 * 0x1p-23f);
+    r.side[i] = 2 * i + (d[i] < 0.0f);
+  }
+  return r;
+}
+
+/* Rays with NaN or infinity in their direction, or from too far away, miss everything. */
+static bool is_usual(const float o[3], const float d[3], float farthest) {
+  for (int i = 0; i < 3; i++)
+    if (!(fabsf(o[i]) < farthest) || !(fabsf(d[i]) < __builtin_inff())) return false;
+  return true;
+}
+
+/* ---- boxes ------------------------------------------------------------------------------------------------------- */
+
+/* 0 times infinity is not a number, and the comparisons then keep the other operand. */
+static inline float larger(float a, float b) {
+  return a > b ? a : b;
+}
+static inline float smaller(float a, float b) {
+  return a < b ? a : b;
+}
+
+/* The children whose boxes the ray meets, one bit each. begin: where. */
+static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, float high, float begin[W]) {
+  const float *x0 = (*boxes)[r->side[0]], *y0 = (*boxes)[r->side[1]], *z0 = (*boxes)[r->side[2]];
+  const float *x1 = (*boxes)[r->side[0] ^ 1], *y1 = (*boxes)[r->side[1] ^ 1], *z1 = (*boxes)[r->side[2] ^ 1];
+  float ox = r->o[0], oy = r->o[1], oz = r->o[2], nx = r->near[0], ny = r->near[1], nz = r->near[2];
+  float fx = r->far[0], fy = r->far[1], fz = r->far[2];
+  uint32_t met = 0;
+  /* must vectorise */
+  VL_SIMD for (uint32_t k = 0; k < W; k++) {
+    float from = larger((x0[k] - ox) * nx, larger((y0[k] - oy) * ny, larger((z0[k] - oz) * nz, low)));
+    float to = smaller((x1[k] - ox) * fx, smaller((y1[k] - oy) * fy, smaller((z1[k] - oz) * fz, high)));
+    begin[k] = from;
+    met |= (uint32_t)(from <= to) << k;
+  }
+  return met;
+}
+
+/* Boxes at a time. They are wider than the rounding errors here (bvh_build.c). */
+static inline void interpolate(const vlBvhBoxes *a, const vlBvhBoxes *b, float time, vlBvhBoxes *to) {
+  const float *from = (*a)[0], *later = (*b)[0];
+  float *at = (*to)[0];
+  /* must vectorise */
+  VL_SIMD for (uint32_t k = 0; k < 6 * W; k++) at[k] = from[k] * (1.0f - time) + later[k] * time;
+}
+
+/* ---- triangles --------------------------------------------------------------------------------------------------- */
+
+static inline float dot(float ax, float ay, float az, float bx, float by, float bz) {
+  return ax * bx + (ay * by + az * bz);
+}
+
+/* Which of four triangles the ray meets between low and high, one bit each. t: where. */
+static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low, float high, float t[F]) {
+  float ox = r->o[0], oy = r->o[1], oz = r->o[2], dx = r->d[0], dy = r->d[1], dz = r->d[2];
+  uint32_t met = 0;
+  /* must vectorise */
+  VL_SIMD for (uint32_t k = 0; k < F; k++) {
+    float ax = c[0][0][k] - ox, ay = c[0][1][k] - oy, az = c[0][2][k] - oz;
+    float bx = c[1][0][k] - ox, by = c[1][1][k] - oy, bz = c[1][2][k] - oz;
+    float cx = c[2][0][k] - ox, cy = c[2][1][k] - oy, cz = c[2][2][k] - oz;
+    float e0x = cx - ax, e0y = cy - ay, e0z = cz - az;
+    float e1x = ax - bx, e1y = ay - by, e1z = az - bz;
+    float e2x = bx - cx, e2y = by - cy, e2z = bz - cz;
+    float sx = cx + ax, sy = cy + ay, sz = cz + az;
+    float u = dot(e0y * sz - e0z * sy, e0z * sx - e0x * sz, e0x * sy - e0y * sx, dx, dy, dz);
+    sx = ax + bx, sy = ay + by, sz = az + bz;
+    float v = dot(e1y * sz - e1z * sy, e1z * sx - e1x * sz, e1x * sy - e1y * sx, dx, dy, dz);
+    sx = bx + cx, sy = by + cy, sz = bz + cz;
+    float w = dot(e2y * sz - e2z * sy, e2z * sx - e2x * sz, e2x * sy - e2y * sx, dx, dy, dz);
+    float wide = 0x1p-23f * fabsf(u + v + w);
+    float least = smaller(smaller(u, v), w), most = larger(larger(u, v), w);
+    /* the normal: of two cross products of edges, per axis that with the smaller products */
+    float abx = e0z * e1y, aby = e0x * e1z, abz = e0y * e1x, bcx = e1z * e2y, bcy = e1x * e2z, bcz = e1y * e2x;
+    float nx = fabsf(abx) < fabsf(bcx) ? e0y * e1z - abx : e1y * e2z - bcx;
+    float ny = fabsf(aby) < fabsf(bcy) ? e0z * e1x - aby : e1z * e2x - bcy;
+    float nz = fabsf(abz) < fabsf(bcz) ? e0x * e1y - abz : e1x * e2y - bcz;
+    float speed = dot(nx, ny, nz, dx, dy, dz), height = dot(ax, ay, az, nx, ny, nz), at = height / speed;
+    t[k] = at;
+    uint32_t inside = (uint32_t)(least >= -wide) | (uint32_t)(most <= wide);
+    uint32_t crosses = (uint32_t)(speed != 0.0f) & (uint32_t)(fabsf(speed) < 0x1p127f);
+    met |= (inside & crosses & (uint32_t)(low <= at) & (uint32_t)(at <= high)) << k;
+  }
+  return met;
+}
+
+/* ---- hits -------------------------------------------------------------------------------------------------------- */
+
+/* The rule of nearest.h. */
+static inline void offer(Query *q, float t, uint32_t geometry, uint32_t primitive) {
+  const Hit *b = &q->hit;
+  if (t > b->t) return;
+  if (t == b->t && (q->instance != b->instance ? q->instance > b->instance
+                    : geometry != b->geometry  ? geometry > b->geometry
+                                               : primitive >= b->primitive))
+    return;
+  q->hit = (Hit){t, q->instance, geometry, primitive};
+  q->limit = t * VL_NEAREST_WINDOW;
+}
+
+/* The shape of a primitive where the ray is; *prim becomes that of the shape. */
+static const vlWorldShape *shape_of(const Query *q, uint32_t geometry, uint32_t *prim) {
+  uint32_t own = q->world->groups.items[0].count;
+  return vl_accel_shape(q->world, q->instance == VL_NONE ? VL_NONE : own + q->instance, geometry, prim);
+}
+
+/* Takes the hit of a triangle. any: returns whether it blocks the ray; else false. */
+static inline bool take(Query *q, uint32_t geometry, uint32_t primitive, float t, bool asks, bool learns, bool any) {
+  if (asks) {
+    uint32_t prim = primitive;
+    const vlWorldShape *shape = shape_of(q, geometry, &prim);
+    if (vl_triangle_lets_pass(q->world, q->rays, q->id, q->instance, shape, prim, any)) return false;
+  }
+  if (any) {
+    if (learns && q->occluders && q->instance == VL_NONE) vl_occluders_learn(q->occluders, geometry, primitive);
+    return true;
+  }
+  offer(q, t, geometry, primitive);
+  return false;
+}
+
+static inline bool meet_fours(Query *q, const vlBvhFour *f, uint32_t count, const Ray *r, bool any) {
+  for (; count > 0; count--, f++) {
+    float t[F];
+    for (uint32_t met = meet_four(f->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
+      int k = __builtin_ctz(met);
+      bool asks = (f->geometry[k] & VL_BVH_ASKS) != 0;
+      if (take(q, f->geometry[k] & ~VL_BVH_ASKS, f->primitive[k], t[k], asks, !asks, any)) return true;
+    }
+  }
+  return false;
+}
+
+/* Four at a time; places that are left over have three equal corners. */
+static bool meet_moving(Query *q, const vlBvhItem *items, uint32_t count, const Ray *r, bool any) {
+  for (uint32_t first = 0; first < count; first += F) {
+    float corners[3][3][F] = {0}, t[F];
+    for (uint32_t k = 0; k < F && first + k < count; k++) {
+      uint32_t prim = items[first + k].primitive;
+      const vlWorldShape *s = shape_of(q, items[first + k].geometry & ~VL_BVH_ASKS, &prim);
+      for (int c = 0; c < 3; c++) {
+        float room[3];
+        const float *at = vl_vertex_at(s, s->indices[3 * (size_t)prim + (size_t)c], q->time, room);
+        for (int i = 0; i < 3; i++) corners[c][i][k] = at[i];
+      }
+    }
+    for (uint32_t met = meet_four(corners, r, q->t_min, q->limit, t); met; met &= met - 1) {
+      int k = __builtin_ctz(met);
+      vlBvhItem at = items[first + (uint32_t)k];
+      if (take(q, at.geometry & ~VL_BVH_ASKS, at.primitive, t[k], (at.geometry & VL_BVH_ASKS) != 0, false, any))
+        return true;
+    }
+  }
+  return false;
+}
+
+static bool meet_shape(Query *q, vlBvhItem at, bool any) {
+  uint32_t prim = at.primitive;
+  const vlWorldShape *shape = shape_of(q, at.geometry, &prim);
+  double t;
+  if (!vl_ray_meets_shape(q->world, q->rays, q->id, q->instance, shape, prim, any, (double)q->t_min, (double)q->limit,
+                          &t))
+    return false;
+  if (!any) offer(q, (float)t, at.geometry, at.primitive);
+  return any;
+}
+
+/* ---- trees ------------------------------------------------------------------------------------------------------- */
+
+static bool nearest_in(Query *q, const vlBvh *tree, const Ray *r);
+static bool any_in(Query *q, const vlBvh *tree, const Ray *r);
+
+/* The ray in an instance, by the operations of Embree. */
+static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray *r, bool any) {
+  const vlWorldInstance *instance = &q->world->instances.items[index];
+  const float *m = tree->maps[index];
+  float moved[12], o[3], d[3];
+  if (instance->keys) {
+    float pose[12];
+    vlTimeStep step = vl_time_step(q->time, instance->keys);
+    const float *a = instance->path + 12 * (size_t)step.first, *b = a + 12;
+    for (int i = 0; i < 12; i++) pose[i] = a[i] * (1.0f - step.part) + b[i] * step.part;
+    vl_bvh_map(pose, moved);
+    m = moved;
+  }
+  for (int i = 0; i < 3; i++, m += 4) {
+    o[i] = r->o[0] * m[0] + (r->o[1] * m[1] + (r->o[2] * m[2] + m[3]));
+    d[i] = r->d[0] * m[0] + (r->d[1] * m[1] + r->d[2] * m[2]);
+  }
+  if (!is_usual(o, d, __builtin_inff())) return false;
+  Ray inner = ray_of(o, d);
+  const vlBvh *group = q->world->accel.groups[instance->group];
+  q->instance = index;
+  bool blocked = any ? any_in(q, group, &inner) : nearest_in(q, group, &inner);
+  q->instance = VL_NONE;
+  return blocked;
+}
+
+static inline bool meet_leaf(Query *q, const vlBvh *tree, uint32_t child, const Ray *r, bool any) {
+  uint32_t first = vl_bvh_first(child), count = vl_bvh_count(child);
+  if (vl_bvh_kind(child) == VL_BVH_FOURS) return meet_fours(q, tree->fours + first, count, r, any);
+  if (vl_bvh_kind(child) == VL_BVH_MOVING) return meet_moving(q, tree->items + first, count, r, any);
+  for (uint32_t k = 0; k < count; k++) {
+    vlBvhItem at = tree->items[first + k];
+    if (tree->maps ? meet_instance(q, tree, at.geometry, r, any) : meet_shape(q, at, any)) return true;
+  }
+  return false;
+}
+
+/* Puts the children that are met on the stack, the nearest last. */
+static inline Place *push(Place *top, const vlBvhNode *node, uint32_t met, const float begin[W], bool any) {
+  Place *base = top;
+  for (; met; met &= met - 1) {
+    int k = __builtin_ctz(met);
+    Place *at = top++;
+    for (; !any && at > base && at[-1].near < begin[k]; at--) *at = at[-1];
+    *at = (Place){node->child[k], begin[k]};
+  }
+  return top;
+}
+
+static inline __attribute__((always_inline)) bool walk(Query *q, const vlBvh *tree, const Ray *r, bool any) {
+  Place stack[VL_BVH_STACK], *top = stack;
+  *top++ = (Place){tree->root, 0.0f};
+  while (top > stack) {
+    Place at = *--top;
+    if (!any && at.near > q->limit) continue;
+    while (vl_bvh_kind(at.child) == VL_BVH_NODE) {
+      const vlBvhNode *node = tree->nodes + vl_bvh_first(at.child);
+      const vlBvhBoxes *boxes = &node->boxes;
+      vlBvhBoxes now;
+      float begin[W];
+      if (tree->moves) {
+        interpolate(boxes, tree->later + vl_bvh_first(at.child), q->time, &now);
+        boxes = &now;
+      }
+      uint32_t met = meet(boxes, r, q->t_min, q->limit, begin);
+      if (!met) goto next;
+      if (met & (met - 1))
+        at = *(top = push(top, node, met, begin, any) - 1);
+      else
+        at.child = node->child[__builtin_ctz(met)];
+    }
+    if (meet_leaf(q, tree, at.child, r, any)) return true;
+  next:;
+  }
+  return false;
+}
+
+static bool nearest_in(Query *q, const vlBvh *tree, const Ray *r) {
+  return walk(q, tree, r, false);
+}
+static bool any_in(Query *q, const vlBvh *tree, const Ray *r) {
+  return walk(q, tree, r, true);
+}
+
+/* Ray i through the shapes outside of groups, then through the instances. */
+static bool trace(Query *q, uint32_t i, bool any) {
+  const vlRays *rays = q->rays;
+  const vlAccel *a = &q->world->accel;
+  float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+  q->id = i, q->instance = VL_NONE;
+  q->t_min = rays->t_min ? rays->t_min[i] : 0.0f;
+  q->limit = rays->t_max ? rays->t_max[i] : __builtin_inff();
+  q->time = rays->time ? rays->time[i] : 0.0f;
+  q->hit = (Hit){__builtin_inff(), VL_NONE, VL_NONE, VL_NONE};
+  if (!is_usual(o, d, 1.8e18f)) return false;
+  Ray r = ray_of(o, d);
+  const vlBvh *trees[2] = {a->groups[0], a->scene};
+  for (int k = 0; k < 2; k++)
+    if (trees[k] && (any ? any_in(q, trees[k], &r) : nearest_in(q, trees[k], &r))) return true;
+  return false;
+}
+
+static void closest(const vlWorld *world, uint32_t n, const vlRays *rays, uint32_t *shape, uint32_t *prim,
+                    uint32_t *instance, float *t) {
+  Query q = {.world = world, .rays = rays};
+  for (uint32_t i = 0; i < n; i++) {
+    trace(&q, i, false);
+    shape[i] = VL_NONE, prim[i] = q.hit.primitive, instance[i] = q.hit.instance, t[i] = q.hit.t;
+    if (q.hit.geometry == VL_NONE) continue;
+    q.instance = q.hit.instance;
+    shape[i] = (uint32_t)(shape_of(&q, q.hit.geometry, &prim[i]) - world->shapes.items);
+  }
+}
+
+static void occluded(const vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders, uint8_t *blocked) {
+  Query q = {.world = world, .rays = rays, .occluders = occluders};
+  for (uint32_t i = 0; i < n; i++)
+    if (!blocked[i]) blocked[i] = trace(&q, i, true);
+}
+
+const vlBvhKernels vl_bvh_kernel_table = {closest, occluded};

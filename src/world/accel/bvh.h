@@ -61,6 +61,7 @@ typedef struct vlBvh {
   atomic_uint users;
   uint32_t root;
   float low[3], high[3]; /* box of all primitives over all times; empty: low > high */
+  float reach;           /* largest coordinate of the box, without sign */
   bool moves;
   vlBvhNode *nodes;
   vlBvhBoxes *later; /* of a tree that moves: boxes at time 1, one per node; between, boxes are interpolated */

@@ -2,8 +2,7 @@
  *
  * Triangles: Pluecker coordinates relative to the ray's origin (as Embree's robust intersector; Davidovic et al. 2012,
  * "3D rasterization: a bridge between rasterization and ray tracing"). Its sums and products are computed in the order
- * in which Embree computes them without fused multiply-add, so that a ray hits the same triangles. Boxes are tested
- * like Embree's, too: three rounding steps wider. A ray along the face of a box is inside of it. */
+ * in which Embree computes them without fused multiply-add, so that a ray hits the same triangles. */
 #include <math.h>
 #include <string.h>
 
@@ -24,7 +23,8 @@ typedef struct Hit {
 /* A ray in the space of a tree. */
 typedef struct Ray {
   float o[3], d[3];
-  float near[3], far[3]; /* 1 / d, rounded down and up; infinity if d is 0 */
+  float near[3], far[3]; /* origins for the sides of boxes where the ray enters, and where it leaves */
+  float inverse[3];      /* 1 / d; d is at least 1e-18 */
   int side[3];           /* row of vlBvhBoxes that a ray meets first */
 } Ray;
 
@@ -45,28 +45,6 @@ typedef struct Place {
   float near;
 } Place;
 
-static Ray ray_of(const float o[3], const float d[3]) {
-  Ray r;
-  for (int i = 0; i < 3; i++) {
-    float inverse = d[i] != 0.0f ? 1.0f / d[i] : __builtin_inff();
-    r.o[i] = o[i], r.d[i] = d[i];
-    r.near[i] = inverse * (1.0f - 3 * 0x1p-23f);
-    r.far[i] = inverse * (1.0f + 3 * 0x1p-23f);
-    r.side[i] = 2 * i + (d[i] < 0.0f);
-  }
-  return r;
-}
-
-/* Rays with NaN or infinity in their direction, or from too far away, miss everything. */
-static bool is_usual(const float o[3], const float d[3], float farthest) {
-  for (int i = 0; i < 3; i++)
-    if (!(fabsf(o[i]) < farthest) || !(fabsf(d[i]) < __builtin_inff())) return false;
-  return true;
-}
-
-/* ---- boxes ------------------------------------------------------------------------------------------------------- */
-
-/* 0 times infinity is not a number, and the comparisons then keep the other operand. */
 static inline float larger(float a, float b) {
   return a > b ? a : b;
 }
@@ -74,17 +52,41 @@ static inline float smaller(float a, float b) {
   return a < b ? a : b;
 }
 
+/* A triangle that the ray meets by its arithmetic may be beside its box by rounding errors, which grow with the
+ * distance from the ray's origin. So boxes are wider by several such errors. */
+static Ray ray_of(const vlBvh *tree, const float o[3], const float d[3]) {
+  Ray r;
+  float far = larger(larger(fabsf(o[0]), fabsf(o[1])), fabsf(o[2]));
+  for (int i = 0; i < 3; i++) {
+    float slope = fabsf(d[i]) < 1e-18f ? 1e-18f : d[i], wide = 0x1p-21f * (far + tree->reach);
+    r.o[i] = o[i], r.d[i] = d[i];
+    r.inverse[i] = 1.0f / slope;
+    r.near[i] = o[i] + (slope < 0.0f ? -wide : wide), r.far[i] = o[i] + (slope < 0.0f ? wide : -wide);
+    r.side[i] = 2 * i + (slope < 0.0f);
+  }
+  return r;
+}
+
+/* Rays with NaN or a huge number in their direction, or from too far away, miss everything. */
+static bool is_usual(const float o[3], const float d[3], float farthest) {
+  for (int i = 0; i < 3; i++)
+    if (!(fabsf(o[i]) < farthest) || !(fabsf(d[i]) < 0x1p120f)) return false;
+  return true;
+}
+
+/* ---- boxes ------------------------------------------------------------------------------------------------------- */
+
 /* The children whose boxes the ray meets, one bit each. begin: where. */
 static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, float high, float begin[W]) {
   const float *x0 = (*boxes)[r->side[0]], *y0 = (*boxes)[r->side[1]], *z0 = (*boxes)[r->side[2]];
   const float *x1 = (*boxes)[r->side[0] ^ 1], *y1 = (*boxes)[r->side[1] ^ 1], *z1 = (*boxes)[r->side[2] ^ 1];
-  float ox = r->o[0], oy = r->o[1], oz = r->o[2], nx = r->near[0], ny = r->near[1], nz = r->near[2];
-  float fx = r->far[0], fy = r->far[1], fz = r->far[2];
+  float nx = r->near[0], ny = r->near[1], nz = r->near[2], fx = r->far[0], fy = r->far[1], fz = r->far[2];
+  float x = r->inverse[0], y = r->inverse[1], z = r->inverse[2];
   uint32_t met = 0;
   /* must vectorise */
   VL_SIMD for (uint32_t k = 0; k < W; k++) {
-    float from = larger((x0[k] - ox) * nx, larger((y0[k] - oy) * ny, larger((z0[k] - oz) * nz, low)));
-    float to = smaller((x1[k] - ox) * fx, smaller((y1[k] - oy) * fy, smaller((z1[k] - oz) * fz, high)));
+    float from = larger((x0[k] - nx) * x, larger((y0[k] - ny) * y, larger((z0[k] - nz) * z, low)));
+    float to = smaller((x1[k] - fx) * x, smaller((y1[k] - fy) * y, smaller((z1[k] - fz) * z, high)));
     begin[k] = from;
     met |= (uint32_t)(from <= to) << k;
   }
@@ -243,8 +245,8 @@ static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray
     d[i] = r->d[0] * m[0] + (r->d[1] * m[1] + r->d[2] * m[2]);
   }
   if (!is_usual(o, d, __builtin_inff())) return false;
-  Ray inner = ray_of(o, d);
   const vlBvh *group = q->world->accel.groups[instance->group];
+  Ray inner = ray_of(group, o, d);
   q->instance = index;
   bool blocked = any ? any_in(q, group, &inner) : nearest_in(q, group, &inner);
   q->instance = VL_NONE;
@@ -320,10 +322,11 @@ static bool trace(Query *q, uint32_t i, bool any) {
   q->time = rays->time ? rays->time[i] : 0.0f;
   q->hit = (Hit){__builtin_inff(), VL_NONE, VL_NONE, VL_NONE};
   if (!is_usual(o, d, 1.8e18f)) return false;
-  Ray r = ray_of(o, d);
   const vlBvh *trees[2] = {a->groups[0], a->scene};
-  for (int k = 0; k < 2; k++)
-    if (trees[k] && (any ? any_in(q, trees[k], &r) : nearest_in(q, trees[k], &r))) return true;
+  for (int k = 0; k < 2 && trees[k]; k++) {
+    Ray r = ray_of(trees[k], o, d);
+    if (any ? any_in(q, trees[k], &r) : nearest_in(q, trees[k], &r)) return true;
+  }
   return false;
 }
 

@@ -385,9 +385,10 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
+/* Numbers so large that no ray meets the box, and finite, for products with 0. */
 static void clear_boxes(vlBvhBoxes *boxes) {
   for (int row = 0; row < 6; row++)
-    for (int k = 0; k < VL_BVH_WIDTH; k++) (*boxes)[row][k] = row & 1 ? -INFINITY : INFINITY;
+    for (int k = 0; k < VL_BVH_WIDTH; k++) (*boxes)[row][k] = row & 1 ? -0x1p126f : 0x1p126f;
 }
 
 static void set_box(vlBvhBoxes *boxes, uint32_t k, const Box *box) {
@@ -589,6 +590,8 @@ static vlBvh *build(Builder *b) {
   extend(&root.box[0], &root.box[1]);
   memcpy(tree->low, root.box[0].low, sizeof tree->low);
   memcpy(tree->high, root.box[0].high, sizeof tree->high);
+  for (int i = 0; count && i < 3; i++)
+    tree->reach = fmaxf(tree->reach, fmaxf(fabsf(tree->low[i]), fabsf(tree->high[i])));
   return tree;
 }
 

@@ -1,0 +1,519 @@
+/* test_bvh.c: velo's own tree gives the hits of Embree with portable bits: random rays, rays through corners and along
+ * edges, axes and planes, with ends near hits, in worlds of every kind of shape and motion and of extreme sizes; the
+ * same bits for every instruction set and number of threads; parts shared with a previous world.
+ *
+ * VELO_RAYS sets the number of rays of each case. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+/* cmocka.h needs the headers above */
+#include <cmocka.h>
+
+#include "velo/velo.h"
+#include "world/accel/bvh.h"
+#include "world/shape/double3.h"
+#include "world/shape/moving.h"
+#include "world/shape/surface_point.h"
+#include "world/world.h"
+
+enum { BATCH = 1024, SHAPES = 24, GRID = 5 };
+
+static uint32_t seed;
+static float random_unit(void) {
+  seed = seed * 1664525u + 1013904223u;
+  return (float)(seed >> 8) * 0x1p-24f;
+}
+static float random_signed(void) {
+  return 2 * random_unit() - 1;
+}
+static uint32_t random_below(uint32_t n) {
+  return (uint32_t)(random_unit() * (float)n);
+}
+
+/* ---- worlds ------------------------------------------------------------------------------------------------------ */
+
+typedef struct Case {
+  const char *name;
+  float size;
+  bool plain, moving;      /* triangles */
+  bool alpha, others;      /* alpha, one side, interfaces; curves, quadrics, patches */
+  bool placed, travelling; /* in instances, in moving ones */
+} Case;
+
+typedef struct Made {
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *worlds[2]; /* Embree, BVH */
+} Made;
+
+typedef struct Kit {
+  const Case *what;
+  vlScene *scene;
+  vlGroupId group;
+  vlMaterialId interface;
+  vlTextureId checks;
+} Kit;
+
+static void decorate(const Kit *k, vlShapeDef *def) {
+  def->group = k->group;
+  if (!k->what->alpha) return;
+  if (random_unit() < 0.4f) def->alpha.texture = k->checks;
+  if (random_unit() < 0.2f) def->material = k->interface;
+  if (random_unit() < 0.3f) def->one_sided = def->kind == VL_SHAPE_TRIANGLES;
+}
+
+/* A grid of triangles in a plane or a curved surface, with corners on round numbers if `even`. Some triangles have no
+ * area. */
+static void add_grid(const Kit *k, bool even, bool moving) {
+  float p[GRID * GRID][3], later[GRID * GRID][3], size = k->what->size, origin[3],
+                                                  wide = even ? 0.25f : 0.2f + 0.2f * random_unit();
+  uint32_t faces[2 * (GRID - 1) * (GRID - 1)][3], count = 0;
+  uint32_t axis = random_below(3);
+  for (int i = 0; i < 3; i++) origin[i] = even ? 0.25f * (float)((int)random_below(7) - 3) : random_signed();
+  for (int y = 0; y < GRID; y++)
+    for (int x = 0; x < GRID; x++) {
+      float at[3] = {(float)x * wide, (float)y * wide, even ? 0 : 0.1f * random_signed() * wide};
+      for (uint32_t i = 0; i < 3; i++) {
+        p[y * GRID + x][i] = size * (origin[i] + at[(i + axis) % 3]);
+        later[y * GRID + x][i] = p[y * GRID + x][i] + size * 0.3f * random_signed();
+      }
+    }
+  for (uint32_t y = 0; y + 1 < GRID; y++)
+    for (uint32_t x = 0; x + 1 < GRID; x++) {
+      uint32_t a = y * GRID + x, f[6] = {a, a + 1, a + GRID, a + 1, a + GRID + 1, a + GRID};
+      if (random_unit() < 0.05f) f[1] = f[0];
+      memcpy(faces[count], f, sizeof f);
+      count += 2;
+    }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.positions = p[0], def.vertices = GRID * GRID, def.indices = faces[0], def.faces = count;
+  if (moving) def.positions_close = later[0];
+  if (moving && random_unit() < 0.5f) def.times[1] = 0.25; /* the steps of the world's time are quarters */
+  decorate(k, &def);
+  vl_scene_add_shape(k->scene, &def);
+}
+
+/* Triangles of any form and size. */
+static void add_triangles(const Kit *k, bool moving) {
+  enum { FACES = 16 };
+  float p[3 * FACES][3], later[3 * FACES][3], size = k->what->size;
+  uint32_t faces[FACES][3];
+  for (uint32_t f = 0; f < FACES; f++) {
+    float at[3] = {random_signed(), random_signed(), random_signed()}, large = powf(10, -4 * random_unit());
+    if (size < 1e-8f) large = 1;
+    for (uint32_t c = 0; c < 3; c++) {
+      faces[f][c] = 3 * f + c;
+      for (uint32_t i = 0; i < 3; i++) {
+        float thin = c == 1 && f % 3 == 0 ? (size < 1e-8f ? 0.3f : 0.001f) : 1;
+        p[3 * f + c][i] = size * (at[i] + large * thin * random_signed());
+        later[3 * f + c][i] = p[3 * f + c][i] + size * 0.3f * random_signed();
+      }
+    }
+  }
+  vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  def.positions = p[0], def.vertices = 3 * FACES, def.indices = faces[0], def.faces = FACES;
+  if (moving) def.positions_close = later[0];
+  decorate(k, &def);
+  vl_scene_add_shape(k->scene, &def);
+}
+
+static void set_pose(double m[16], float size, bool even) {
+  memset(m, 0, 16 * sizeof *m);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) m[4 * i + j] = even ? (i == j) : (double)(0.6f * random_signed()) + (i == j);
+    m[4 * i + 3] = (double)(size * 0.7f * random_signed());
+  }
+  m[15] = 1;
+}
+
+static void add_other(const Kit *k, uint32_t which) {
+  static const vlShapeKind kinds[] = {VL_SHAPE_SPHERE, VL_SHAPE_DISK, VL_SHAPE_CYLINDER, VL_SHAPE_BILINEAR,
+                                      VL_SHAPE_CURVES};
+  vlShapeDef def = vl_default_shape_def(kinds[which % 5]);
+  float p[8][3], size = k->what->size, widths[4] = {0.05f * size, 0.02f * size, 0.03f * size, 0.05f * size};
+  static const uint32_t face[4] = {0, 1, 2, 3};
+  for (int c = 0; c < 8; c++)
+    for (int i = 0; i < 3; i++) p[c][i] = size * 0.5f * random_signed();
+  def.positions = p[0];
+  if (def.kind == VL_SHAPE_BILINEAR) def.vertices = 4, def.faces = 1, def.indices = face;
+  if (def.kind == VL_SHAPE_CURVES) def.vertices = 8, def.faces = 2, def.widths = widths;
+  def.radius = 0.3f * size, def.z_min = -0.2f * size, def.z_max = 0.2f * size, def.height = 0;
+  set_pose(def.group_from_shape, size, false);
+  decorate(k, &def);
+  vl_scene_add_shape(k->scene, &def);
+}
+
+static void fill(Kit *k) {
+  for (uint32_t i = 0; i < SHAPES; i++) {
+    bool moving = k->what->moving && (!k->what->plain || i % 2);
+    if (k->what->plain || k->what->moving) add_grid(k, i % 2 || k->what->size != 1, moving), add_triangles(k, moving);
+    if (k->what->others) add_other(k, i);
+  }
+}
+
+static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
+  seed = 7;
+  vlContextDef def = vl_default_context_def();
+  def.isa = isa, def.threads = threads;
+  assert_int_equal(vl_context_create(&def, &m->context), VL_OK);
+  assert_int_equal(vl_scene_create(m->context, &m->scene), VL_OK);
+  Kit k = {.what = what, .scene = m->scene};
+  vlMaterialDef nothing = vl_default_material_def(VL_MATERIAL_INTERFACE);
+  k.interface = vl_scene_add_material(m->scene, &nothing);
+  vlTextureDef checks = vl_default_texture_def(VL_TEXTURE_CHECKERBOARD, false);
+  k.checks = vl_scene_add_texture(m->scene, &checks);
+  fill(&k);
+  for (int g = 0; g < 2 && (what->placed || what->travelling); g++) {
+    k.group = vl_scene_add_group(m->scene, NULL);
+    fill(&k);
+    for (int i = 0; i < 4; i++) {
+      double poses[32], times[2] = {0, 1};
+      set_pose(poses, what->size, i == 0), set_pose(poses + 16, what->size, true);
+      memcpy(poses + 16, poses, 11 * sizeof *poses);
+      if (i % 2) poses[16] *= 1.5, poses[21] *= 0.75, poses[17] += 0.2;
+      if (what->travelling && i < 3)
+        vl_scene_add_moving_instance(m->scene, k.group, 2, times, poses, (vlSource){0});
+      else
+        vl_scene_add_instance(m->scene, k.group, poses, (vlSource){0});
+    }
+  }
+  vlBuildDef build = vl_default_build_def();
+  for (int a = 0; a < 2; a++) {
+    build.accelerator = a ? VL_ACCELERATOR_BVH : VL_ACCELERATOR_EMBREE;
+    vlError error = {0};
+    if (vl_world_build(m->scene, &build, &m->worlds[a], &error) != VL_OK) fail_msg("%s: %s", what->name, error.message);
+    assert_null(m->worlds[a]->accel.brute_force);
+    assert_int_equal(m->worlds[a]->accel.kind, build.accelerator);
+  }
+}
+
+static void unmake(Made *m) {
+  for (int a = 0; a < 2; a++) vl_world_destroy(m->worlds[a]);
+  vl_scene_destroy(m->scene);
+  vl_context_destroy(m->context);
+}
+
+/* ---- rays -------------------------------------------------------------------------------------------------------- */
+
+static float o_[3][BATCH], d_[3][BATCH], start_[BATCH], end_[BATCH], time_[BATCH];
+static const vlRays all_rays = {o_[0], o_[1], o_[2], d_[0], d_[1], d_[2], start_, end_, time_};
+
+typedef enum Way { ANYWHERE, CORNERS, EDGES, ALONG, AXES, WAYS } Way;
+static const char *const way_names[WAYS] = {"anywhere", "through corners", "through edges", "along edges",
+                                            "along axes"};
+
+/* A point of a triangle of the world, at a time; corner: one of them; edge: on an edge. Places of instances are left
+ * out, so that some rays meet nothing. */
+static void point_of(const vlWorld *w, float time, int corner, bool edge, float p[3], float along[3]) {
+  static const vlWorldShape none = {.kind = VL_SHAPE_SPHERE};
+  const vlWorldShape *s = w->shapes.count ? NULL : &none;
+  for (uint32_t tries = 0; w->shapes.count && tries < 100 && (!s || s->kind != VL_SHAPE_TRIANGLES); tries++)
+    s = &w->shapes.items[random_below((uint32_t)w->shapes.count)];
+  float u = random_unit(), v = random_unit() * (1 - u);
+  if (s->kind != VL_SHAPE_TRIANGLES) {
+    for (int i = 0; i < 3; i++) p[i] = w->center[i] + w->radius * random_signed(), along[i] = random_signed();
+    return;
+  }
+  const uint32_t *f = s->indices + 3 * (size_t)random_below(s->faces);
+  float room[3][3];
+  const float *c[3];
+  for (int k = 0; k < 3; k++) c[k] = vl_vertex_at(s, f[k], time, room[k]);
+  if (edge) v = 0;
+  if (corner >= 0) u = corner == 1, v = corner == 2;
+  for (int i = 0; i < 3; i++) {
+    p[i] = corner >= 0 ? c[corner][i] : c[0][i] + u * (c[1][i] - c[0][i]) + v * (c[2][i] - c[0][i]);
+    along[i] = c[1][i] - c[0][i];
+  }
+}
+
+static void make_rays(const vlWorld *w, Way way) {
+  for (uint32_t k = 0; k < BATCH; k++) {
+    float from[3], to[3], along[3], other[3], length = powf(10, 3 * random_signed());
+    if (w->radius > 1e8f) length *= 1e-3f; /* products of larger numbers lose digits in Embree's reciprocal */
+    time_[k] = w->moves ? (random_unit() < 0.1f ? (float)random_below(2) : random_unit()) : 0;
+    point_of(w, time_[k], way == CORNERS ? (int)random_below(3) : -1, way == EDGES || way == ALONG, to, along);
+    point_of(w, time_[k], way == AXES ? 0 : -1, false, from, other);
+    uint32_t axis = random_below(3);
+    for (int i = 0; i < 3; i++) {
+      if (random_unit() < 0.3f) from[i] = w->center[i] + 2 * w->radius * random_signed();
+      o_[i][k] = from[i], d_[i][k] = (to[i] - from[i]) * length;
+      if (way == ALONG) o_[i][k] = to[i] - 3 * along[i], d_[i][k] = along[i];
+      if (way == AXES) o_[i][k] = to[i], d_[i][k] = 0;
+    }
+    if (way == AXES) {
+      for (int i = 0; i < 3; i++) o_[i][k] += 1e-3f * w->radius * random_signed(); /* not in the face of a box */
+      o_[axis][k] = w->center[axis] + 2 * w->radius, d_[axis][k] = -length;
+    }
+    start_[k] = random_unit() < 0.2f ? random_unit() / length : 0;
+    end_[k] = random_unit() < 0.3f ? 2 * random_unit() / length : INFINITY;
+  }
+}
+
+/* ---- comparison -------------------------------------------------------------------------------------------------- */
+
+typedef struct Hits {
+  uint32_t shape[BATCH], prim[BATCH], instance[BATCH];
+  float t[BATCH];
+  uint8_t blocked[BATCH];
+} Hits;
+
+static void trace(const vlWorld *w, bool coherent, Hits *h) {
+  vl_accel_closest(w, BATCH, &all_rays, coherent, h->shape, h->prim, h->instance, h->t);
+  vl_accel_occluded(w, BATCH, &all_rays, NULL, h->blocked);
+}
+
+static bool same_hit(const vlWorld *w, const Hits *a, const Hits *b, uint32_t k) {
+  if (a->shape[k] != b->shape[k] || a->prim[k] != b->prim[k] || a->instance[k] != b->instance[k]) return false;
+  if (a->shape[k] == VL_NONE || w->shapes.items[a->shape[k]].kind == VL_SHAPE_TRIANGLES) return true;
+  return a->t[k] == b->t[k];
+}
+
+static const Case cases[] = {
+    {.name = "plain", .size = 1, .plain = true},
+    {.name = "tiny", .size = 1e-10f, .plain = true},
+    {.name = "huge", .size = 1e10f, .plain = true},
+    {.name = "alpha", .size = 1, .plain = true, .alpha = true},
+    {.name = "moving", .size = 1, .plain = true, .moving = true},
+    {.name = "moving, alpha", .size = 10, .moving = true, .alpha = true},
+    {.name = "others", .size = 1, .others = true},
+    {.name = "others, alpha", .size = 1, .plain = true, .others = true, .alpha = true},
+    {.name = "instances", .size = 1, .plain = true, .placed = true},
+    {.name = "instances of all",
+     .size = 100,
+     .plain = true,
+     .moving = true,
+     .others = true,
+     .alpha = true,
+     .placed = true},
+    {.name = "moving instances", .size = 1, .plain = true, .travelling = true},
+    {.name = "moving instances of all",
+     .size = 1,
+     .plain = true,
+     .moving = true,
+     .others = true,
+     .alpha = true,
+     .travelling = true},
+};
+
+static uint32_t batches(void) {
+  const char *rays = getenv("VELO_RAYS");
+  return rays ? (uint32_t)(strtoul(rays, NULL, 10) / (WAYS * BATCH)) + 1 : 20;
+}
+
+/* Whether a ray lies nearly in the plane of the triangle that it hits: rounding then decides where, and even whether,
+ * it does, and with it the order in which boxes are visited. */
+static bool grazes(const vlWorld *w, const Hits *h, uint32_t k) {
+  if (h->shape[k] == VL_NONE || w->shapes.items[h->shape[k]].kind != VL_SHAPE_TRIANGLES) return false;
+  const vlWorldShape *s = &w->shapes.items[h->shape[k]];
+  double o[3] = {0}, d[3] = {(double)d_[0][k], (double)d_[1][k], (double)d_[2][k]}, n[3];
+  vlWorldInstance moved;
+  if (h->instance[k] != VL_NONE)
+    vl_ray_to_group(vl_instance_at(&w->instances.items[h->instance[k]], time_[k], &moved), o, d);
+  float room[3][3];
+  const float *c[3];
+  for (int i = 0; i < 3; i++) c[i] = vl_vertex_at(s, s->indices[3 * (size_t)h->prim[k] + (size_t)i], time_[k], room[i]);
+  double e[2][3];
+  for (int j = 0; j < 2; j++)
+    for (int i = 0; i < 3; i++) e[j][i] = (double)c[j + 1][i] - (double)c[0][i];
+  vl_cross3(e[0], e[1], n);
+  return fabs(vl_dot3(n, d)) < 1e-4 * sqrt(vl_dot3(n, n) * vl_dot3(d, d));
+}
+
+/* The differences that decision 22 states: rays in the plane of a triangle, and rays that run in the face of a box. */
+static bool is_excused(const vlWorld *w, Way way, const Hits *a, const Hits *b, uint32_t k) {
+  bool flat = d_[0][k] == 0 || d_[1][k] == 0 || d_[2][k] == 0;
+  return grazes(w, a, k) || grazes(w, b, k) || (flat && way != AXES);
+}
+
+static void hits_are_those_of_embree(void **state) {
+  (void)state;
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    Made m = {0};
+    make(&cases[c], &m, VL_ISA_AUTO, 2);
+    unsigned floats = vl_accel_enter();
+    for (Way way = ANYWHERE; way < WAYS; way++) {
+      uint32_t rays = 0, met = 0, excused = 0;
+      for (uint32_t b = 0; b < batches(); b++) {
+        static Hits hits[3];
+        make_rays(m.worlds[0], way);
+        trace(m.worlds[0], false, &hits[0]);
+        trace(m.worlds[0], true, &hits[1]);
+        trace(m.worlds[1], false, &hits[2]);
+        for (uint32_t k = 0; k < BATCH; k++) {
+          rays++, met += hits[2].shape[k] != VL_NONE;
+          bool same = hits[0].blocked[k] == hits[2].blocked[k];
+          same = same && same_hit(m.worlds[0], &hits[0], &hits[2], k);
+          /* Embree's packets do not compare all hits at the ray's very start. */
+          if (hits[2].t[k] != 0) same = same && same_hit(m.worlds[0], &hits[1], &hits[2], k);
+          if (same) continue;
+          excused++;
+          if (!is_excused(m.worlds[0], way, &hits[0], &hits[2], k) &&
+              !is_excused(m.worlds[0], way, &hits[1], &hits[2], k))
+            fail_msg(
+                "packets: %d %d %a blocked %d; o %a %a %a d %a %a %a %a; "
+                "%s, %s, batch %u, ray %u: shape %d prim %d t %.9g blocked %d, Embree %d %d %.9g %d",
+                (int)hits[1].shape[k], (int)hits[1].prim[k], (double)hits[1].t[k], hits[1].blocked[k], (double)o_[0][k],
+                (double)o_[1][k], (double)o_[2][k], (double)d_[0][k], (double)d_[1][k], (double)d_[2][k],
+                (double)start_[k], cases[c].name, way_names[way], b, k, (int)hits[2].shape[k], (int)hits[2].prim[k],
+                (double)hits[2].t[k], hits[2].blocked[k], (int)hits[0].shape[k], (int)hits[0].prim[k],
+                (double)hits[0].t[k], hits[0].blocked[k]);
+        }
+      }
+      assert_true(met > rays / 20);
+      if (way != ALONG && excused > rays / 100)
+        fail_msg("%s, %s: %u differences", cases[c].name, way_names[way], excused);
+      if (getenv("VELO_RAYS"))
+        print_message("%s, %s: %u rays, %u hits, %u excused\n", cases[c].name, way_names[way], rays, met, excused);
+    }
+    vl_accel_leave(floats);
+    unmake(&m);
+  }
+}
+
+/* A ray's end within a few units in the last place of a hit. The BVH finds it if its exact distance is not beyond the
+ * end; Embree's distances are off by two units at most. */
+static void ends_near_hits(void **state) {
+  (void)state;
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    if (cases[c].others || cases[c].alpha) continue;
+    Made m = {0};
+    make(&cases[c], &m, VL_ISA_AUTO, 2);
+    unsigned floats = vl_accel_enter();
+    uint32_t tested = 0;
+    for (uint32_t b = 0; b < batches(); b++) {
+      static Hits first, hits[2];
+      make_rays(m.worlds[0], ANYWHERE);
+      for (uint32_t k = 0; k < BATCH; k++) start_[k] = 0, end_[k] = INFINITY;
+      trace(m.worlds[1], false, &first);
+      for (int step = -4; step <= 4; step++) {
+        for (uint32_t k = 0; k < BATCH; k++) {
+          float t = first.t[k];
+          for (int s = 0; s != step; s += step > 0 ? 1 : -1) t = nextafterf(t, step > 0 ? INFINITY : 0);
+          end_[k] = t;
+        }
+        for (int a = 0; a < 2; a++) trace(m.worlds[a], false, &hits[a]);
+        for (uint32_t k = 0; k < BATCH; k++) {
+          if (first.shape[k] == VL_NONE || !(first.t[k] > 0) || grazes(m.worlds[0], &first, k)) continue;
+          bool flat = d_[0][k] == 0 || d_[1][k] == 0 || d_[2][k] == 0;
+          tested++;
+          assert_int_equal(hits[1].blocked[k], step >= 0);
+          assert_int_equal(hits[1].shape[k] == first.shape[k] && hits[1].prim[k] == first.prim[k], step >= 0);
+          if (flat || (step > -4 && step < 4)) continue;
+          assert_int_equal(hits[0].blocked[k], step >= 0);
+        }
+      }
+    }
+    assert_true(tested > 1000);
+    vl_accel_leave(floats);
+    unmake(&m);
+  }
+}
+
+/* Every set of kernels and number of threads gives the same tree and the same hits. */
+static void same_for_all_sets_and_threads(void **state) {
+  (void)state;
+  static Hits known, hits;
+  const Case *what = &cases[sizeof cases / sizeof *cases - 1];
+  for (vlIsa isa = VL_ISA_BASE; isa <= vl_isa_best(); isa++)
+    for (uint32_t threads = 1; threads <= 3; threads += 2) {
+      Made m = {0};
+      make(what, &m, isa, threads);
+      const vlBvh *tree = m.worlds[1]->accel.groups[0];
+      assert_true(tree->node_count > 10 && tree->four_count + tree->item_count > 100);
+      unsigned floats = vl_accel_enter();
+      seed = 11;
+      make_rays(m.worlds[1], ANYWHERE);
+      memset(&hits, 0, sizeof hits);
+      trace(m.worlds[1], false, &hits);
+      if (isa == VL_ISA_BASE && threads == 1) known = hits;
+      assert_memory_equal(&known, &hits, sizeof hits);
+      vl_accel_leave(floats);
+      unmake(&m);
+    }
+}
+
+/* A world shares the trees of the previous one; one with Embree has nothing to share. */
+static void trees_are_shared(void **state) {
+  (void)state;
+  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+    Made m = {0};
+    make(&cases[c], &m, VL_ISA_AUTO, 2);
+    const vlAccel *old = &m.worlds[1]->accel;
+    for (int a = 0; a < 2; a++) {
+      vlBuildDef build = vl_default_build_def();
+      build.accelerator = VL_ACCELERATOR_BVH, build.previous = m.worlds[a];
+      vlWorld *world = NULL;
+      assert_int_equal(vl_world_build(m.scene, &build, &world, NULL), VL_OK);
+      for (uint32_t k = 0; k < old->group_count; k++) {
+        vlBvh *tree = world->accel.groups[k];
+        assert_int_equal(tree == old->groups[k], a == 1);
+        assert_int_equal(atomic_load(&tree->users), a == 1 ? 2 : 1);
+      }
+      assert_int_equal(world->accel.scene == old->scene, a == 1 || !old->scene);
+      static Hits hits[2];
+      make_rays(world, ANYWHERE);
+      unsigned floats = vl_accel_enter();
+      trace(m.worlds[1], false, &hits[0]);
+      if (a == 1) { /* what is shared outlives its first owner */
+        vl_world_destroy(m.worlds[1]);
+        m.worlds[1] = NULL;
+      }
+      trace(world, false, &hits[1]);
+      vl_accel_leave(floats);
+      assert_memory_equal(&hits[0], &hits[1], sizeof hits[0]);
+      vl_world_destroy(world);
+    }
+    unmake(&m);
+  }
+}
+
+/* Rays that are no rays miss everything, and hurt nothing. */
+static void broken_rays(void **state) {
+  (void)state;
+  Made m = {0};
+  make(&cases[sizeof cases / sizeof *cases - 1], &m, VL_ISA_AUTO, 2);
+  static Hits hits;
+  static const float broken[] = {NAN, INFINITY, -INFINITY, 3e38f, 0x1p121f};
+  make_rays(m.worlds[1], ANYWHERE);
+  for (uint32_t k = 0; k < BATCH; k++) (k % 2 ? o_ : d_)[k % 3][k] = broken[k % 5];
+  unsigned floats = vl_accel_enter();
+  trace(m.worlds[1], false, &hits);
+  vl_accel_leave(floats);
+  for (uint32_t k = 0; k < BATCH; k++) assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
+  unmake(&m);
+}
+
+/* An empty world, and one that only has instances. */
+static void nothing_at_all(void **state) {
+  (void)state;
+  Made m = {0};
+  assert_int_equal(vl_context_create(NULL, &m.context), VL_OK);
+  assert_int_equal(vl_scene_create(m.context, &m.scene), VL_OK);
+  vlGroupId group = vl_scene_add_group(m.scene, NULL);
+  double pose[16];
+  set_pose(pose, 1, true);
+  vl_scene_add_instance(m.scene, group, pose, (vlSource){0});
+  vlBuildDef build = vl_default_build_def();
+  build.accelerator = VL_ACCELERATOR_BVH;
+  assert_int_equal(vl_world_build(m.scene, &build, &m.worlds[1], NULL), VL_OK);
+  static Hits hits;
+  make_rays(m.worlds[1], AXES);
+  trace(m.worlds[1], false, &hits);
+  for (uint32_t k = 0; k < BATCH; k++) assert_true(hits.shape[k] == VL_NONE && !hits.blocked[k]);
+  unmake(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(hits_are_those_of_embree),
+      cmocka_unit_test(ends_near_hits),
+      cmocka_unit_test(same_for_all_sets_and_threads),
+      cmocka_unit_test(trees_are_shared),
+      cmocka_unit_test(broken_rays),
+      cmocka_unit_test(nothing_at_all),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -303,29 +303,44 @@ static uint32_t batches(void) {
   return rays ? (uint32_t)(strtoul(rays, NULL, 10) / (WAYS * BATCH)) + 1 : 20;
 }
 
-/* Whether a ray lies nearly in the plane of the triangle that it hits: rounding then decides where, and even whether,
- * it does, and with it the order in which boxes are visited. */
-static bool grazes(const vlWorld *w, const Hits *h, uint32_t k) {
-  if (h->shape[k] == VL_NONE || w->shapes.items[h->shape[k]].kind != VL_SHAPE_TRIANGLES) return false;
+/* The triangle that a ray hits. */
+typedef struct Met {
+  bool is;
+  double sine;  /* of the angle between ray and plane */
+  double inner; /* the least barycentric coordinate of the point */
+} Met;
+
+static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
+  if (h->shape[k] == VL_NONE || w->shapes.items[h->shape[k]].kind != VL_SHAPE_TRIANGLES) return (Met){0};
   const vlWorldShape *s = &w->shapes.items[h->shape[k]];
-  double o[3] = {0}, d[3] = {(double)d_[0][k], (double)d_[1][k], (double)d_[2][k]}, n[3];
+  double o[3] = {(double)o_[0][k], (double)o_[1][k], (double)o_[2][k]};
+  double d[3] = {(double)d_[0][k], (double)d_[1][k], (double)d_[2][k]}, n[3], c[3][3], side[3], sum = 0;
   vlWorldInstance moved;
   if (h->instance[k] != VL_NONE)
     vl_ray_to_group(vl_instance_at(&w->instances.items[h->instance[k]], time_[k], &moved), o, d);
-  float room[3][3];
-  const float *c[3];
-  for (int i = 0; i < 3; i++) c[i] = vl_vertex_at(s, s->indices[3 * (size_t)h->prim[k] + (size_t)i], time_[k], room[i]);
-  double e[2][3];
-  for (int j = 0; j < 2; j++)
-    for (int i = 0; i < 3; i++) e[j][i] = (double)c[j + 1][i] - (double)c[0][i];
-  vl_cross3(e[0], e[1], n);
-  return fabs(vl_dot3(n, d)) < 1e-4 * sqrt(vl_dot3(n, n) * vl_dot3(d, d));
+  for (size_t i = 0; i < 3; i++) {
+    float room[3];
+    const float *at = vl_vertex_at(s, s->indices[3 * (size_t)h->prim[k] + i], time_[k], room);
+    for (int j = 0; j < 3; j++) c[i][j] = (double)at[j] - o[j];
+  }
+  for (int i = 0; i < 3; i++) {
+    vl_cross3(c[(i + 1) % 3], c[(i + 2) % 3], n);
+    side[i] = vl_dot3(n, d), sum += side[i];
+  }
+  for (int j = 0; j < 3; j++) c[1][j] -= c[0][j], c[2][j] -= c[0][j];
+  vl_cross3(c[1], c[2], n);
+  return (Met){true, fabs(vl_dot3(n, d)) / sqrt(vl_dot3(n, n) * vl_dot3(d, d)),
+               fmin(side[0] / sum, fmin(side[1] / sum, side[2] / sum))};
 }
 
-/* The differences that decision 22 states: rays in the plane of a triangle, and rays that run in the face of a box. */
-static bool is_excused(const vlWorld *w, Way way, const Hits *a, const Hits *b, uint32_t k) {
+/* The differences that decision 22 states. Rays in the plane of a triangle: rounding decides where, and even whether,
+ * they meet, and with it the order in which boxes are visited. Rays that run in the face of a box. Rays at the rim of a
+ * triangle, which Embree's boxes may lose. */
+static bool is_excused(const vlWorld *w, Way way, const Hits *embree, const Hits *bvh, uint32_t k) {
+  Met a = met_triangle(w, embree, k), b = met_triangle(w, bvh, k);
   bool flat = d_[0][k] == 0 || d_[1][k] == 0 || d_[2][k] == 0;
-  return grazes(w, a, k) || grazes(w, b, k) || (flat && way != AXES);
+  if ((a.is && a.sine < 1e-4) || (b.is && b.sine < 1e-4) || (flat && way != AXES)) return true;
+  return b.is && fabs(b.inner) < 1e-5 && (embree->shape[k] == VL_NONE || embree->t[k] >= bvh->t[k]);
 }
 
 static void hits_are_those_of_embree(void **state) {
@@ -396,7 +411,9 @@ static void ends_near_hits(void **state) {
         }
         for (int a = 0; a < 2; a++) trace(m.worlds[a], false, &hits[a]);
         for (uint32_t k = 0; k < BATCH; k++) {
-          if (first.shape[k] == VL_NONE || !(first.t[k] > 0) || grazes(m.worlds[0], &first, k)) continue;
+          if (first.shape[k] == VL_NONE || !(first.t[k] > 0)) continue;
+          Met met = met_triangle(m.worlds[0], &first, k);
+          if (met.sine < 0.05 || met.inner < 1e-5) continue; /* its distance is less certain than some units */
           bool flat = d_[0][k] == 0 || d_[1][k] == 0 || d_[2][k] == 0;
           tested++;
           assert_int_equal(hits[1].blocked[k], step >= 0);
@@ -421,8 +438,6 @@ static void same_for_all_sets_and_threads(void **state) {
     for (uint32_t threads = 1; threads <= 3; threads += 2) {
       Made m = {0};
       make(what, &m, isa, threads);
-      const vlBvh *tree = m.worlds[1]->accel.groups[0];
-      assert_true(tree->node_count > 10 && tree->four_count + tree->item_count > 100);
       unsigned floats = vl_accel_enter();
       seed = 11;
       make_rays(m.worlds[1], ANYWHERE);

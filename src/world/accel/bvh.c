@@ -24,7 +24,13 @@ void vl_bvh_map(const float m[12], float w[12]) {
 }
 
 void vl_bvh_release(vlContext *context, vlBvh *tree) {
-  if (tree && atomic_fetch_sub(&tree->users, 1) == 1) vl_free(context, tree);
+  if (!tree || atomic_fetch_sub(&tree->users, 1) > 1) return;
+  for (vlBvhBlock *block = tree->blocks, *next; block; block = next) {
+    next = block->next;
+    vl_free(context, block);
+  }
+  vl_free(context, tree->maps);
+  vl_free(context, tree);
 }
 
 static vlBvh *share(vlBvh *tree) {

@@ -15,31 +15,32 @@ enum {
   VL_BVH_FOUR = 4,  /* triangles that are tested at a time */
   /* Nodes are split at the median from this depth on, which bounds the depth by that plus 32. */
   VL_BVH_DEPTH = 64,
-  VL_BVH_STACK = (VL_BVH_DEPTH + 32) * (VL_BVH_WIDTH - 1) + 1
+  VL_BVH_STACK = (VL_BVH_DEPTH + 32) * (VL_BVH_WIDTH - 1) + 1,
+  VL_BVH_ALIGN = 32
 };
 
-/* What a child is: the upper 2 bits of its number; then 3 bits: count - 1, for leaves; then 27 bits: the first node,
- * block or item. */
+/* What a child is: its address, with the kind in the lowest 2 bits, and for leaves count - 1 in the 3 bits above: of
+ * vlBvhFour, or of vlBvhItem, which are moving triangles, or other primitives or instances. */
 typedef enum vlBvhKind { VL_BVH_NODE, VL_BVH_FOURS, VL_BVH_MOVING, VL_BVH_OTHERS } vlBvhKind;
-enum { VL_BVH_MOST = 1 << 27, VL_BVH_LEAF = 8 };
-static inline uint32_t vl_bvh_child(vlBvhKind kind, uint32_t count, uint32_t first) {
-  return (uint32_t)kind << 30 | (count - 1) << 27 | first;
+static inline uintptr_t vl_bvh_child(vlBvhKind kind, uint32_t count, const void *at) {
+  return (uintptr_t)at | (uintptr_t)(count - 1) << 2 | (uintptr_t)kind;
 }
-static inline vlBvhKind vl_bvh_kind(uint32_t child) {
-  return (vlBvhKind)(child >> 30);
+static inline vlBvhKind vl_bvh_kind(uintptr_t child) {
+  return (vlBvhKind)(child & 3);
 }
-static inline uint32_t vl_bvh_count(uint32_t child) {
-  return (child >> 27 & 7) + 1;
+static inline uint32_t vl_bvh_count(uintptr_t child) {
+  return (uint32_t)(child >> 2 & 7) + 1;
 }
-static inline uint32_t vl_bvh_first(uint32_t child) {
-  return child & (VL_BVH_MOST - 1);
+static inline const void *vl_bvh_at(uintptr_t child) {
+  return (const void *)(child & ~(uintptr_t)(VL_BVH_ALIGN - 1));
 }
 
 /* Boxes of the children: rows low x, high x, low y, high y, low z, high z. Places without a child have low > high. */
 typedef float vlBvhBoxes[6][VL_BVH_WIDTH];
 typedef struct vlBvhNode {
   vlBvhBoxes boxes; /* if the tree moves, at time 0 */
-  uint32_t child[VL_BVH_WIDTH];
+  uintptr_t child[VL_BVH_WIDTH];
+  vlBvhBoxes later[]; /* if the tree moves: one, at time 1; between, boxes are interpolated */
 } vlBvhNode;
 
 /* Numbers of a primitive, as Embree has them (bundle.h): in a tree of instances `geometry` is the instance. */
@@ -55,20 +56,21 @@ typedef struct vlBvhFour {
 /* Added to `geometry` of triangles of which a ray may pass: they have an alpha, one side, or an interface. */
 #define VL_BVH_ASKS 0x80000000u
 
+/* A block of memory, which follows. */
+typedef struct vlBvhBlock {
+  struct vlBvhBlock *next;
+} vlBvhBlock;
+
 /* A tree over the shapes of a group, or over the world's instances. Worlds share trees (decision 15): a tree reads
  * nothing of a world, and queries give the world. */
 typedef struct vlBvh {
   atomic_uint users;
-  uint32_t root;
+  bool moves;
+  uintptr_t root;
   float low[3], high[3]; /* box of all primitives over all times; empty: low > high */
   float reach;           /* largest coordinate of the box, without sign */
-  bool moves;
-  vlBvhNode *nodes;
-  vlBvhBoxes *later; /* of a tree that moves: boxes at time 1, one per node; between, boxes are interpolated */
-  vlBvhFour *fours;
-  vlBvhItem *items;
+  vlBvhBlock *blocks;    /* nodes and leaves */
   float (*maps)[12]; /* of a tree of instances: group from world, as Embree computes it; unused for moving instances */
-  uint32_t node_count, four_count, item_count;
 } vlBvh;
 
 /* Builds the tree of group k, and that of all instances of a world whose groups are built. *tree is null after an

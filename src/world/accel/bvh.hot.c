@@ -41,7 +41,7 @@ typedef struct Query {
 
 /* A place of the stack: the tree below `child` begins at the distance `near`. */
 typedef struct Place {
-  uint32_t child;
+  uintptr_t child;
   float near;
 } Place;
 
@@ -253,14 +253,13 @@ static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray
   return blocked;
 }
 
-static inline bool meet_leaf(Query *q, const vlBvh *tree, uint32_t child, const Ray *r, bool any) {
-  uint32_t first = vl_bvh_first(child), count = vl_bvh_count(child);
-  if (vl_bvh_kind(child) == VL_BVH_FOURS) return meet_fours(q, tree->fours + first, count, r, any);
-  if (vl_bvh_kind(child) == VL_BVH_MOVING) return meet_moving(q, tree->items + first, count, r, any);
-  for (uint32_t k = 0; k < count; k++) {
-    vlBvhItem at = tree->items[first + k];
-    if (tree->maps ? meet_instance(q, tree, at.geometry, r, any) : meet_shape(q, at, any)) return true;
-  }
+static inline bool meet_leaf(Query *q, const vlBvh *tree, uintptr_t child, const Ray *r, bool any) {
+  uint32_t count = vl_bvh_count(child);
+  if (vl_bvh_kind(child) == VL_BVH_FOURS) return meet_fours(q, vl_bvh_at(child), count, r, any);
+  const vlBvhItem *items = vl_bvh_at(child);
+  if (vl_bvh_kind(child) == VL_BVH_MOVING) return meet_moving(q, items, count, r, any);
+  for (uint32_t k = 0; k < count; k++)
+    if (tree->maps ? meet_instance(q, tree, items[k].geometry, r, any) : meet_shape(q, items[k], any)) return true;
   return false;
 }
 
@@ -283,12 +282,12 @@ static inline __attribute__((always_inline)) bool walk(Query *q, const vlBvh *tr
     Place at = *--top;
     if (!any && at.near > q->limit) continue;
     while (vl_bvh_kind(at.child) == VL_BVH_NODE) {
-      const vlBvhNode *node = tree->nodes + vl_bvh_first(at.child);
+      const vlBvhNode *node = vl_bvh_at(at.child);
       const vlBvhBoxes *boxes = &node->boxes;
       vlBvhBoxes now;
       float begin[W];
       if (tree->moves) {
-        interpolate(boxes, tree->later + vl_bvh_first(at.child), q->time, &now);
+        interpolate(boxes, node->later, q->time, &now);
         boxes = &now;
       }
       uint32_t met = meet(boxes, r, q->t_min, q->limit, begin);

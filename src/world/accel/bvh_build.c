@@ -45,37 +45,60 @@ typedef struct Range {
 
 /* What is built from a range. */
 typedef struct Built {
-  uint32_t child;
+  uintptr_t child;
   Box box[2]; /* at times 0 and 1 */
 } Built;
 
-/* Nodes, blocks and items of a part of a tree, numbered from 0. */
+/* A range that is built in parallel. */
 typedef struct Part {
   Range range;
-  Built root;
-  VL_ARRAY(vlBvhNode) nodes;
-  VL_ARRAY(vlBvhBoxes) later;
-  VL_ARRAY(vlBvhFour) fours;
-  VL_ARRAY(vlBvhItem) items;
+  Built built;
 } Part;
 
-/* A node above the parts. Children are nodes of this kind, or parts (number + nodes). */
+/* A node above the parts. Children are nodes of this kind, or parts, counted from PARTS. */
+enum { PARTS = 1 << 30 };
 typedef struct Upper {
   uint32_t count, child[VL_BVH_WIDTH];
 } Upper;
+
+/* A worker's memory for nodes and leaves: the rest of a block. */
+typedef struct Arena {
+  char *at, *end;
+  vlBvhBlock *blocks;
+} Arena;
 
 typedef struct Builder {
   const vlWorld *world;
   const vlWorldGroup *group; /* null: the world's instances */
   const vlAccelBundle *bundle;
-  bool moves;
+  vlBvh *tree;
   uint32_t count, part_size;
   Primitive *primitives;
   uint32_t *starts; /* number of the first primitive of each geometry, and the number of all */
+  Arena *arenas;    /* one per worker */
   VL_ARRAY(Upper) uppers;
   VL_ARRAY(Part) parts;
   atomic_bool failed; /* no memory */
 } Builder;
+
+/* Memory that the tree owns, aligned to VL_BVH_ALIGN. Null: there is none. */
+static void *take(Builder *b, Arena *arena, size_t size) {
+  enum { BLOCK = 16384 };
+  size = (size + VL_BVH_ALIGN - 1) & ~(size_t)(VL_BVH_ALIGN - 1);
+  if ((size_t)(arena->end - arena->at) < size) {
+    size_t room = b->count < BLOCK / 256 ? 1024 + 128 * (size_t)b->count : BLOCK;
+    vlBvhBlock *block = vl_alloc(b->world->context, sizeof *block + VL_BVH_ALIGN + room);
+    if (!block) return NULL;
+    block->next = arena->blocks;
+    arena->blocks = block;
+    arena->at = (char *)(block + 1);
+    arena->at += VL_BVH_ALIGN - (uintptr_t)arena->at % VL_BVH_ALIGN;
+    arena->end = arena->at + room;
+  }
+  void *taken = arena->at;
+  arena->at += size;
+  return taken;
+}
 
 /* ---- boxes ------------------------------------------------------------------------------------------------------- */
 
@@ -223,7 +246,7 @@ static void make_primitive(const Builder *b, uint32_t g, uint32_t i, Primitive *
   if (kind != VL_BVH_OTHERS && (s->alpha >= 0 || s->one_sided || s->pass_shadow)) p->geometry |= VL_BVH_ASKS;
 }
 
-static bool is_stopped(Builder *b) {
+static bool is_stopped(const Builder *b) {
   return atomic_load_explicit(&b->failed, memory_order_relaxed) || vl_task_stopped(b->world->task, NULL, 0);
 }
 
@@ -254,8 +277,8 @@ static bool count_primitives(Builder *b) {
     bool bundled = b->bundle->members && vl_accel_bundled(s);
     b->starts[g] = (uint32_t)count;
     count += bundled ? (g == b->bundle->geometry ? b->bundle->count : 0) : s->faces;
-    b->moves = b->moves || (s->kind == VL_SHAPE_TRIANGLES && s->steps > 1);
-    if (count >= VL_BVH_MOST) return false;
+    b->tree->moves |= s->kind == VL_SHAPE_TRIANGLES && s->steps > 1;
+    if (count >= UINT32_MAX) return false;
   }
   b->starts[b->group->count] = b->count = (uint32_t)count;
   return true;
@@ -385,250 +408,190 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
-/* Numbers so large that no ray meets the box, and finite, for products with 0. */
-static void clear_boxes(vlBvhBoxes *boxes) {
-  for (int row = 0; row < 6; row++)
-    for (int k = 0; k < VL_BVH_WIDTH; k++) (*boxes)[row][k] = row & 1 ? -0x1p126f : 0x1p126f;
-}
-
 static void set_box(vlBvhBoxes *boxes, uint32_t k, const Box *box) {
   for (int i = 0; i < 3; i++) (*boxes)[2 * i][k] = box->low[i], (*boxes)[2 * i + 1][k] = box->high[i];
 }
 
-/* Fills a node; later is null if nothing moves. */
-static void make_node(const Built *children, uint32_t count, vlBvhNode *node, vlBvhBoxes *later, Box box[2]) {
-  memset(node->child, 0, sizeof node->child);
-  clear_boxes(&node->boxes);
-  if (later) clear_boxes(later);
-  box[0] = box[1] = empty_box();
-  for (uint32_t k = 0; k < count; k++) {
-    node->child[k] = children[k].child;
-    set_box(&node->boxes, k, &children[k].box[0]);
-    if (later) set_box(later, k, &children[k].box[1]);
-    for (int i = 0; i < 2; i++) extend(&box[i], &children[k].box[i]);
+static bool make_node(Builder *b, Arena *arena, const Built *children, uint32_t count, Built *built) {
+  vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
+  if (!node) return false;
+  Box none; /* so large that no ray meets it, and finite, for products with 0 */
+  for (int i = 0; i < 4; i++) none.low[i] = 0x1p126f, none.high[i] = -0x1p126f;
+  built->child = vl_bvh_child(VL_BVH_NODE, 1, node);
+  built->box[0] = built->box[1] = empty_box();
+  for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
+    node->child[k] = k < count ? children[k].child : 0;
+    set_box(&node->boxes, k, k < count ? &children[k].box[0] : &none);
+    if (b->tree->moves) set_box(&node->later[0], k, k < count ? &children[k].box[1] : &none);
+    for (int i = 0; i < 2 && k < count; i++) extend(&built->box[i], &children[k].box[i]);
   }
+  return true;
 }
 
 static void put_face(const Builder *b, vlBvhItem item, vlBvhFour *four, uint32_t k) {
   uint32_t prim;
   const vlWorldShape *s = shape_of(b, item, &prim);
-  for (int c = 0; c < 3; c++)
-    for (int i = 0; i < 3; i++)
-      four->corner[c][i][k] = s->positions[3 * (size_t)s->indices[3 * (size_t)prim + (size_t)c] + (size_t)i];
+  for (size_t c = 0; c < 3; c++)
+    for (size_t i = 0; i < 3; i++)
+      four->corner[c][i][k] = s->positions[3 * (size_t)s->indices[3 * (size_t)prim + c] + i];
   four->geometry[k] = item.geometry, four->primitive[k] = item.primitive;
 }
 
-static bool make_leaf(const Builder *b, Part *part, const Range *r, Built *built) {
+static bool make_leaf(Builder *b, Arena *arena, const Range *r, Built *built) {
   const Primitive *p = b->primitives + r->begin;
   uint32_t n = r->end - r->begin, blocks = (n + VL_BVH_FOUR - 1) / VL_BVH_FOUR;
   vlBvhKind kind = kind_of(p);
-  bool fours = kind == VL_BVH_FOURS;
-  built->child = fours ? vl_bvh_child(kind, blocks, (uint32_t)part->fours.count)
-                       : vl_bvh_child(kind, n, (uint32_t)part->items.count);
+  size_t size = kind == VL_BVH_FOURS ? blocks * sizeof(vlBvhFour) : n * sizeof(vlBvhItem);
+  void *leaf = take(b, arena, size);
+  if (!leaf) return false;
+  memset(leaf, 0, size);
+  built->child = vl_bvh_child(kind, kind == VL_BVH_FOURS ? blocks : n, leaf);
   built->box[0] = built->box[1] = empty_box();
   for (uint32_t i = 0; i < n; i++) {
     vlBvhItem item = item_of(&p[i]);
     Box box[2] = {p[i].box, p[i].box};
-    if (b->moves) item_boxes(b, kind, item, box);
+    if (b->tree->moves) item_boxes(b, kind, item, box);
     for (int k = 0; k < 2; k++) extend(&built->box[k], &box[k]);
-    if (fours) {
-      if (i % VL_BVH_FOUR == 0 && !VL_PUSH(b->world->context, &part->fours)) return false;
-      put_face(b, item, &part->fours.items[part->fours.count - 1], i % VL_BVH_FOUR);
-    } else {
-      vlBvhItem *to = VL_PUSH(b->world->context, &part->items);
-      if (!to) return false;
-      *to = item;
-    }
+    if (kind == VL_BVH_FOURS)
+      put_face(b, item, (vlBvhFour *)leaf + i / VL_BVH_FOUR, i % VL_BVH_FOUR);
+    else
+      ((vlBvhItem *)leaf)[i] = item;
   }
   return true;
 }
 
-static bool make_tree(Builder *b, Part *part, const Range *range, Built *built) {
-  if (range->leaf) return make_leaf(b, part, range, built);
+static bool make_tree(Builder *b, Arena *arena, const Range *range, Built *built) {
+  if (range->leaf) return make_leaf(b, arena, range, built);
   Range ranges[VL_BVH_WIDTH];
   Built children[VL_BVH_WIDTH];
-  uint32_t count = split_often(b, range, 1, ranges), index = (uint32_t)part->nodes.count;
-  if (!VL_PUSH(b->world->context, &part->nodes)) return false;
-  if (b->moves && !VL_PUSH(b->world->context, &part->later)) return false;
+  uint32_t count = split_often(b, range, 1, ranges);
   for (uint32_t k = 0; k < count; k++)
-    if (!make_tree(b, part, &ranges[k], &children[k])) return false;
-  make_node(children, count, &part->nodes.items[index], b->moves ? &part->later.items[index] : NULL, built->box);
-  built->child = vl_bvh_child(VL_BVH_NODE, 1, index);
-  return true;
+    if (!make_tree(b, arena, &ranges[k], &children[k])) return false;
+  return make_node(b, arena, children, count, built);
 }
 
 static void make_part(void *user, uint32_t index, uint32_t worker) {
   Builder *b = user;
-  (void)worker;
   Part *part = &b->parts.items[index];
-  if (!is_stopped(b) && !make_tree(b, part, &part->range, &part->root)) atomic_store(&b->failed, true);
+  if (!is_stopped(b) && !make_tree(b, &b->arenas[worker], &part->range, &part->built)) atomic_store(&b->failed, true);
 }
 
-/* Splits a range until the parts are small. *child: as in Upper, with `parts` counted from PARTS. */
-enum { PARTS = 1 << 30 };
+/* Splits a range until the parts are small. *child: as in Upper. */
 static bool split_upper(Builder *b, const Range *range, uint32_t *child) {
-  if (is_stopped(b)) return false;
+  vlContext *c = b->world->context;
+  if (is_stopped(b) || !VL_RESERVE(c, &b->parts, 1) || !VL_RESERVE(c, &b->uppers, 1)) return false;
   if (range->leaf || range->end - range->begin <= b->part_size) {
-    Part *part = VL_PUSH(b->world->context, &b->parts);
-    if (!part) return false;
-    part->range = *range;
-    *child = PARTS + (uint32_t)b->parts.count - 1;
+    *child = PARTS + (uint32_t)b->parts.count;
+    b->parts.items[b->parts.count++].range = *range;
     return true;
   }
   Range ranges[VL_BVH_WIDTH];
-  uint32_t count = split_often(b, range, b->part_size, ranges), index = *child = (uint32_t)b->uppers.count;
-  if (!VL_PUSH(b->world->context, &b->uppers)) return false;
-  b->uppers.items[index].count = count;
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t below;
-    if (!split_upper(b, &ranges[k], &below)) return false;
-    b->uppers.items[index].child[k] = below;
-  }
+  Upper upper = {.count = split_often(b, range, b->part_size, ranges)};
+  uint32_t index = *child = (uint32_t)b->uppers.count++;
+  for (uint32_t k = 0; k < upper.count; k++)
+    if (!split_upper(b, &ranges[k], &upper.child[k])) return false;
+  b->uppers.items[index] = upper;
   return true;
+}
+
+/* Makes an upper node and those below it. */
+static bool join(Builder *b, uint32_t child, Built *built) {
+  if (child >= PARTS) {
+    *built = b->parts.items[child - PARTS].built;
+    return true;
+  }
+  const Upper *upper = &b->uppers.items[child];
+  Built children[VL_BVH_WIDTH];
+  for (uint32_t k = 0; k < upper->count; k++)
+    if (!join(b, upper->child[k], &children[k])) return false;
+  return make_node(b, &b->arenas[0], children, upper->count, built);
 }
 
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
 
-/* Allocates a tree and its arrays as one block. */
-static vlBvh *allocate(const Builder *b) {
-  size_t nodes = b->uppers.count, fours = 0, items = 0, maps = b->group ? 0 : b->world->instances.count;
-  for (size_t k = 0; k < b->parts.count; k++) {
-    const Part *part = &b->parts.items[k];
-    nodes += part->nodes.count, fours += part->fours.count, items += part->items.count;
-  }
-  if (nodes >= VL_BVH_MOST) return NULL;
-  size_t sizes[] = {64 + sizeof(vlBvh),        nodes * sizeof(vlBvhNode), b->moves ? nodes * sizeof(vlBvhBoxes) : 0,
-                    fours * sizeof(vlBvhFour), items * sizeof(vlBvhItem), maps * sizeof(float[12])};
-  size_t total = 0, at[6];
-  for (int k = 0; k < 6; k++) at[k] = total, total += (sizes[k] + 63) & ~(size_t)63;
-  char *block = vl_alloc(b->world->context, total + 64);
-  if (!block) return NULL;
-  char *rows = block + (64 - (uintptr_t)block % 64); /* aligned; the tree itself is at the block's beginning */
-  vlBvh *tree = (vlBvh *)(void *)block;
-  *tree = (vlBvh){.moves = b->moves, .nodes = (void *)(rows + at[1])};
-  tree->later = b->moves ? (void *)(rows + at[2]) : NULL;
-  tree->fours = (void *)(rows + at[3]), tree->items = (void *)(rows + at[4]);
-  tree->maps = b->group ? NULL : (void *)(rows + at[5]);
-  atomic_init(&tree->users, 1);
-  return tree;
-}
-
-/* The number of a part's child in the whole. */
-static uint32_t shifted(uint32_t child, const vlBvh *tree) {
-  switch (vl_bvh_kind(child)) {
-    case VL_BVH_NODE: return child + tree->node_count;
-    case VL_BVH_FOURS: return child + tree->four_count;
-    case VL_BVH_MOVING:
-    case VL_BVH_OTHERS: break;
-  }
-  return child + tree->item_count;
-}
-
-/* Appends a part's arrays to those of the tree, and frees them. */
-static void append(const Builder *b, vlBvh *tree, Part *part) {
-  vlContext *c = b->world->context;
-  part->root.child = shifted(part->root.child, tree);
-  for (size_t i = 0; i < part->nodes.count; i++) {
-    vlBvhNode *node = &tree->nodes[tree->node_count + i];
-    *node = part->nodes.items[i];
-    for (int k = 0; k < VL_BVH_WIDTH; k++)
-      if (node->boxes[0][k] <= node->boxes[1][k]) node->child[k] = shifted(node->child[k], tree);
-    if (b->moves) memcpy(tree->later[tree->node_count + i], part->later.items[i], sizeof(vlBvhBoxes));
-  }
-  if (part->fours.count)
-    memcpy(tree->fours + tree->four_count, part->fours.items, part->fours.count * sizeof *tree->fours);
-  if (part->items.count)
-    memcpy(tree->items + tree->item_count, part->items.items, part->items.count * sizeof *tree->items);
-  tree->node_count += (uint32_t)part->nodes.count, tree->four_count += (uint32_t)part->fours.count;
-  tree->item_count += (uint32_t)part->items.count;
-  VL_ARRAY_FREE(c, &part->nodes);
-  VL_ARRAY_FREE(c, &part->later);
-  VL_ARRAY_FREE(c, &part->fours);
-  VL_ARRAY_FREE(c, &part->items);
-}
-
-/* Makes an upper node and those below it. */
-static Built join(const Builder *b, vlBvh *tree, uint32_t child) {
-  if (child >= PARTS) return b->parts.items[child - PARTS].root;
-  const Upper *upper = &b->uppers.items[child];
-  Built built, children[VL_BVH_WIDTH];
-  for (uint32_t k = 0; k < upper->count; k++) children[k] = join(b, tree, upper->child[k]);
-  uint32_t index = tree->node_count++;
-  make_node(children, upper->count, &tree->nodes[index], b->moves ? &tree->later[index] : NULL, built.box);
-  built.child = vl_bvh_child(VL_BVH_NODE, 1, index);
-  return built;
-}
-
-static vlBvh *build(Builder *b) {
-  vlContext *c = b->world->context;
-  b->primitives = vl_alloc_array(c, (size_t)b->count + 1, sizeof *b->primitives);
-  if (!b->primitives) return NULL;
-  vlLoopDef loop = vl_loop_def(0, b->world->task->cancel);
-  vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, make_chunk, b);
-  if (is_stopped(b)) return NULL;
-  uint32_t count = 0;
+/* The range of all primitives with a box. */
+static Range all_primitives(Builder *b) {
   Range all = {.box = empty_box(), .centers = empty_box()};
   for (uint32_t i = 0; i < b->count; i++) {
     if (!(b->primitives[i].low[0] <= b->primitives[i].high[0])) continue;
-    b->primitives[count] = b->primitives[i];
-    add(&all, &b->primitives[count++]);
+    b->primitives[all.end] = b->primitives[i];
+    add(&all, &b->primitives[all.end++]);
   }
-  b->part_size = count / 256 < 4096 ? 4096 : count / 256;
-  uint32_t top = 0;
-  all.end = count;
-  if (count) decide(b, &all);
-  if (count ? !split_upper(b, &all, &top) : !VL_PUSH(c, &b->uppers)) return NULL; /* empty: a node without children */
-  vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);
-  if (is_stopped(b)) return NULL;
-  vl_free(c, b->primitives);
-  b->primitives = NULL;
-  vlBvh *tree = allocate(b);
-  if (!tree) return NULL;
-  for (size_t k = 0; k < b->parts.count; k++) append(b, tree, &b->parts.items[k]);
-  Built root = join(b, tree, top);
-  tree->root = root.child;
+  if (all.end) decide(b, &all);
+  return all;
+}
+
+/* False: out of memory, or stopped. */
+static bool build(Builder *b) {
+  vlContext *c = b->world->context;
+  b->primitives = vl_alloc_array(c, (size_t)b->count + 1, sizeof *b->primitives);
+  b->arenas = vl_alloc_zero(c, vl_context_threads(c), sizeof *b->arenas);
+  if (!b->primitives || !b->arenas) return false;
+  vlLoopDef loop = vl_loop_def(0, b->world->task->cancel);
+  vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, make_chunk, b);
+  if (is_stopped(b)) return false;
+  Range all = all_primitives(b);
+  Built root = {0};
+  uint32_t top;
+  b->part_size = all.end / 256 < CHUNK ? CHUNK : all.end / 256;
+  if (all.end == 0) {
+    if (!make_node(b, &b->arenas[0], NULL, 0, &root)) return false;
+  } else {
+    if (!split_upper(b, &all, &top)) return false;
+    vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);
+    if (is_stopped(b) || !join(b, top, &root)) return false;
+  }
   extend(&root.box[0], &root.box[1]);
-  memcpy(tree->low, root.box[0].low, sizeof tree->low);
-  memcpy(tree->high, root.box[0].high, sizeof tree->high);
-  for (int i = 0; count && i < 3; i++)
-    tree->reach = fmaxf(tree->reach, fmaxf(fabsf(tree->low[i]), fabsf(tree->high[i])));
-  return tree;
+  b->tree->root = root.child;
+  for (int i = 0; i < 3; i++) {
+    float low = b->tree->low[i] = root.box[0].low[i], high = b->tree->high[i] = root.box[0].high[i];
+    if (all.end) b->tree->reach = fmaxf(b->tree->reach, fmaxf(fabsf(low), fabsf(high)));
+  }
+  return true;
 }
 
 static vlResult finish(Builder *b, vlBvh **tree, vlError *error) {
   vlContext *c = b->world->context;
-  *tree = build(b);
-  for (size_t k = 0; k < b->parts.count; k++) {
-    Part *part = &b->parts.items[k];
-    VL_ARRAY_FREE(c, &part->nodes);
-    VL_ARRAY_FREE(c, &part->later);
-    VL_ARRAY_FREE(c, &part->fours);
-    VL_ARRAY_FREE(c, &part->items);
-  }
-  VL_ARRAY_FREE(c, &b->parts);
-  VL_ARRAY_FREE(c, &b->uppers);
+  bool built = b->tree && build(b);
+  for (uint32_t k = 0; b->arenas && k < vl_context_threads(c); k++)
+    for (vlBvhBlock *block = b->arenas[k].blocks, *next; block; block = next) {
+      next = block->next;
+      block->next = b->tree->blocks;
+      b->tree->blocks = block;
+    }
+  vl_free(c, b->arenas);
   vl_free(c, b->primitives);
   vl_free(c, b->starts);
-  if (*tree) return VL_OK;
+  VL_ARRAY_FREE(c, &b->parts);
+  VL_ARRAY_FREE(c, &b->uppers);
+  *tree = b->tree;
+  if (built) return VL_OK;
+  vl_bvh_release(c, b->tree);
+  *tree = NULL;
   vlResult r = vl_world_step(b->world, NULL, 0, error);
   return r == VL_OK ? vl_fail_memory(error) : r;
 }
 
+static vlBvh *new_tree(const vlWorld *world) {
+  vlBvh *tree = vl_alloc_zero(world->context, 1, sizeof *tree);
+  if (tree) atomic_init(&tree->users, 1);
+  return tree;
+}
+
 vlResult vl_bvh_make_group(const vlWorld *world, uint32_t k, vlBvh **tree, vlError *error) {
   Builder b = {.world = world, .group = &world->groups.items[k], .bundle = &world->accel.bundles[k]};
-  *tree = NULL;
   b.starts = vl_alloc_array(world->context, (size_t)b.group->count + 1, sizeof *b.starts);
-  if (!b.starts) return vl_fail_memory(error);
-  if (count_primitives(&b)) return finish(&b, tree, error);
-  vl_free(world->context, b.starts);
-  return vl_fail(error, VL_ERROR_SCENE, "a group has more than %d primitives, too many for the BVH", VL_BVH_MOST);
+  if (b.starts) b.tree = new_tree(world);
+  if (b.tree && !count_primitives(&b)) atomic_store(&b.failed, true);
+  return finish(&b, tree, error);
 }
 
 vlResult vl_bvh_make_instances(const vlWorld *world, vlBvh **tree, vlError *error) {
-  Builder b = {.world = world, .count = (uint32_t)world->instances.count};
-  for (uint32_t i = 0; i < b.count; i++) b.moves = b.moves || world->instances.items[i].keys > 0;
-  vlResult r = finish(&b, tree, error);
-  for (uint32_t i = 0; r == VL_OK && i < b.count; i++)
-    vl_bvh_map(world->instances.items[i].from_group, (*tree)->maps[i]);
-  return r;
+  Builder b = {.world = world, .tree = new_tree(world), .count = (uint32_t)world->instances.count};
+  for (uint32_t i = 0; b.tree && i < b.count; i++) b.tree->moves |= world->instances.items[i].keys > 0;
+  if (b.tree) b.tree->maps = vl_alloc_array(world->context, b.count, sizeof *b.tree->maps);
+  if (b.tree && !b.tree->maps) atomic_store(&b.failed, true);
+  for (uint32_t i = 0; b.tree && b.tree->maps && i < b.count; i++)
+    vl_bvh_map(world->instances.items[i].from_group, b.tree->maps[i]);
+  return finish(&b, tree, error);
 }

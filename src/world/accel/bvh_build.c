@@ -74,8 +74,7 @@ typedef struct Builder {
   vlBvh *tree;
   uint32_t count, part_size;
   Primitive *primitives;
-  uint32_t *starts; /* number of the first primitive of each geometry, and the number of all */
-  Arena *arenas;    /* one per worker */
+  Arena *arenas; /* one per worker */
   VL_ARRAY(Upper) uppers;
   VL_ARRAY(Part) parts;
   atomic_bool failed; /* no memory */
@@ -160,15 +159,6 @@ static Box triangle_box(const vlWorldShape *s, uint32_t prim, uint32_t step) {
   return b;
 }
 
-static void moving_triangle(const vlWorldShape *s, uint32_t prim, Box box[2]) {
-  box[0] = triangle_box(s, prim, 0), box[1] = triangle_box(s, prim, s->steps - 1);
-  for (uint32_t k = 1; k + 1 < s->steps; k++) {
-    Box at = triangle_box(s, prim, k);
-    contain(box, (float)k / (float)(s->steps - 1), &at);
-  }
-  widen(box);
-}
-
 /* Box of an instance with a pose. A ray in the group's space may be off by the instance's error. */
 static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const float pose[12]) {
   Box b = empty_box();
@@ -187,21 +177,6 @@ static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const
   return b;
 }
 
-static void instance_boxes(const vlWorld *world, uint32_t index, Box box[2]) {
-  const vlWorldInstance *q = &world->instances.items[index];
-  const vlBvh *group = world->accel.groups[q->group];
-  if (!q->keys) {
-    box[0] = box[1] = placed_box(q, group, q->from_group);
-  } else {
-    box[0] = placed_box(q, group, q->path), box[1] = placed_box(q, group, q->path + 12 * (size_t)(q->keys - 1));
-    for (uint32_t k = 1; k + 1 < q->keys; k++) {
-      Box at = placed_box(q, group, q->path + 12 * (size_t)k);
-      contain(box, (float)k / (float)(q->keys - 1), &at);
-    }
-  }
-  widen(box);
-}
-
 static const vlWorldShape *shape_of(const Builder *b, vlBvhItem item, uint32_t *prim) {
   uint32_t geometry = item.geometry & ~VL_BVH_ASKS;
   bool bundled = b->bundle->members && geometry == b->bundle->geometry;
@@ -209,79 +184,68 @@ static const vlWorldShape *shape_of(const Builder *b, vlBvhItem item, uint32_t *
   return &b->world->shapes.items[bundled ? b->bundle->members[item.primitive] : b->group->shapes[geometry]];
 }
 
-/* Boxes of a primitive at times 0 and 1. */
-static void item_boxes(const Builder *b, vlBvhKind kind, vlBvhItem item, Box box[2]) {
+/* Box of a primitive at one of its steps or keys. */
+static Box item_box(const Builder *b, vlBvhItem item, uint32_t step) {
   if (!b->group) {
-    instance_boxes(b->world, item.geometry, box);
-    return;
+    const vlWorldInstance *q = &b->world->instances.items[item.geometry];
+    return placed_box(q, b->world->accel.groups[q->group], q->keys ? q->path + 12 * (size_t)step : q->from_group);
   }
   uint32_t prim;
   const vlWorldShape *s = shape_of(b, item, &prim);
-  if (kind == VL_BVH_MOVING) {
-    moving_triangle(s, prim, box);
-    return;
-  }
-  box[0] = empty_box();
-  if (kind == VL_BVH_FOURS)
-    box[0] = triangle_box(s, prim, 0);
-  else
-    vl_world_prim_bounds(s, prim, box[0].low, box[0].high);
-  box[1] = box[0];
+  if (s->kind == VL_SHAPE_TRIANGLES) return triangle_box(s, prim, step);
+  Box box = empty_box();
+  vl_world_prim_bounds(s, prim, box.low, box.high);
+  return box;
 }
 
-/* Makes primitive i of geometry g. One that is not in Embree's range (nor in that of rays) has an empty box. */
-static void make_primitive(const Builder *b, uint32_t g, uint32_t i, Primitive *p) {
-  vlBvhKind kind = VL_BVH_OTHERS;
-  vlBvhItem item = {g, i};
-  uint32_t prim;
-  const vlWorldShape *s = b->group ? shape_of(b, item, &prim) : NULL;
-  if (s && s->kind == VL_SHAPE_TRIANGLES) kind = s->steps > 1 ? VL_BVH_MOVING : VL_BVH_FOURS;
-  Box box[2];
-  item_boxes(b, kind, item, box);
-  extend(&box[0], &box[1]);
-  for (int k = 0; k < 3; k++)
-    if (!(box[0].low[k] > -1.8e18f && box[0].high[k] < 1.8e18f)) box[0].low[0] = INFINITY;
-  p->box = box[0];
-  p->geometry = g | (uint32_t)kind << KIND, p->primitive = i;
-  if (kind != VL_BVH_OTHERS && (s->alpha >= 0 || s->one_sided || s->pass_shadow)) p->geometry |= VL_BVH_ASKS;
+/* Boxes of a primitive at times 0 and 1. */
+static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
+  uint32_t prim, keys = b->group ? shape_of(b, item, &prim)->steps : b->world->instances.items[item.geometry].keys;
+  box[0] = item_box(b, item, 0), box[1] = keys > 1 ? item_box(b, item, keys - 1) : box[0];
+  for (uint32_t k = 1; k + 1 < keys; k++) {
+    Box at = item_box(b, item, k);
+    contain(box, (float)k / (float)(keys - 1), &at);
+  }
+  if (keys > 1 || !b->group) widen(box);
+}
+
+/* Lists all primitives, without their boxes. */
+static void list_primitives(Builder *b) {
+  uint32_t count = 0;
+  for (size_t g = 0; g < (b->group ? b->group->count : b->count); g++) {
+    const vlWorldShape *s = b->group ? &b->world->shapes.items[b->group->shapes[g]] : NULL;
+    bool bundled = s && b->bundle->members && vl_accel_bundled(s), triangles = s && s->kind == VL_SHAPE_TRIANGLES;
+    uint32_t n = !s ? 1 : !bundled ? s->faces : g == b->bundle->geometry ? b->bundle->count : 0;
+    vlBvhKind kind = !triangles ? VL_BVH_OTHERS : s->steps > 1 ? VL_BVH_MOVING : VL_BVH_FOURS;
+    b->tree->moves |= kind == VL_BVH_MOVING || (!s && b->world->instances.items[g].keys > 0);
+    bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
+    for (uint32_t i = 0; i < n; i++, count++) {
+      b->primitives[count].geometry = (uint32_t)g | (uint32_t)kind << KIND | (asks ? VL_BVH_ASKS : 0);
+      b->primitives[count].primitive = i;
+    }
+  }
 }
 
 static bool is_stopped(const Builder *b) {
   return atomic_load_explicit(&b->failed, memory_order_relaxed) || vl_task_stopped(b->world->task, NULL, 0);
 }
 
-static void make_chunk(void *user, uint32_t index, uint32_t worker) {
+/* Finds the boxes of some primitives. One that is not in Embree's range, nor in that of rays, has an empty box. */
+static void find_boxes(void *user, uint32_t index, uint32_t worker) {
   Builder *b = user;
   (void)worker;
-  uint32_t i = index * CHUNK, end = b->count - i < CHUNK ? b->count : i + CHUNK, g = 0;
-  if (is_stopped(b)) return;
-  for (uint32_t high = b->group ? b->group->count : 0;
-       g + 1 < high;) { /* the last geometry that begins at or before i */
-    uint32_t middle = (g + high) / 2;
-    if (b->starts[middle] <= i)
-      g = middle;
-    else
-      high = middle;
+  uint32_t i = index * CHUNK, end = b->count - i < CHUNK ? b->count : i + CHUNK;
+  for (; i < end && !(i % 1024 == 0 && is_stopped(b)); i++) {
+    Primitive *p = &b->primitives[i];
+    Box box[2];
+    item_boxes(b, item_of(p), box);
+    extend(&box[0], &box[1]);
+    for (int k = 0; k < 3; k++) {
+      if (!(box[0].low[k] > -1.8e18f && box[0].high[k] < 1.8e18f)) box[0].low[0] = INFINITY;
+      p->low[k] = box[0].low[k], p->high[k] = box[0].high[k];
+    }
+    if (!(box[0].low[0] < INFINITY)) p->low[0] = INFINITY;
   }
-  for (; i < end; i++) {
-    while (b->group && i >= b->starts[g + 1]) g++;
-    make_primitive(b, b->group ? g : i, b->group ? i - b->starts[g] : 0, &b->primitives[i]);
-  }
-}
-
-/* Numbers the primitives of a group. False: there are too many. */
-static bool count_primitives(Builder *b) {
-  uint64_t count = 0;
-  for (uint32_t g = 0; g < b->group->count; g++) {
-    const vlWorldShape *s = &b->world->shapes.items[b->group->shapes[g]];
-    bool bundled = b->bundle->members && vl_accel_bundled(s);
-    b->starts[g] = (uint32_t)count;
-    count += bundled ? (g == b->bundle->geometry ? b->bundle->count : 0) : s->faces;
-    b->tree->moves |= s->kind == VL_SHAPE_TRIANGLES && s->steps > 1;
-    if (count >= UINT32_MAX) return false;
-  }
-  b->starts[b->group->count] = b->count = (uint32_t)count;
-  return true;
 }
 
 /* ---- splits ------------------------------------------------------------------------------------------------------ */
@@ -450,7 +414,7 @@ static bool make_leaf(Builder *b, Arena *arena, const Range *r, Built *built) {
   for (uint32_t i = 0; i < n; i++) {
     vlBvhItem item = item_of(&p[i]);
     Box box[2] = {p[i].box, p[i].box};
-    if (b->tree->moves) item_boxes(b, kind, item, box);
+    if (b->tree->moves) item_boxes(b, item, box);
     for (int k = 0; k < 2; k++) extend(&built->box[k], &box[k]);
     if (kind == VL_BVH_FOURS)
       put_face(b, item, (vlBvhFour *)leaf + i / VL_BVH_FOUR, i % VL_BVH_FOUR);
@@ -526,9 +490,10 @@ static bool build(Builder *b) {
   vlContext *c = b->world->context;
   b->primitives = vl_alloc_array(c, (size_t)b->count + 1, sizeof *b->primitives);
   b->arenas = vl_alloc_zero(c, vl_context_threads(c), sizeof *b->arenas);
-  if (!b->primitives || !b->arenas) return false;
+  if (atomic_load(&b->failed) || !b->primitives || !b->arenas) return false;
   vlLoopDef loop = vl_loop_def(0, b->world->task->cancel);
-  vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, make_chunk, b);
+  list_primitives(b);
+  vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, find_boxes, b);
   if (is_stopped(b)) return false;
   Range all = all_primitives(b);
   Built root = {0};
@@ -561,7 +526,6 @@ static vlResult finish(Builder *b, vlBvh **tree, vlError *error) {
     }
   vl_free(c, b->arenas);
   vl_free(c, b->primitives);
-  vl_free(c, b->starts);
   VL_ARRAY_FREE(c, &b->parts);
   VL_ARRAY_FREE(c, &b->uppers);
   *tree = b->tree;
@@ -579,16 +543,17 @@ static vlBvh *new_tree(const vlWorld *world) {
 }
 
 vlResult vl_bvh_make_group(const vlWorld *world, uint32_t k, vlBvh **tree, vlError *error) {
-  Builder b = {.world = world, .group = &world->groups.items[k], .bundle = &world->accel.bundles[k]};
-  b.starts = vl_alloc_array(world->context, (size_t)b.group->count + 1, sizeof *b.starts);
-  if (b.starts) b.tree = new_tree(world);
-  if (b.tree && !count_primitives(&b)) atomic_store(&b.failed, true);
+  const vlWorldGroup *group = &world->groups.items[k];
+  Builder b = {.world = world, .group = group, .bundle = &world->accel.bundles[k], .tree = new_tree(world)};
+  uint64_t count = 0; /* members of a bundle have one face each */
+  for (uint32_t i = 0; i < group->count; i++) count += world->shapes.items[group->shapes[i]].faces;
+  b.count = (uint32_t)count;
+  if (count >= UINT32_MAX) atomic_store(&b.failed, true);
   return finish(&b, tree, error);
 }
 
 vlResult vl_bvh_make_instances(const vlWorld *world, vlBvh **tree, vlError *error) {
   Builder b = {.world = world, .tree = new_tree(world), .count = (uint32_t)world->instances.count};
-  for (uint32_t i = 0; b.tree && i < b.count; i++) b.tree->moves |= world->instances.items[i].keys > 0;
   if (b.tree) b.tree->maps = vl_alloc_array(world->context, b.count, sizeof *b.tree->maps);
   if (b.tree && !b.tree->maps) atomic_store(&b.failed, true);
   for (uint32_t i = 0; b.tree && b.tree->maps && i < b.count; i++)

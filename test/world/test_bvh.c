@@ -333,7 +333,6 @@ static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
   double far = sqrt(vl_dot3(d, d)) * (double)h->t[k];
   return (Met){true, fabs(vl_dot3(n, d)) / (twice_area * sqrt(vl_dot3(d, d))),
                fmin(side[0] / sum, fmin(side[1] / sum, side[2] / sum)) - 1e-6 * (1 + far * longest / twice_area)};
-};
 }
 
 /* The differences that decision 22 states. Rays in the plane of a triangle: rounding decides where, and even whether,

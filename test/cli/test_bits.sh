@@ -69,6 +69,35 @@ for tracer in path bidirectional merging raycast; do
     same "${tracer}_$set" one.pfm set.pfm
   done
 done
+# velo's own tree gives the same image; Embree's packets and the order of rays do not matter, either.
+for tracer in path bidirectional merging raycast; do
+  check "${tracer}_embree" render --tracer $tracer -t 1 -o one.pfm
+  for isa in base v3; do
+    run "$VELO" render scene.pbrt --quiet --tracer $tracer -t 2 --isa $isa --accelerator bvh -o tree.pfm
+    [ "$code" = 0 ] || { skip "${tracer}_bvh_$isa" "this machine does not have it" && continue; }
+    same "${tracer}_bvh_$isa" one.pfm tree.pfm
+  done
+done
+# Films of both continue and merge with each other, and the receipt does not name the choice.
+check straight render --spp 4 -o straight.exr
+check film_embree render --spp 2 --film f.film
+check film_bvh "$VELO" render --continue f.film --spp 4 --accelerator bvh -o continued.exr --quiet
+same film_of_both straight.exr continued.exr
+check first_half render --spp 4 --samples 0..1 --film a.film
+check second_half render --spp 4 --samples 2..3 --film b.film --accelerator bvh
+check merged "$VELO" film merge a.film b.film -o ab.film
+check merged_image "$VELO" film develop ab.film -o merged.exr
+same merged_of_both straight.exr merged.exr
+check again "$VELO" render --again straight.exr --accelerator bvh -o again.exr --quiet
+same again_by_bvh straight.exr again.exr
+# With fast bits it does.
+check fast_bvh render --bits fast --accelerator bvh -o fast_bvh.exr
+run "$VELO" image info --json fast_bvh.exr
+expect_text fast_receipt_names_it '"accelerator"'
+check fast_again "$VELO" render --again fast_bvh.exr -o fast_again.exr --quiet
+same fast_bvh_again fast_bvh.exr fast_again.exr
+expect_code 2 unknown_accelerator render --accelerator kdtree -o x.exr
+
 # Which rays are in a packet together does not matter.
 check whole render -o whole.pfm
 check crop render --crop 35,17,118,97 -o part.pfm

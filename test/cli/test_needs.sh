@@ -185,6 +185,7 @@ with lens-radius $P --lens-radius 0.1
 with threads $P -t 1
 with isa $P --isa base
 with bits $P --bits fast
+with accelerator $P --accelerator bvh
 with max-memory $P --max-memory 1G
 with max-texture-pixels $P --max-texture-pixels 1000
 with sandbox $P --sandbox .

@@ -126,7 +126,7 @@ NUMBERS = ("time_limit", "noise", "noise_exposure", "noise_scale", "filter_radiu
            "filter_c", "filter_tau", "white_balance", "lambda_min", "lambda_max", "exposure")
 INFINITE = ("ao_distance", "max_component", "merge_radius")
 FLAGS = ("ao_cosine", "centred", "same_wavelengths", "sharp_textures", "share_samples", "transparent", "errors", "imitate_pbrt", "regularize")
-NAMES = ("tracer", "sampler", "noise_view", "filter", "space", "sensor", "color", "light_sampler", "bits")
+NAMES = ("tracer", "sampler", "noise_view", "filter", "space", "sensor", "color", "light_sampler", "bits", "accelerator")
 SETTINGS = {**{name: COUNT for name in COUNTS}, **{name: NUMBER for name in NUMBERS}, **{name: ANY for name in INFINITE},
             **{name: FLAG for name in FLAGS}, **{name: OBJECT for name in NAMES}}
 CAMERAS = {**{name: ANY for name in (

@@ -154,11 +154,9 @@ static void fill(Kit *k) {
   }
 }
 
-static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
+static void make_scene(const Case *what, Made *m, const vlContextDef *def) {
   seed = 7;
-  vlContextDef def = vl_default_context_def();
-  def.isa = isa, def.threads = threads;
-  assert_int_equal(vl_context_create(&def, &m->context), VL_OK);
+  assert_int_equal(vl_context_create(def, &m->context), VL_OK);
   assert_int_equal(vl_scene_create(m->context, &m->scene), VL_OK);
   Kit k = {.what = what, .scene = m->scene};
   vlMaterialDef nothing = vl_default_material_def(VL_MATERIAL_INTERFACE);
@@ -180,6 +178,12 @@ static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
         vl_scene_add_instance(m->scene, k.group, poses, (vlSource){0});
     }
   }
+}
+
+static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
+  vlContextDef def = vl_default_context_def();
+  def.isa = isa, def.threads = threads;
+  make_scene(what, m, &def);
   vlBuildDef build = vl_default_build_def();
   for (int a = 0; a < 2; a++) {
     build.accelerator = a ? VL_ACCELERATOR_BVH : VL_ACCELERATOR_EMBREE;
@@ -487,6 +491,53 @@ static void trees_are_shared(void **state) {
   }
 }
 
+/* Stops a build at its n-th allocation. */
+typedef struct Stopper {
+  long left;
+  vlCancel *cancel;
+} Stopper;
+
+static void *stopping_allocate(void *user, size_t size) {
+  Stopper *s = user;
+  if (s->left > 0 && --s->left == 0) vl_cancel_request(s->cancel);
+  return malloc(size);
+}
+static void plain_release(void *user, void *block) {
+  (void)user;
+  free(block);
+}
+
+/* A build that is stopped anywhere keeps no memory. */
+static void stopped_builds(void **state) {
+  (void)state;
+  Made m = {0};
+  Stopper stopper = {0};
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1, def.allocator = (vlAllocator){&stopper, stopping_allocate, plain_release};
+  make_scene(&cases[sizeof cases / sizeof *cases - 1], &m, &def);
+  assert_int_equal(vl_cancel_create(m.context, &stopper.cancel), VL_OK);
+  vlBuildDef build = vl_default_build_def();
+  build.accelerator = VL_ACCELERATOR_BVH, build.cancel = stopper.cancel;
+  size_t before = vl_context_memory(m.context, NULL);
+  uint32_t stopped = 0;
+  for (long n = 1;; n += 3) {
+    vl_cancel_clear(stopper.cancel);
+    stopper.left = n;
+    vlResult r = vl_world_build(m.scene, &build, &m.worlds[1], NULL);
+    bool reached = stopper.left == 0;
+    stopper.left = 0;
+    assert_true(r == VL_OK || r == VL_CANCELLED);
+    stopped += r == VL_CANCELLED;
+    vl_world_destroy(m.worlds[1]);
+    m.worlds[1] = NULL;
+    assert_int_equal(vl_context_memory(m.context, NULL), before);
+    if (!reached) break;
+  }
+  assert_true(stopped > 20);
+  vl_cancel_destroy(stopper.cancel);
+  unmake(&m);
+}
+
 /* Rays that are no rays miss everything, and hurt nothing. */
 static void broken_rays(void **state) {
   (void)state;
@@ -524,11 +575,19 @@ static void nothing_at_all(void **state) {
 }
 
 int main(void) {
+  vlBuildDef embree = vl_default_build_def();
+  embree.accelerator = VL_ACCELERATOR_EMBREE;
+  vlAccelerator kind;
+  if (vl_accel_choose(&embree, &kind, NULL) != VL_OK) {
+    print_message("skip: Embree, with which the tree is compared, is not here\n");
+    return 0;
+  }
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(hits_are_those_of_embree),
       cmocka_unit_test(ends_near_hits),
       cmocka_unit_test(same_for_all_sets_and_threads),
       cmocka_unit_test(trees_are_shared),
+      cmocka_unit_test(stopped_builds),
       cmocka_unit_test(broken_rays),
       cmocka_unit_test(nothing_at_all),
   };

@@ -74,6 +74,9 @@ static bool is_usual(const float o[3], const float d[3], float farthest) {
   return true;
 }
 
+/* Bits of children and triangles. (Not every instruction set shifts each lane by its own number.) */
+static const uint32_t bits[W] = {1, 2, 4, 8, 16, 32, 64, 128};
+
 /* ---- boxes ------------------------------------------------------------------------------------------------------- */
 
 /* The children whose boxes the ray meets, one bit each. begin: where. */
@@ -88,7 +91,7 @@ static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, fl
     float from = larger((x0[k] - nx) * x, larger((y0[k] - ny) * y, larger((z0[k] - nz) * z, low)));
     float to = smaller((x1[k] - fx) * x, smaller((y1[k] - fy) * y, smaller((z1[k] - fz) * z, high)));
     begin[k] = from;
-    met |= (uint32_t)(from <= to) << k;
+    met |= from <= to ? bits[k] : 0;
   }
   return met;
 }
@@ -134,9 +137,8 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
     float nz = fabsf(abz) < fabsf(bcz) ? e0x * e1y - abz : e1x * e2y - bcz;
     float speed = dot(nx, ny, nz, dx, dy, dz), height = dot(ax, ay, az, nx, ny, nz), at = height / speed;
     t[k] = at;
-    uint32_t inside = (uint32_t)(least >= -wide) | (uint32_t)(most <= wide);
-    uint32_t crosses = (uint32_t)(speed != 0.0f) & (uint32_t)(fabsf(speed) < 0x1p127f);
-    met |= (inside & crosses & (uint32_t)(low <= at) & (uint32_t)(at <= high)) << k;
+    int inside = (least >= -wide) | (most <= wide), crosses = (speed != 0.0f) & (fabsf(speed) < 0x1p127f);
+    met |= inside & crosses & (low <= at) & (at <= high) ? bits[k] : 0;
   }
   return met;
 }

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "world/accel/bundle.h"
 #include "world/accel/bvh.h"
-#include "world/accel/nearest.h"
 
 enum { BINS = 16, FACES = 8 /* most triangles of a leaf */, CHUNK = 4096 };
 
@@ -240,11 +240,12 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
     Box box[2];
     item_boxes(b, item_of(p), box);
     extend(&box[0], &box[1]);
+    bool near = true;
     for (int k = 0; k < 3; k++) {
-      if (!(box[0].low[k] > -1.8e18f && box[0].high[k] < 1.8e18f)) box[0].low[0] = INFINITY;
       p->low[k] = box[0].low[k], p->high[k] = box[0].high[k];
+      near = near && p->low[k] > -1.8e18f && p->high[k] < 1.8e18f;
     }
-    if (!(box[0].low[0] < INFINITY)) p->low[0] = INFINITY;
+    if (!near) p->low[0] = INFINITY;
   }
 }
 

@@ -82,6 +82,8 @@ for set in sse4.2 avx; do
   VELO_EMBREE=$set hashes <"$work/list.txt" >"$work/embree_$set.txt"
   against "embree_$set"
 done
+hashes --accelerator bvh <"$work/some.txt" >"$work/bvh.txt"
+against bvh
 
 # It can fail: another seed.
 head -n 1 "$work/list.txt" | hashes --seed 1 >"$work/seed.txt"

@@ -59,9 +59,11 @@ static Ray ray_of(const vlBvh *tree, const float o[3], const float d[3]) {
   float far = larger(larger(fabsf(o[0]), fabsf(o[1])), fabsf(o[2]));
   for (int i = 0; i < 3; i++) {
     float slope = fabsf(d[i]) < 1e-18f ? 1e-18f : d[i], wide = 0x1p-21f * (far + tree->reach);
-    r.o[i] = o[i], r.d[i] = d[i];
+    r.o[i] = o[i];
+    r.d[i] = d[i];
     r.inverse[i] = 1.0f / slope;
-    r.near[i] = o[i] + (slope < 0.0f ? -wide : wide), r.far[i] = o[i] + (slope < 0.0f ? wide : -wide);
+    r.near[i] = o[i] + (slope < 0.0f ? -wide : wide);
+    r.far[i] = o[i] + (slope < 0.0f ? wide : -wide);
     r.side[i] = 2 * i + (slope < 0.0f);
   }
   return r;
@@ -124,9 +126,13 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
     float e2x = bx - cx, e2y = by - cy, e2z = bz - cz;
     float sx = cx + ax, sy = cy + ay, sz = cz + az;
     float u = dot(e0y * sz - e0z * sy, e0z * sx - e0x * sz, e0x * sy - e0y * sx, dx, dy, dz);
-    sx = ax + bx, sy = ay + by, sz = az + bz;
+    sx = ax + bx;
+    sy = ay + by;
+    sz = az + bz;
     float v = dot(e1y * sz - e1z * sy, e1z * sx - e1x * sz, e1x * sy - e1y * sx, dx, dy, dz);
-    sx = bx + cx, sy = by + cy, sz = bz + cz;
+    sx = bx + cx;
+    sy = by + cy;
+    sz = bz + cz;
     float w = dot(e2y * sz - e2z * sy, e2z * sx - e2x * sz, e2x * sy - e2y * sx, dx, dy, dz);
     float wide = 0x1p-23f * fabsf(u + v + w);
     float least = smaller(smaller(u, v), w), most = larger(larger(u, v), w);
@@ -317,7 +323,8 @@ static bool trace(Query *q, uint32_t i, bool any) {
   const vlRays *rays = q->rays;
   const vlAccel *a = &q->world->accel;
   float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
-  q->id = i, q->instance = VL_NONE;
+  q->id = i;
+  q->instance = VL_NONE;
   q->t_min = rays->t_min ? rays->t_min[i] : 0.0f;
   q->limit = rays->t_max ? rays->t_max[i] : __builtin_inff();
   q->time = rays->time ? rays->time[i] : 0.0f;
@@ -336,7 +343,10 @@ static void closest(const vlWorld *world, uint32_t n, const vlRays *rays, uint32
   Query q = {.world = world, .rays = rays};
   for (uint32_t i = 0; i < n; i++) {
     trace(&q, i, false);
-    shape[i] = VL_NONE, prim[i] = q.hit.primitive, instance[i] = q.hit.instance, t[i] = q.hit.t;
+    shape[i] = VL_NONE;
+    prim[i] = q.hit.primitive;
+    instance[i] = q.hit.instance;
+    t[i] = q.hit.t;
     if (q.hit.geometry == VL_NONE) continue;
     q.instance = q.hit.instance;
     shape[i] = (uint32_t)(shape_of(&q, q.hit.geometry, &prim[i]) - world->shapes.items);

@@ -103,7 +103,10 @@ static void *take(Builder *b, Arena *arena, size_t size) {
 
 static Box empty_box(void) {
   Box b;
-  for (int i = 0; i < 4; i++) b.low[i] = INFINITY, b.high[i] = -INFINITY;
+  for (int i = 0; i < 4; i++) {
+    b.low[i] = INFINITY;
+    b.high[i] = -INFINITY;
+  }
   return b;
 }
 
@@ -113,13 +116,17 @@ static inline void extend(Box *b, const Box *other) {
 }
 
 static inline void extend_point(Box *b, const float p[3]) {
-  for (int i = 0; i < 3; i++) b->low[i] = fminf(b->low[i], p[i]), b->high[i] = fmaxf(b->high[i], p[i]);
+  for (int i = 0; i < 3; i++) {
+    b->low[i] = fminf(b->low[i], p[i]);
+    b->high[i] = fmaxf(b->high[i], p[i]);
+  }
 }
 
 static inline void extend_center(Box *b, const Box *other) {
   for (int i = 0; i < 3; i++) {
     float c = other->low[i] + other->high[i];
-    b->low[i] = c < b->low[i] ? c : b->low[i], b->high[i] = c > b->high[i] ? c : b->high[i];
+    b->low[i] = c < b->low[i] ? c : b->low[i];
+    b->high[i] = c > b->high[i] ? c : b->high[i];
   }
 }
 
@@ -133,7 +140,10 @@ static void contain(Box box[2], float time, const Box *at) {
   for (int i = 0; i < 3; i++) {
     float low = box[0].low[i] * (1 - time) + box[1].low[i] * time - at->low[i];
     float high = at->high[i] - (box[0].high[i] * (1 - time) + box[1].high[i] * time);
-    for (int k = 0; k < 2; k++) box[k].low[i] -= fmaxf(low, 0), box[k].high[i] += fmaxf(high, 0);
+    for (int k = 0; k < 2; k++) {
+      box[k].low[i] -= fmaxf(low, 0);
+      box[k].high[i] += fmaxf(high, 0);
+    }
   }
 }
 
@@ -143,7 +153,8 @@ static void widen(Box box[2]) {
     for (int k = 0; k < 2; k++) {
       float most =
           fmaxf(fmaxf(fabsf(box[0].low[i]), fabsf(box[0].high[i])), fmaxf(fabsf(box[1].low[i]), fabsf(box[1].high[i])));
-      box[k].low[i] -= 0x1p-20f * most, box[k].high[i] += 0x1p-20f * most;
+      box[k].low[i] -= 0x1p-20f * most;
+      box[k].high[i] += 0x1p-20f * most;
     }
 }
 
@@ -173,7 +184,10 @@ static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const
     }
     extend_point(&b, p);
   }
-  for (int i = 0; i < 3; i++) b.low[i] -= error, b.high[i] += error;
+  for (int i = 0; i < 3; i++) {
+    b.low[i] -= error;
+    b.high[i] += error;
+  }
   return b;
 }
 
@@ -201,7 +215,8 @@ static Box item_box(const Builder *b, vlBvhItem item, uint32_t step) {
 /* Boxes of a primitive at times 0 and 1. */
 static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
   uint32_t prim, keys = b->group ? shape_of(b, item, &prim)->steps : b->world->instances.items[item.geometry].keys;
-  box[0] = item_box(b, item, 0), box[1] = keys > 1 ? item_box(b, item, keys - 1) : box[0];
+  box[0] = item_box(b, item, 0);
+  box[1] = keys > 1 ? item_box(b, item, keys - 1) : box[0];
   for (uint32_t k = 1; k + 1 < keys; k++) {
     Box at = item_box(b, item, k);
     contain(box, (float)k / (float)(keys - 1), &at);
@@ -242,7 +257,8 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
     extend(&box[0], &box[1]);
     bool near = true;
     for (int k = 0; k < 3; k++) {
-      p->low[k] = box[0].low[k], p->high[k] = box[0].high[k];
+      p->low[k] = box[0].low[k];
+      p->high[k] = box[0].high[k];
       near = near && p->low[k] > -1.8e18f && p->high[k] < 1.8e18f;
     }
     if (!near) p->low[0] = INFINITY;
@@ -281,12 +297,16 @@ static float best_plane(const Bin bins[BINS], int *plane) {
     count += bins[k].count;
     right[k] = count ? area(&box) * tests(count) : INFINITY;
   }
-  box = empty_box(), count = 0;
+  box = empty_box();
+  count = 0;
   for (int k = 1; k < BINS; k++) {
     extend(&box, &bins[k - 1].box);
     count += bins[k - 1].count;
     float cost = count ? area(&box) * tests(count) + right[k] : INFINITY;
-    if (cost < least) least = cost, *plane = k;
+    if (cost < least) {
+      least = cost;
+      *plane = k;
+    }
   }
   return least;
 }
@@ -317,7 +337,13 @@ static void decide(const Builder *b, Range *r) {
   for (int i = 0; i < 3; i++) {
     int plane = 0;
     float cost = scale[i] > 0 ? best_plane(bins[i], &plane) : INFINITY;
-    if (cost < least) least = cost, r->axis = i, r->bin = plane, r->low = r->centers.low[i], r->scale = scale[i];
+    if (cost < least) {
+      least = cost;
+      r->axis = i;
+      r->bin = plane;
+      r->low = r->centers.low[i];
+      r->scale = scale[i];
+    }
   }
   float whole = area(&r->box); /* the test of a node counts as that of a block */
   r->leaf = faces && whole * tests(n) <= whole + least;
@@ -342,11 +368,14 @@ static void split(const Builder *b, const Range *r, Range half[2]) {
         continue;
       }
       Primitive other = p[--j];
-      p[j] = p[i], p[i] = other;
+      p[j] = p[i];
+      p[i] = other;
       add(&half[1], &p[j]);
     }
   }
-  half[0].begin = r->begin, half[0].end = half[1].begin = i, half[1].end = r->end;
+  half[0].begin = r->begin;
+  half[0].end = half[1].begin = i;
+  half[1].end = r->end;
   decide(b, &half[0]);
   decide(b, &half[1]);
 }
@@ -360,13 +389,16 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
     float most = -1;
     for (uint32_t k = 0; k < count; k++) {
       float size = area(&to[k].box);
-      if (!to[k].leaf && to[k].end - to[k].begin > small && (size > most || largest == VL_BVH_WIDTH))
-        most = size, largest = k;
+      if (!to[k].leaf && to[k].end - to[k].begin > small && (size > most || largest == VL_BVH_WIDTH)) {
+        most = size;
+        largest = k;
+      }
     }
     if (largest == VL_BVH_WIDTH) break;
     Range half[2];
     split(b, &to[largest], half);
-    to[largest] = half[0], to[count++] = half[1];
+    to[largest] = half[0];
+    to[count++] = half[1];
   }
   return count;
 }
@@ -374,14 +406,20 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
 /* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
 static void set_box(vlBvhBoxes *boxes, uint32_t k, const Box *box) {
-  for (int i = 0; i < 3; i++) (*boxes)[2 * i][k] = box->low[i], (*boxes)[2 * i + 1][k] = box->high[i];
+  for (int i = 0; i < 3; i++) {
+    (*boxes)[2 * i][k] = box->low[i];
+    (*boxes)[2 * i + 1][k] = box->high[i];
+  }
 }
 
 static bool make_node(Builder *b, Arena *arena, const Built *children, uint32_t count, Built *built) {
   vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
   if (!node) return false;
   Box none; /* so large that no ray meets it, and finite, for products with 0 */
-  for (int i = 0; i < 4; i++) none.low[i] = 0x1p126f, none.high[i] = -0x1p126f;
+  for (int i = 0; i < 4; i++) {
+    none.low[i] = 0x1p126f;
+    none.high[i] = -0x1p126f;
+  }
   built->child = vl_bvh_child(VL_BVH_NODE, 1, node);
   built->box[0] = built->box[1] = empty_box();
   for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
@@ -399,7 +437,8 @@ static void put_face(const Builder *b, vlBvhItem item, vlBvhFour *four, uint32_t
   for (size_t c = 0; c < 3; c++)
     for (size_t i = 0; i < 3; i++)
       four->corner[c][i][k] = s->positions[3 * (size_t)s->indices[3 * (size_t)prim + c] + i];
-  four->geometry[k] = item.geometry, four->primitive[k] = item.primitive;
+  four->geometry[k] = item.geometry;
+  four->primitive[k] = item.primitive;
 }
 
 static bool make_leaf(Builder *b, Arena *arena, const Range *r, Built *built) {

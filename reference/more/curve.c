@@ -144,8 +144,10 @@ void curve_surface(const world *w, const primitive *p, double u, double v, shade
     vector given = ribbon_normal(&c, u);
     n = normalize(subtract(given, scale(dot(given, along), along)));
   }
+  double width = (1 - u) * c.width[0] + u * c.width[1],
+         reach = width * (fabs(n.x) + fabs(n.y) + fabs(n.z)); /* pbrt's */
   n = transform_normal(&where->shape_from_world, n);
-  record->thickness = ((1 - u) * c.width[0] + u * c.width[1]) / length(n); /* width along the normal, in the world */
+  record->thickness = reach / length(n); /* along the normal, in the world */
   n = normalize(n);
   vector offset = scale((v - 0.5) * width_at(&c, u, direction), side);
   record->point = transform_point(&where->world_from_shape, add(point, offset));

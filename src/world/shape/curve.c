@@ -5,15 +5,16 @@
  * normal only; the visible width of a ribbon is multiplied by the cosine between its normal and the ray. The hit point
  * lies on the ray, where the ray comes nearest to the axis. Everything is in shape space unless stated otherwise.
  *
- * A ray that leaves a curve starts its width off the hit point, along the normal: the least distance at which no ray
- * meets the curve that it leaves. For a cylinder of radius r, let the hit point lie x r beside the axis; the normal n,
- * turned by the angle a = x pi / 2, is perpendicular to the axis. A point at the distance k along n (or -n) is
- * k + x r sin a (k - x r sin a) from the plane through the axis that is perpendicular to n. A ray that starts there and
- * goes away from that plane, or along it, passes the axis at that distance at least, or has passed it. So it does not
- * meet the curve if k >= r (1 + |x sin a|), which is 2 r at the edges. For flat curves and ribbons r is enough.
+ * Where rays start that leave a curve. For a cylinder of radius r, let the hit point lie x r beside the axis; the
+ * normal n, turned by the angle a = x pi / 2, is perpendicular to the axis. A point at the distance k along n (or -n)
+ * is k + x r sin a (k - x r sin a) from the plane through the axis that is perpendicular to n. A ray that starts there
+ * and goes away from that plane, or along it, passes the axis at that distance at least, or has passed it. So it does
+ * not meet the curve if k >= r (1 + |x sin a|), which is 2 r, the width, at the edges. For flat curves and ribbons r is
+ * enough.
  *
- * (pbrt takes an error of one width along each axis of the world, so its rays start 1 to 1.73 widths off, depending on
- * how the scene is turned.) */
+ * velo takes pbrt's distance: the width along each axis of shape space, that is 1 to 1.73 widths along the normal. In
+ * rows of hair that nearly touch the image depends on it, so it is a convention, as the shape itself is. It does not
+ * change when a scene is turned. */
 #include <math.h>
 #include <string.h>
 
@@ -329,7 +330,7 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   for (int i = 0; i < 3; i++) point->dndu[i] = point->dndv[i] = 0;
   vl_map_normal(s->to_shape, n, point->n);
   double stretch = vl_normalize3(point->n); /* the inverse of the factor for distances along n */
-  point->off = stretch > 0 ? width / stretch : 0;
+  point->off = stretch > 0 ? width * (fabs(n[0]) + fabs(n[1]) + fabs(n[2])) / stretch : 0;
   double side = s->flip ? -1 : 1;
   for (int i = 0; i < 3; i++) {
     point->n[i] *= side;

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import Any, Callable, NamedTuple, Optional
 
-from velo import _arrays, _velo
-from velo._errors import UsageError
+from velo import _arrays, _check, _velo
+from velo._errors import UsageError, wrong_value
 
 
 def _numpy() -> Any:
@@ -17,16 +17,30 @@ def _numpy() -> Any:
     return numpy
 
 
-def _rows(value: Any, what: str, shape: tuple[int, ...], dtype: str) -> Any:
-    array = _numpy().asarray(value, dtype=dtype)
+def _array(value: Any, what: str, dtype: str) -> Any:
+    numpy = _numpy()
+    rule = "an array of real numbers"
+    if isinstance(value, range):  # it may be too long for any memory
+        raise wrong_value(what, rule, value)
+    try:
+        if not numpy.iscomplexobj(value):
+            return numpy.asarray(value, dtype=dtype)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise wrong_value(what, rule, value)
+
+
+def _numbers(value: Any, what: str, shape: tuple[int, ...], dtype: str) -> Any:
+    """An array of a shape."""
+    array = _array(value, what, dtype)
     if array.shape != shape:
-        raise UsageError(f"{what}: the function must return {' x '.join(map(str, shape))} numbers, not {' x '.join(map(str, array.shape))}")
+        raise UsageError(f"{what} must be {' x '.join(map(str, shape))} numbers, not {' x '.join(map(str, array.shape))}")
     return array
 
 
-def _callable(function: Any, what: str) -> Any:
+def _function(function: Any, what: str) -> Any:
     if not callable(function):
-        raise UsageError(f"{what} must be callable, it is {function!r}")
+        raise wrong_value(what, "callable", function)
     return function
 
 
@@ -52,7 +66,8 @@ class OwnCamera:
     def __init__(self, rays: Callable[[FilmPoints], Any], *, name: str,
                  pixels: Optional[Callable[[Any, int, int], Any]] = None, lens: bool = False) -> None:
         numpy = _numpy()
-        _callable(rays, "rays")
+        _function(rays, "rays")
+        _check.flag(lens, "lens")
 
         def call_rays(width: int, height: int, *columns: Any) -> None:
             x, y, u, v, time, ox, oy, oz, dx, dy, dz, weight = (numpy.frombuffer(column, "f8") for column in columns)
@@ -60,20 +75,20 @@ class OwnCamera:
             parts = result if isinstance(result, tuple) else (result,)
             if not 1 <= len(parts) <= 3:
                 raise UsageError(f"rays: the function must return directions, origins and weights, not {len(parts)} things")
-            dx[:], dy[:], dz[:] = _rows(parts[0], "directions", (len(x), 3), "f8").T
+            dx[:], dy[:], dz[:] = _numbers(parts[0], "directions", (len(x), 3), "f8").T
             if len(parts) > 1:
-                ox[:], oy[:], oz[:] = _rows(parts[1], "origins", (len(x), 3), "f8").T
+                ox[:], oy[:], oz[:] = _numbers(parts[1], "origins", (len(x), 3), "f8").T
             if len(parts) > 2:
-                weight[:] = _rows(parts[2], "weights", (len(x),), "f8")
+                weight[:] = _numbers(parts[2], "weights", (len(x),), "f8")
 
         def call_pixels(width: int, height: int, *columns: Any) -> None:
             assert pixels is not None
             x, y, z, film_x, film_y = (numpy.frombuffer(column, "f8") for column in columns)
-            result = _rows(pixels(numpy.stack((x, y, z), axis=1), width, height), "film points", (len(x), 2), "f8")
+            result = _numbers(pixels(numpy.stack((x, y, z), axis=1), width, height), "film points", (len(x), 2), "f8")
             film_x[:], film_y[:] = result.T
 
         if pixels is not None:
-            _callable(pixels, "pixels")
+            _function(pixels, "pixels")
         self.name = name
         self._own = _velo.own_new("camera", name, call_rays, None if pixels is None else call_pixels, lens)
 
@@ -99,17 +114,17 @@ class OwnSampler:
 
     def __init__(self, numbers: Callable[[Samples], Any], *, name: str) -> None:
         numpy = _numpy()
-        _callable(numbers, "numbers")
+        _function(numbers, "numbers")
 
         def call(dimension: int, seed: int, *columns: Any) -> None:
             x, y = (numpy.frombuffer(column, "i4") for column in columns[:2])
             index = numpy.frombuffer(columns[2], "u4")
             outputs = [numpy.frombuffer(column, "f4") for column in columns[3:] if column is not None]
             result = numbers(Samples(x, y, index, dimension, len(outputs), seed))
-            array = numpy.asarray(result, dtype="f8")
+            array = _array(result, "numbers", "f8")
             if len(outputs) == 1:
                 array = array.reshape(-1, 1) if array.ndim == 1 else array
-            array = _rows(array, "numbers", (len(x), len(outputs)), "f8").astype("f4")
+            array = _numbers(array, "numbers", (len(x), len(outputs)), "f8").astype("f4")
             array[array == 1] = numpy.float32(1 - 2.0**-24)  # doubles just below 1
             for k, output in enumerate(outputs):
                 output[:] = array[:, k]
@@ -124,6 +139,7 @@ class OwnSampler:
 # ---- tracers ------------------------------------------------------------------------------------------------------------
 
 _BATCH = 1024
+_MOST = 4096  #: bounces of a path
 
 
 def _layout(*members: tuple[str, str, int]) -> list[Any]:
@@ -155,6 +171,13 @@ class TraceRays:
         self.t_min = _view(data, "t_min", count)  #: n: where the ray begins to count, in lengths of its direction
         self.t_max = _view(data, "t_max", count)  #: n: where it ends; below 0: no ray
         self.width = _view(data, "width", count)  #: n: width of the footprint at the origin, scene units
+
+
+def _rays_of(rays: Any) -> Any:
+    """The struct of rays that velo made."""
+    if not isinstance(rays, TraceRays):
+        raise wrong_value("rays", "a velo.TraceRays", rays)
+    return rays._data
 
 
 class TraceHits:
@@ -207,16 +230,16 @@ class Trace:
 
     def _padded(self, direction: Any) -> Any:
         rows = _numpy().zeros((3, _BATCH), dtype="f4")
-        rows[:, :self._count] = _rows(direction, "direction", (self._count, 3), "f4").T
+        rows[:, :self._count] = _numbers(direction, "direction", (self._count, 3), "f4").T
         return rows
 
     def hits(self, rays: TraceRays) -> TraceHits:
         """The nearest hits of rays. The other methods then ask about these hits."""
-        return TraceHits(self._ask("hits", 0, rays._data, _HITS), self._count)
+        return TraceHits(self._ask("hits", 0, _rays_of(rays), _HITS), self._count)
 
     def occluded(self, rays: TraceRays) -> Any:
         """n flags, for n rays (n x 3): True where a surface lies on the ray."""
-        return self._ask("occluded", 0, rays._data, ("u1", _BATCH))[:self._count].astype(bool)
+        return self._ask("occluded", 0, _rays_of(rays), ("u1", _BATCH))[:self._count].astype(bool)
 
     def leave(self, direction: Any) -> TraceRays:
         """Rays that leave the last hits in these directions (n x 3, unit, world space), without meeting the surface that they
@@ -225,7 +248,7 @@ class Trace:
 
     def lights(self, bounce: int = 0) -> TraceLights:
         """A sample of a light for each of the last hits. bounce: 0 for hits of the camera's rays; selects the numbers."""
-        return TraceLights(self._ask("lights", bounce, None, _LIGHTS), self._count)
+        return TraceLights(self._ask("lights", _check.whole(bounce, "bounce", 0, _MOST), None, _LIGHTS), self._count)
 
     def bsdf(self, direction: Any) -> tuple[Any, Any]:
         """The BSDF of the last hits for light from these directions (n x 3, unit, world space), times the cosine: n x 4; and the
@@ -235,11 +258,11 @@ class Trace:
 
     def bounce(self, bounce: int = 0) -> TraceBounce:
         """Samples the BSDFs of the last hits. bounce: as lights."""
-        return TraceBounce(self._ask("bounce", bounce, None, _BOUNCE), self._count)
+        return TraceBounce(self._ask("bounce", _check.whole(bounce, "bounce", 0, _MOST), None, _BOUNCE), self._count)
 
     def numbers(self, purpose: int = 0) -> Any:
         """n x 2: numbers in [0, 1) of the render's sampler. Those of different purposes are independent."""
-        return self._ask("numbers", purpose, None, ("f4", (2, _BATCH)))[:, :self._count].T
+        return self._ask("numbers", _check.whole(purpose, "purpose", 0, _MOST), None, ("f4", (2, _BATCH)))[:, :self._count].T
 
 
 class Paths(NamedTuple):
@@ -263,7 +286,7 @@ class OwnTracer:
 
     def __init__(self, radiance: Callable[[Trace, Paths], Any], *, name: str) -> None:
         numpy = _numpy()
-        _callable(radiance, "radiance")
+        _function(radiance, "radiance")
 
         def call(trace: Any, count: int, max_depth: int, rays: Any, x: Any, y: Any, index: Any, time: Any, wavelengths: Any,
                  white: Any, result: Any, alpha: Any) -> None:
@@ -273,10 +296,10 @@ class OwnTracer:
             paths = Paths(TraceRays(data, count), numpy.frombuffer(x, "i4"), numpy.frombuffer(y, "i4"),
                           numpy.frombuffer(index, "u4"), None if time is None else numpy.frombuffer(time, "f4"),
                           None if wavelengths is None else channels(wavelengths), channels(white), max_depth)
-            value = numpy.asarray(radiance(Trace(trace, count), paths), dtype="f4")
+            value = _array(radiance(Trace(trace, count), paths), "radiance", "f4")
             if value.ndim == 1:
-                value = _rows(value, "radiance", (count,), "f4")[:, None] * paths.white
-            channels(result)[:] = _rows(value, "radiance", (count, 4), "f4")
+                value = _numbers(value, "radiance", (count,), "f4")[:, None] * paths.white
+            channels(result)[:] = _numbers(value, "radiance", (count, 4), "f4")
 
         self.name = name
         self._own = _velo.own_new("tracer", name, call, None, False)

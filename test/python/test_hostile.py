@@ -221,10 +221,15 @@ CALLS = [
     Call("Scene.close", quad_scene),
     Call("load", keywords={**LOAD, **COMPLETE}, path=(OBJ, PATH), context=(None, OBJECT), progress=CALLBACK),
     Call("kinds", family=("materials", TEXT)),
+    Call("OwnCamera", rays=(len, OBJECT), name=("own", TEXT), pixels=(None, ANY), lens=(False, FLAG)),
+    Call("OwnSampler", numbers=(len, OBJECT), name=("own", TEXT)),
+    Call("OwnTracer", radiance=(len, OBJECT), name=("own", TEXT)),
     Call("channel_names"), Call("sensor_names"), Call("settings_names"), Call("spectrum_names"),
 ]
 # Their values are checked where they are used: add_light's color, below.
 SPECTRA = ("Spectrum", "rgb", "blackbody", "sampled", "named")
+# Made by velo during a render: their arguments are tried there.
+TRACE = ("Trace", "TraceRays", "TraceHits", "TraceLights", "TraceBounce")
 
 
 # ---- running --------------------------------------------------------------------------------------------------------
@@ -299,7 +304,8 @@ def no_public_function_is_left_out():
     wanted = set()
     for name in velo.__all__:
         thing = getattr(velo, name)
-        if inspect.isclass(thing) and issubclass(thing, (Exception, tuple)) or name in SPECTRA or name in ("Handle", "Projection"):
+        if inspect.isclass(thing) and issubclass(thing, (Exception, tuple)) or name in SPECTRA or \
+                name in ("Handle", "Projection") or name in TRACE:
             continue
         if inspect.isclass(thing):
             wanted.update("%s.%s" % (name, member) for member, value in inspect.getmembers(thing)
@@ -319,6 +325,34 @@ def no_public_function_is_left_out():
         extra = set(call.arguments) - plain
         assert not plain - set(call.arguments) and (not extra or any(p.kind == p.VAR_KEYWORD for p in parameters.values())), call.name
     assert set(SETTINGS) == set(velo.settings_names()), set(SETTINGS) ^ set(velo.settings_names())
+
+
+@case
+@limited
+def every_question_of_a_trace():
+    problems, kept = [], []
+    questions = {"hits": ("rays", NO_OBJECT), "occluded": ("rays", NO_OBJECT), "leave": ("direction", NO_VECTOR),
+                 "lights": ("bounce", NO_COUNT), "bsdf": ("direction", NO_VECTOR), "bounce": ("bounce", NO_COUNT),
+                 "numbers": ("purpose", NO_COUNT)}
+    assert set(questions) == {name for name in vars(velo.Trace) if not name.startswith("_")}
+
+    def radiance(trace, paths):
+        hits = trace.hits(paths.rays)
+        if not kept:
+            for name, (argument, refused) in questions.items():
+                call = Call("Trace." + name, lambda: trace, **{argument: (None, ANY)})
+                for label, value in {**ANYTHING, **refused}.items():
+                    numbers = argument == "direction" and label.replace("no count ", "") in ("nan", "inf", "array of nan")
+                    check(call, argument, label, value, label in refused and not numbers, problems)
+            kept.append(trace)
+        return hits.emission
+
+    FIRST.render(spp=1, tracer=velo.OwnTracer(radiance, name="asks"))
+    report(problems)
+    for name in questions:  # the render is over
+        result = attempt(getattr(kept[0], name), **({} if name in ("lights", "bounce", "numbers") else
+                                                    {questions[name][0]: None if name in ("hits", "occluded") else numpy.zeros((1, 3))}))
+        assert isinstance(result, velo.UsageError), (name, result)
 
 
 @case

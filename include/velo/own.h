@@ -26,7 +26,7 @@ typedef enum vlOwnKind { VL_OWN_CAMERA, VL_OWN_SAMPLER, VL_OWN_TRACER, VL_OWN_KI
 
 /** Film points that need rays. Arrays have `count` elements, at least 1. */
 typedef struct vlOwnFilmPoints {
-  uint32_t count;
+  uint32_t count;         /**< length of the arrays */
   uint32_t width, height; /**< the size of the image for which the camera was made, pixels */
   const double *x, *y; /**< film points, pixels from the top left corner; the first pixel's centre is (0.5, 0.5). By the
                           reconstruction filter, points may be up to 16 pixels outside the image */
@@ -46,7 +46,7 @@ typedef void vlOwnRaysFn(void *user, const vlOwnFilmPoints *points, const vlOwnR
 
 /** Points in camera space, scene units, of which the film points are asked. Arrays have `count` elements. */
 typedef struct vlOwnSpacePoints {
-  uint32_t count;
+  uint32_t count;          /**< length of the arrays */
   uint32_t width, height;  /**< as vlOwnFilmPoints */
   const double *x, *y, *z; /**< points */
   double *film_x, *film_y; /**< output: film points, pixels. NaN before the call: the camera does not see the point */
@@ -57,8 +57,8 @@ typedef void vlOwnPixelsFn(void *user, const vlOwnSpacePoints *points);
 /** A camera of one's own, for vlCameraDef.own. The name must be UTF-8 without control characters, 1 to VL_OWN_NAME - 1
  * bytes; it stands in receipts and films, and films of other names are not continued or merged. */
 typedef struct vlOwnCamera {
-  const char *name;
-  vlOwnRaysFn *rays;
+  const char *name;      /**< required; it must live as long as the camera */
+  vlOwnRaysFn *rays;     /**< required */
   vlOwnPixelsFn *pixels; /**< null: the camera cannot project; vl_camera_project then returns false */
   bool lens;             /**< rays reads lens_u and lens_v */
   void *user;            /**< passed to both functions */
@@ -66,7 +66,7 @@ typedef struct vlOwnCamera {
 
 /** Samples that need numbers. Arrays have `count` elements, at least 1. */
 typedef struct vlOwnSamples {
-  uint32_t count;
+  uint32_t count;        /**< length of the arrays */
   const int32_t *x, *y;  /**< their pixels: column and row from the top left. Pixels that share samples
                             (vlRenderDef.share_samples) need some up to 2 pixels outside the image, also negative ones */
   const uint32_t *index; /**< index of the sample in its pixel */
@@ -86,9 +86,9 @@ typedef void vlOwnNumbersFn(void *user, const vlOwnSamples *samples);
 
 /** A sampler of one's own, for vlRenderDef.own_sampler. The name is as that of vlOwnCamera. */
 typedef struct vlOwnSampler {
-  const char *name;
-  vlOwnNumbersFn *numbers;
-  void *user; /**< passed to numbers */
+  const char *name;        /**< required; it must live as long as the sampler */
+  vlOwnNumbersFn *numbers; /**< required */
+  void *user;              /**< passed to numbers */
 } vlOwnSampler;
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@ typedef struct vlTrace vlTrace;
 
 /** Rays. Lanes from `count` on are not read. */
 typedef struct vlTraceRays {
-  uint32_t count;
+  uint32_t count;                   /**< number of lanes */
   float origin[3][VL_OWN_BATCH];    /**< x, y, z of each lane */
   float direction[3][VL_OWN_BATCH]; /**< of unit length; of shadow rays (vlTraceLights): of any length */
   /** The part of the ray that counts, in lengths of its direction. t_max < 0: the lane has no ray. */
@@ -83,7 +83,7 @@ VL_API void vl_trace_numbers(vlTrace *trace, uint32_t purpose, float *u, float *
 
 /** The paths that a tracer computes. */
 typedef struct vlOwnPaths {
-  uint32_t count;
+  uint32_t count;                      /**< number of lanes */
   const vlTraceRays *rays;             /**< the camera's rays */
   const int32_t *x, *y;                /**< their pixels */
   const uint32_t *index;               /**< index of the sample in its pixel */
@@ -100,9 +100,9 @@ typedef void vlOwnRadianceFn(void *user, vlTrace *trace, const vlOwnPaths *paths
 
 /** A tracer of one's own, for vlRenderDef.own_tracer. The name is as that of vlOwnCamera. */
 typedef struct vlOwnTracer {
-  const char *name;
-  vlOwnRadianceFn *radiance;
-  void *user; /**< passed to radiance */
+  const char *name;          /**< required; it must live as long as the tracer */
+  vlOwnRadianceFn *radiance; /**< required */
+  void *user;                /**< passed to radiance */
 } vlOwnTracer;
 
 #ifdef __cplusplus

@@ -185,7 +185,6 @@ static void own_place_loop(const vlCameraCompiled *camera, uint32_t count, const
   float *dx = r->dx + first, *dy = r->dy + first, *dz = r->dz + first;
   float *t_min = r->t_min + first, *t_max = r->t_max + first;
   const double near_plane = c->near_plane, far_plane = c->far_plane;
-  /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
     double x = rows->dx[i], y = rows->dy[i], z = rows->dz[i], factor = rows->weight[i];
     double length = vl_length3(x, y, z);

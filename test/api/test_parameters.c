@@ -125,10 +125,15 @@ static bool append_value(char text[TEXT], const vlParameter *p, bool floats, int
 
 /* The whole scene: each `%s` of the family's form stands for `"kind" parameters`. */
 static void scene_text(char text[TEXT], const char *form, const char *kind, const char *parameters) {
+  size_t needed = strlen(form) + 2 * (strlen(kind) + strlen(parameters) + 8);
+  assert_true(needed < TEXT);
   text[0] = 0;
   for (const char *at; (at = strstr(form, "%s")); form = at + 2) {
-    size_t length = strlen(text);
-    snprintf(text + length, TEXT - length, "%.*s\"%s\" %s", (int)(at - form), form, kind, parameters);
+    strncat(text, form, (size_t)(at - form));
+    strcat(text, "\"");
+    strcat(text, kind);
+    strcat(text, "\" ");
+    strcat(text, parameters);
   }
   strcat(text, form);
 }

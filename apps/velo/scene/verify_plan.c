@@ -6,6 +6,7 @@
 
 #include "scene/verify.h"
 #include "velo/edit.h"
+#include "velo/schema.h"
 
 void verify_note(Verify *v, const char *format, ...) {
   va_list arguments;
@@ -48,28 +49,17 @@ static bool may_be_small(vlFloatInput roughness) {
   return roughness.texture.index != 0 || roughness.value < 0.05f;
 }
 
+/* Whether the material may reflect or transmit like a mirror. The parts of a mixed one are materials of their own. */
 static bool may_be_smooth(const vlMaterialDef *m) {
   const bool rough = !may_be_small(m->u_roughness) && !may_be_small(m->v_roughness);
   const bool rough_coat = !may_be_small(m->coat_u_roughness) && !may_be_small(m->coat_v_roughness);
-  switch (m->kind) {
-    case VL_MATERIAL_CONDUCTOR:
-    case VL_MATERIAL_DIELECTRIC:
-    case VL_MATERIAL_SUBSURFACE:
-    case VL_MATERIAL_COATED_DIFFUSE: return !rough;
-    case VL_MATERIAL_COATED_CONDUCTOR: return !rough || !rough_coat;
-    case VL_MATERIAL_THIN_DIELECTRIC: return true;
-    case VL_MATERIAL_PRINCIPLED:
-      return may_be_small(m->principled.roughness) ||
-             ((m->principled.clearcoat.texture.index || m->principled.clearcoat.value > 0) &&
-              may_be_small(m->principled.clearcoat_roughness));
-    case VL_MATERIAL_DIFFUSE:
-    case VL_MATERIAL_MIX: /* its parts are materials of their own */
-    case VL_MATERIAL_DIFFUSE_TRANSMISSION:
-    case VL_MATERIAL_HAIR:
-    case VL_MATERIAL_MEASURED:
-    case VL_MATERIAL_INTERFACE: break;
-  }
-  return false;
+  const bool coat = m->principled.clearcoat.texture.index || m->principled.clearcoat.value > 0;
+  if (m->kind == VL_MATERIAL_PRINCIPLED)
+    return may_be_small(m->principled.roughness) || (coat && may_be_small(m->principled.clearcoat_roughness));
+  if (m->kind == VL_MATERIAL_THIN_DIELECTRIC) return true;
+  if (m->kind == VL_MATERIAL_COATED_CONDUCTOR && !rough_coat) return true;
+  const vlKindRow *row = vl_kind_family_find("materials")->rows[m->kind];
+  return (row->traits & VL_MATERIAL_ROUGH) && !rough;
 }
 
 static Features find_features(const Verify *v) {

@@ -88,7 +88,7 @@ static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, fl
   float nx = r->near[0], ny = r->near[1], nz = r->near[2], fx = r->far[0], fy = r->far[1], fz = r->far[2];
   float x = r->inverse[0], y = r->inverse[1], z = r->inverse[2];
   uint32_t met = 0;
-  /* must vectorise */
+  /* must vectorise (32 bytes) */
   VL_SIMD for (uint32_t k = 0; k < W; k++) {
     float from = larger((x0[k] - nx) * x, larger((y0[k] - ny) * y, larger((z0[k] - nz) * z, low)));
     float to = smaller((x1[k] - fx) * x, smaller((y1[k] - fy) * y, smaller((z1[k] - fz) * z, high)));
@@ -116,7 +116,7 @@ static inline float dot(float ax, float ay, float az, float bx, float by, float 
 static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low, float high, float t[F]) {
   float ox = r->o[0], oy = r->o[1], oz = r->o[2], dx = r->d[0], dy = r->d[1], dz = r->d[2];
   uint32_t met = 0;
-  /* must vectorise */
+  /* must vectorise (16 bytes) */
   VL_SIMD for (uint32_t k = 0; k < F; k++) {
     float ax = c[0][0][k] - ox, ay = c[0][1][k] - oy, az = c[0][2][k] - oz;
     float bx = c[1][0][k] - ox, by = c[1][1][k] - oy, bz = c[1][2][k] - oz;

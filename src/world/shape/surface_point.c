@@ -44,12 +44,14 @@ bool vl_shape_intersect(const vlWorldShape *shape, uint32_t prim, const double o
 
 void vl_shape_point(const vlWorldShape *shape, uint32_t prim, const vlShapeHit *hit, vlSurfacePoint *point) {
   point->off = 0;
+  memset(point->error, 0, sizeof point->error);
   functions[shape->kind]->point(shape, prim, hit, point);
 }
 
 void vl_shape_sample(const vlWorldShape *shape, uint32_t prim, float u, float v, vlSurfacePoint *point, double *pdf) {
   *pdf = 0;
   point->off = 0;
+  memset(point->error, 0, sizeof point->error);
   functions[shape->kind]->sample(shape, prim, u, v, point, pdf);
 }
 

@@ -77,12 +77,7 @@ void vl_optics_unproject_chunk(const vlCameraCompiled *c, uint32_t count, const 
     double x = in->x[i] - c->cx, y = in->y[i] - c->cy;
     bool good = isfinite(x) && isfinite(y) && vl_optics_unproject(c->optics, c->pitch * x, c->pitch * y, &r);
     vlWorldRay w = vl_camera_place(c, r);
-    out->ox[i] = good ? w.ox : 0.0;
-    out->oy[i] = good ? w.oy : 0.0;
-    out->oz[i] = good ? w.oz : 0.0;
-    out->x[i] = good ? w.dx * w.inv_length : 0.0;
-    out->y[i] = good ? w.dy * w.inv_length : 0.0;
-    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    vl_store_world_ray(out, i, good, w);
     out->valid[i] = good ? 1.0 : 0.0;
   }
 }

@@ -36,4 +36,15 @@ static inline vlWorldRay vl_camera_place_eye(const vlCameraCompiled *c, vlEyePla
   return w;
 }
 
+/* Origin and unit direction of a ray as element i; 0 if it is not good. */
+static inline __attribute__((always_inline)) void vl_store_world_ray(vlCameraPoints *out, uint32_t i, int good,
+                                                                     vlWorldRay w) {
+  out->ox[i] = good ? w.ox : 0.0;
+  out->oy[i] = good ? w.oy : 0.0;
+  out->oz[i] = good ? w.oz : 0.0;
+  out->x[i] = good ? w.dx * w.inv_length : 0.0;
+  out->y[i] = good ? w.dy * w.inv_length : 0.0;
+  out->z[i] = good ? w.dz * w.inv_length : 0.0;
+}
+
 #endif

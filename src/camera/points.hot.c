@@ -78,12 +78,7 @@ static inline __attribute__((always_inline)) void place_loop(const int eyes, con
     vlWorldRay w = vl_camera_place(c, (vlCameraLocal){0.0, 0.0, dx[i], dy[i], dz[i]});
     if (eyes) w = vl_camera_place_eye(c, vl_eye_place(c->eye_circle, dx[i], dz[i]), w);
     int good = valid[i] > 0.0;
-    out->ox[i] = good ? w.ox : 0.0;
-    out->oy[i] = good ? w.oy : 0.0;
-    out->oz[i] = good ? w.oz : 0.0;
-    out->x[i] = good ? w.dx * w.inv_length : 0.0;
-    out->y[i] = good ? w.dy * w.inv_length : 0.0;
-    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    vl_store_world_ray(out, i, good, w);
     out->valid[i] = valid[i];
   }
 }
@@ -99,12 +94,7 @@ static inline __attribute__((always_inline)) void plain_loop(const int orthograp
     vlWorldRay w = vl_camera_place(c, r);
     double sum = w.dx * w.inv_length + w.dy * w.inv_length + w.dz * w.inv_length;
     int good = sum - sum == 0.0 && x - x == 0.0 && y - y == 0.0;
-    out->ox[i] = good ? w.ox : 0.0;
-    out->oy[i] = good ? w.oy : 0.0;
-    out->oz[i] = good ? w.oz : 0.0;
-    out->x[i] = good ? w.dx * w.inv_length : 0.0;
-    out->y[i] = good ? w.dy * w.inv_length : 0.0;
-    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    vl_store_world_ray(out, i, good, w);
     out->valid[i] = good ? 1.0 : 0.0;
   }
 }
@@ -115,12 +105,7 @@ static void own_unproject(const vlCameraCompiled *c, uint32_t n, const vlCameraP
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     vlWorldRay w;
     int good = vl_own_ray_at(c, &rows, i, &w);
-    out->ox[i] = good ? w.ox : 0.0;
-    out->oy[i] = good ? w.oy : 0.0;
-    out->oz[i] = good ? w.oz : 0.0;
-    out->x[i] = good ? w.dx * w.inv_length : 0.0;
-    out->y[i] = good ? w.dy * w.inv_length : 0.0;
-    out->z[i] = good ? w.dz * w.inv_length : 0.0;
+    vl_store_world_ray(out, i, good, w);
     out->valid[i] = good ? 1.0 : 0.0;
   }
 }

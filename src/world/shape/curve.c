@@ -335,7 +335,6 @@ static void curve_point(const vlWorldShape *s, uint32_t prim, const vlShapeHit *
   for (int i = 0; i < 3; i++) {
     point->n[i] *= side;
     point->ns[i] = point->n[i];
-    point->error[i] = 0;
   }
   point->uv[0] = (float)u;
   point->uv[1] = (float)v;

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "base/context.h"
+#include "measure.h"
 #include "velo/velo.h"
 #include "world/world.h"
 
@@ -57,21 +58,6 @@ static void trace(const vlWorld *world, const Batch *b, int which) {
     vl_accel_closest(world, b->n, &rays, b->kind == 0, ids, ids + b->n, ids + 2 * (size_t)b->n, t);
   else
     vl_accel_occluded(world, b->n, &rays, NULL, (uint8_t *)ids);
-}
-
-static double processor_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return x < y ? -1 : x > y;
-}
-static double median(double *x) {
-  qsort(x, ROUNDS, sizeof *x, compare);
-  return x[ROUNDS / 2];
 }
 
 /* Traces all rays of a kind. The threads' other work does not count. */
@@ -162,7 +148,7 @@ int main(int argc, char **argv) {
     for (int round = 0; n && round < ROUNDS; round++)
       for (int k = 0; k < 2; k++) seconds[k][round] = time_kind(worlds[k], &rays, kind, k);
     if (!n) continue;
-    double embree = 1e9 * median(seconds[0]) / (double)n, bvh = 1e9 * median(seconds[1]) / (double)n;
+    double embree = 1e9 * median(seconds[0], ROUNDS) / (double)n, bvh = 1e9 * median(seconds[1], ROUNDS) / (double)n;
     printf("%s %10llu rays: embree %6.0f ns, bvh %6.0f ns, ratio %.3f; %llu different\n", names[kind],
            (unsigned long long)n, embree, bvh, embree / bvh, (unsigned long long)different(&rays, kind));
   }

@@ -18,6 +18,7 @@
 #include "base/context.h"
 #include "base/file.h"
 #include "math/hash.h"
+#include "measure.h"
 #include "velo/velo.h"
 #include "world/accel/embree.h"
 #include "world/world.h"
@@ -252,21 +253,6 @@ static vlRenderStats render_once(vlContext *context, const vlWorld *world, const
   if (vl_render(world, &camera, film, &defs->render, &stats, NULL) != VL_OK) exit(1);
   vl_film_destroy(film);
   return stats;
-}
-
-static double processor_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return x < y ? -1 : x > y;
-}
-static double median(double *x, int n) {
-  qsort(x, (size_t)n, sizeof *x, compare);
-  return x[n / 2];
 }
 
 /* The scene of a file, or the one above where file is null; and how its image is taken. */

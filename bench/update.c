@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "measure.h"
 #include "velo/velo.h"
 
 enum { SIDE = 707, SMALL = 20, INSTANCES = 1000, ROUNDS = 15 };
@@ -83,16 +84,6 @@ static void make_scene(vlScene *scene) {
   const double eye[3] = {0, 4, 8}, lookat[3] = {0, 0, 0};
   memcpy(camera->eye, eye, sizeof eye);
   memcpy(camera->lookat, lookat, sizeof lookat);
-}
-
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
-static double median(double *t, int n) {
-  qsort(t, (size_t)n, sizeof *t, ascending);
-  return t[n / 2];
 }
 
 /* Builds ROUNDS times, after the change `edit` each time. */

@@ -1,4 +1,4 @@
-/* image_map.c: looks up pixels. more/images.c reads them. */
+/* image_map.c: looks up pixels. program/images.c reads them. */
 #include "world.h"
 
 /* The column or row inside the image that stands for one outside; -1: black. */

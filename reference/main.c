@@ -1,11 +1,10 @@
 /* main.c: velo-reference, a small path tracer for reading, and for checking velo. It takes the scene's description,
  * image files and colour tables from the library, and computes everything else itself, one ray at a time.
- * more/command.h has the command line. */
+ * program/command.h has the command line. */
 #include <stdio.h>
 
-#include "more/command.h"
-#include "more/more.h"
-#include "world.h"
+#include "program/command.h"
+#include "program/program.h"
 
 /* The lecture's render_scene: for each pixel and each of its samples a primary ray, and what the ray brings back. Rows
  * go down; the lecture's go up. Returns the number of samples that were lost because they were not finite. */

@@ -1,6 +1,7 @@
 /* world.c: makes the world: every shape at each of its places, and its primitives. Instances are not shared: a group
  * that stands in ten places is stored ten times. */
 #include "more/more.h"
+#include "program/program.h"
 
 /* Sides follow pbrt-v4: a mirrored quadric turns its normals over, a mirrored mesh does not (its normal is defined in
  * its own space), and instances never turn normals. */

@@ -28,7 +28,7 @@ typedef struct primitive {
   uint32_t face;      /* of a mesh */
   int32_t light;      /* in the world's list of lights; -1: it emits none */
   vector corner[4];   /* of a face, in the world */
-  vector low, high;   /* its box: more/accelerator.c */
+  vector low, high;   /* its box: program/accelerator.c */
 } primitive;
 
 /* The lecture's shade record: all that is known of the point where a ray meets a surface. */
@@ -67,7 +67,7 @@ typedef struct light {
   double *sums; /* of all pixels before each one, row by row, over the sum of all: width^2 + 1 numbers; null: even */
 } light;
 
-typedef struct node node; /* of more/accelerator.c */
+typedef struct node node; /* of program/accelerator.c */
 
 typedef struct world {
   vlContext *context;
@@ -95,7 +95,7 @@ typedef struct meeting {
 } meeting;
 
 /* The nearest surface along the ray, or false. Surfaces that are partly transparent (alpha) count with that
- * probability. more/accelerator.c asks nearest_of only for primitives whose boxes the ray meets. */
+ * probability. program/accelerator.c asks nearest_of only for primitives whose boxes the ray meets. */
 bool find_hit(const world *w, ray r, sampler *s, shade_record *hit);
 /* The nearest of `count` primitives; r->t_max becomes its distance. */
 bool nearest_of(const world *w, uint32_t first, uint32_t count, ray *r, sampler *s, shade_record *hit);

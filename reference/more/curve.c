@@ -2,6 +2,7 @@
  * turns to face each ray: the ray meets it where, in the plane across the ray, the foot of the perpendicular to the
  * curve lies within half of the width. All of this happens in the space of the shape. */
 #include "more.h"
+#include "program/program.h"
 
 enum { DEGREE = 5 };
 

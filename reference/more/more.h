@@ -1,11 +1,7 @@
 /* more/more.h: what the core asks more/ for. Where the core's own switch over kinds ends, it calls one of these
- * functions. more/check.c refuses by name what more/ does not have either. */
+ * functions. program/check.c refuses by name what more/ does not have either. */
 #pragma once
 #include "world.h"
-
-/* more/accelerator.c: makes the tree of boxes; makes a box contain a point. */
-void make_accelerator(world *w);
-void include_point(primitive *p, vector point);
 
 /* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
 uint32_t more_corners(const vlShapeDef *def);
@@ -70,7 +66,3 @@ bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *dista
  * sees nothing there. */
 bool without_distortion(const vlCamera *c, double *x, double *y);
 bool more_direction(const vlCamera *c, double x, double y, vector *direction);
-
-/* more/check.c: whether the renderer has all that a scene asks for; else an error with the name and the place of the
- * first thing that it does not have. */
-bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error);

@@ -1,5 +1,6 @@
 /* more/shapes.c: the shapes of more/, by kind. */
 #include "more.h"
+#include "program/program.h"
 
 uint32_t more_corners(const vlShapeDef *def) {
   return def->kind == VL_SHAPE_BILINEAR || def->kind == VL_SHAPE_CURVES ? 4 : 0;

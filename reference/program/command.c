@@ -1,4 +1,4 @@
-/* more/command.c: the command line. */
+/* program/command.c: the command line. */
 #include "command.h"
 
 #include <stdio.h>

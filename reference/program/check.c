@@ -1,6 +1,5 @@
-/* more/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
-#include "more.h"
-
+/* program/check.c: the one list of what the core and more/ have; all else is refused by its name in files. */
+#include "program.h"
 #include "refuse.h"
 
 static bool check_shape(const vlShapeDef *def, vlError *error) {

@@ -1,4 +1,4 @@
-/* more/memory.c: memory, which is given back when the program ends. */
+/* program/memory.c: memory, which is given back when the program ends. */
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,4 +1,4 @@
-/* more/command.h: the command line.
+/* program/command.h: the command line.
  *
  *   velo-reference SCENE -o IMAGE.exr [--spp N] [--seed N] [--resolution WxH] [--max-depth N] [--tracer NAME]
  *      [--color spectral|rgb] [--filter box]

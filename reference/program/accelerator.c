@@ -1,6 +1,7 @@
-/* more/accelerator.c: a tree of boxes (bounding volume hierarchy, pbrt book 7.3). A ray that misses a box misses all
+/* program/accelerator.c: a tree of boxes (bounding volume hierarchy, pbrt book 7.3). A ray that misses a box misses all
  * that is in it. Each box is split at the middle of its longest side. */
-#include "more.h"
+#include "more/more.h"
+#include "program.h"
 struct node {
   vector low, high;
   uint32_t first, count; /* its primitives */

@@ -1,4 +1,4 @@
-/* more/images.c: images of textures. The library reads the files, and gives their values as linear numbers. */
+/* program/images.c: images of textures. The library reads the files, and gives their values as linear numbers. */
 #include <string.h>
 
 #include "world.h"

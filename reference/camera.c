@@ -1,6 +1,6 @@
 /* camera.c: pinhole, orthographic camera, thin lens and two fisheyes. The camera looks along its z axis, x to the
  * right, y down. Its description has been made uniform by the library: fx and fy, in pixels, are the lecture's zoom d /
- * s; cx, cy is where the axis meets the view plane; the pose is world_from_camera. */
+ * s; cx, cy is where the axis meets the view plane; the pose is world_from_camera, see more/motion.c. */
 #include "more/more.h"
 
 /* The lecture's pinhole: direction = x_v u + y_v v - d w, divided by d. Here the axes are x right, y down, z forward,
@@ -44,7 +44,7 @@ bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r) {
   else if (fisheye || !more_direction(c, x_plane, y_plane, &direction))
     return false;
   through_lens(c, s, &origin, &direction);
-  frame uvw = load_matrix(c->world_from_camera);
+  frame uvw = camera_pose(c, r->time);
   vector in_world = transform_vector(&uvw, direction);
   r->origin = transform_point(&uvw, origin);
   r->direction = normalize(in_world);
@@ -52,6 +52,5 @@ bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r) {
   double world_per_unit = length(in_world) / (flat ? direction.z : length(direction));
   r->t_min = c->near_plane * world_per_unit;
   r->t_max = c->far_plane * world_per_unit;
-  r->time = c->shutter_open;
   return true;
 }

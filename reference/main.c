@@ -3,6 +3,7 @@
  * program/command.h has the command line. */
 #include <stdio.h>
 
+#include "more/more.h"
 #include "program/command.h"
 #include "program/program.h"
 
@@ -19,7 +20,7 @@ static unsigned long render_scene(const world *w, const vlCamera *camera, const 
         square_point sp = sample_filter(plane, &s);
         spectrum radiance = gray(0);
         bool met = false;
-        ray r;
+        ray r = {.time = sample_time(camera, column, row, &s)};
         if (camera_ray(camera, column + 0.5 + sp.x, row + 0.5 + sp.y, &s, &r))
           radiance = trace_ray(w, r, around_camera, (uint32_t)o->max_depth, &s, &lambda, &met);
         if (isfinite(radiance.c[0] + radiance.c[1] + radiance.c[2] + radiance.c[3]))

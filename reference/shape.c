@@ -11,6 +11,7 @@ bool is_quadric(vlShapeKind kind) {
 
 static bool meet_shape(const world *w, const primitive *p, ray r, meeting *m) {
   vlShapeKind kind = def_of(w, p)->kind;
+  r = seen_at_rest(&w->placements[p->placement], r);
   if (kind == VL_SHAPE_TRIANGLES) return meet_triangle(p, r, m);
   return is_quadric(kind) ? meet_quadric(w, p, r, m) : meet_more(w, p, r, m);
 }
@@ -25,6 +26,7 @@ void shape_surface(const world *w, const primitive *p, double a, double b, shade
     quadric_surface(w, p, a, b, record);
   else
     more_surface(w, p, a, b, record);
+  carry_along(record);
 }
 
 /* Folding the unit square on its diagonal makes a uniform point of a triangle. */
@@ -41,7 +43,7 @@ bool nearest_of(const world *w, uint32_t first, uint32_t count, ray *r, sampler 
   for (uint32_t i = first; i < first + count; i++) {
     meeting m;
     for (ray rest = *r; meet_shape(w, &w->primitives[i], rest, &m); rest.t_min = m.t) {
-      shade_record record = {.t = m.t, .a = m.a, .b = m.b, .arrival = r->direction};
+      shade_record record = {.t = m.t, .time = r->time, .a = m.a, .b = m.b, .arrival = r->direction};
       shape_surface(w, &w->primitives[i], m.a, m.b, &record);
       double alpha = number_at(w, record.where->def->alpha, &record);
       if (alpha < 1 && next_number(s) >= alpha) continue;

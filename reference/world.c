@@ -5,8 +5,8 @@
 
 /* Sides follow pbrt-v4: a mirrored quadric turns its normals over, a mirrored mesh does not (its normal is defined in
  * its own space), and instances never turn normals. */
-static placement place(const vlShapeDef *def, matrix world_from_group) {
-  placement p = {.def = def};
+static placement place(const vlShapeDef *def, matrix world_from_group, motion *moves) {
+  placement p = {.def = def, .moves = moves};
   matrix group_from_shape = load_matrix(def->group_from_shape);
   bool shape_mirrors = determinant(&group_from_shape) < 0;
   p.world_from_shape = multiply(world_from_group, group_from_shape);
@@ -32,23 +32,23 @@ static void add_primitive(world *w, uint32_t index, uint32_t face, uint32_t corn
   w->primitives[w->primitive_count++] = p;
 }
 
-static void add_shape(world *w, const vlShapeDef *def, matrix world_from_group) {
+static void add_shape(world *w, const vlShapeDef *def, matrix world_from_group, motion *moves) {
   uint32_t corners = def->kind == VL_SHAPE_TRIANGLES ? 3 : more_corners(def);
   uint32_t faces = corners > 0 ? def->faces : 1;
   w->placements = resize(w->placements, w->placement_count + 1, sizeof *w->placements);
   w->primitives = resize(w->primitives, (size_t)w->primitive_count + faces, sizeof *w->primitives);
-  w->placements[w->placement_count] = place(def, world_from_group);
+  w->placements[w->placement_count] = place(def, world_from_group, moves);
   for (uint32_t face = 0; face < faces; face++) add_primitive(w, w->placement_count, face, corners);
   w->placement_count++;
 }
 
 /* A shape of the world itself stands in one place, that of a group in as many as the group has instances. */
 static void place_shape(world *w, const vlShapeDef *def) {
-  if (!def->group.index) add_shape(w, def, IDENTITY);
+  if (!def->group.index) add_shape(w, def, IDENTITY, NULL);
   vlInstanceInfo info;
   for (uint32_t i = 1; vl_scene_instance(w->scene, (vlInstanceId){i}, &info) == VL_OK; i++) {
     bool here = def->group.index && info.group.index == def->group.index && info.shown;
-    if (here) add_shape(w, def, load_matrix(info.world_from_group));
+    if (here) add_shape(w, def, load_matrix(info.world_from_group), make_motion(&info));
   }
 }
 

@@ -11,8 +11,10 @@
 typedef struct ray {
   vector origin, direction;
   double t_min, t_max;
-  double time; /* for what moves, see more/ */
+  double time; /* seconds */
 } ray;
+
+typedef struct motion motion; /* of more/motion.c */
 
 /* A shape of the scene at one place: in the world itself, or in one instance of its group. */
 typedef struct placement {
@@ -20,6 +22,7 @@ typedef struct placement {
   matrix world_from_shape, shape_from_world;
   bool mesh_mirrored; /* the cross product of a triangle's edges in the world points to its inside */
   bool flip;          /* normals of quadrics point to the inside */
+  motion *moves;      /* null: at rest; else the other members are those of its first pose */
 } placement;
 
 /* What rays are tested against: a triangle, or a whole quadric. */
@@ -33,7 +36,7 @@ typedef struct primitive {
 
 /* The lecture's shade record: all that is known of the point where a ray meets a surface. */
 typedef struct shade_record {
-  double t;
+  double t, time;
   vector point;
   vector normal;         /* of the surface itself, on its outside */
   vector shading_normal; /* interpolated between the vertices, on the same side */
@@ -120,8 +123,8 @@ spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t ma
 /* The distance below which a new ray does not count hits: it begins on a surface, and rounding must not let it meet
  * that surface again. */
 double surface_distance(const world *w, vector p);
-/* The ray through the point (x, y) of the image, in pixels from its top left corner. False: the point is outside of the
- * camera's image circle. */
+/* The ray through the point (x, y) of the image, in pixels from its top left corner, at the time r->time. False: the
+ * point is outside of the camera's image circle. */
 bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r);
 
 /* ---- material.c, texture.c, image_map.c -------------------------------------------------------------------------- */
@@ -151,8 +154,7 @@ void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t
 /* Linear between the four pixels around (s, t), measured from the top left corner, 0 to 1 over the image. */
 void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
 
-/* ---- light.c, sky.c, medium.c -------------------------------------------------------------------------------------
- */
+/* ---- light.c, sky.c, medium.c ------------------------------------------------------------------------------------ */
 
 /* Light that arrives at a point from a sample of a light. */
 typedef struct light_sample {
@@ -195,8 +197,7 @@ bool scatters_before(const world *w, const vlMediumDef *m, ray r, double *distan
 /* How the medium scatters light that goes on towards wo. */
 bsdf phase_function(const vlMediumDef *m, vector wo);
 
-/* ---- film.c: the lecture's view plane
- * -------------------------------------------------------------------------------- */
+/* ---- film.c: the lecture's view plane ---------------------------------------------------------------------------- */
 
 typedef struct pixel {
   double sum[3], squares[3]; /* of the samples and of their squares */

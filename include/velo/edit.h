@@ -38,11 +38,16 @@ typedef struct vlInstanceInfo {
   vlGroupId group;             /**< what it places */
   double world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
   bool moves;                  /**< it has several poses */
-  bool shown;                  /**< it is in the worlds that are built from now on */
-  vlSource source;             /**< where the file describes it */
-  vlLabel label;               /**< what the file calls it */
+  /** The poses of a moving instance: their number, their times in seconds, ascending, and 16 numbers of each,
+   * world_from_group. Between them it moves as vl_scene_add_moving_instance says. 0 and null: it is at rest. */
+  uint32_t keys;
+  const double *times, *poses;
+  bool shown;      /**< it is in the worlds that are built from now on */
+  vlSource source; /**< where the file describes it */
+  vlLabel label;   /**< what the file calls it */
 } vlInstanceInfo;
-/** Fills *info; its strings belong to the scene. ARGUMENT: there is no such instance, or it was removed. */
+/** Fills *info; its strings and arrays belong to the scene and are valid until the scene is changed. ARGUMENT: there is
+ * no such instance, or it was removed. */
 VL_API vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo *info);
 
 /** Replaces a texture. Its inputs must have lower ids than its own; it stays a float or a colour texture. */

@@ -3,13 +3,13 @@
 #include "more.h"
 
 static vector displaced(const world *w, const vlMaterialDef *m, const shade_record *at, double a, double b) {
-  shade_record near = {.arrival = at->arrival};
+  shade_record near = {.arrival = at->arrival, .time = at->time};
   shape_surface(w, at->what, a, b, &near);
   return add(near.point, scale(number_at(w, m->displacement, &near), near.shading_normal));
 }
 
 static vector point_of(const world *w, const shade_record *at, double a, double b) {
-  shade_record near = {.arrival = at->arrival};
+  shade_record near = {.arrival = at->arrival, .time = at->time};
   shape_surface(w, at->what, a, b, &near);
   return near.point;
 }

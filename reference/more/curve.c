@@ -134,7 +134,8 @@ bool meet_curve(const world *w, const primitive *p, ray r, meeting *m) {
 void curve_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
   const placement *where = &w->placements[p->placement];
   curve c = curve_of(w, p);
-  vector direction = normalize(transform_vector(&where->shape_from_world, record->arrival)), tangent;
+  vector arrival = seen_at_rest(where, (ray){.direction = record->arrival, .time = record->time}).direction;
+  vector direction = normalize(transform_vector(&where->shape_from_world, arrival)), tangent;
   vector point = curve_point(&c, u, &tangent);
   vector along = normalize(tangent);
   vector side = normalize(cross(direction, tangent)); /* to the left, as the ray looks */

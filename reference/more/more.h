@@ -62,6 +62,20 @@ spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double 
 bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
                       const wavelengths *lambda, spectrum *throughput, spectrum *emitted);
 
+/* more/motion.c: the motion of an instance; null: it is at rest. The pose of what moves at a time, as a transform from
+ * where it is at its first pose. */
+motion *make_motion(const vlInstanceInfo *info);
+matrix world_from_rest(const motion *m, double time);
+/* The ray as it would have to be if the shape were at its first pose; and back: what such a ray has found, to the time
+ * of the record. Nothing changes for shapes at rest. */
+ray seen_at_rest(const placement *where, ray r);
+void carry_along(shade_record *record);
+/* From when to when it moves. */
+void times_of(const motion *m, double *first, double *last);
+/* The time of one sample of a pixel; the camera's pose at a time. */
+double sample_time(const vlCamera *c, uint32_t column, uint32_t row, sampler *s);
+frame camera_pose(const vlCamera *c, double time);
+
 /* more/cameras.c: a point of the projection plane without the lens's distortion, and its direction. False: the camera
  * sees nothing there. */
 bool without_distortion(const vlCamera *c, double *x, double *y);

@@ -24,6 +24,28 @@ void include_point(primitive *p, vector point) {
   p->high = greatest(p->high, point);
 }
 
+/* The box of what moves: around the corners of its box at many times, and half a step more for what is between. */
+static void bound_motion(const motion *moves, primitive *p) {
+  enum { TIMES = 256 };
+  double first, last, longest = 0;
+  vector low = p->low, high = p->high;
+  times_of(moves, &first, &last);
+  for (int k = 0; k < 8; k++) {
+    vector corner = make_vector(k & 1 ? low.x : high.x, k & 2 ? low.y : high.y, k & 4 ? low.z : high.z),
+           before = corner;
+    for (int i = 0; i <= TIMES; i++) {
+      matrix m = world_from_rest(moves, first + (last - first) * i / TIMES);
+      vector now = transform_point(&m, corner);
+      include_point(p, now);
+      longest = fmax(longest, length(subtract(now, before)));
+      before = now;
+    }
+  }
+  vector more = make_vector(longest / 2, longest / 2, longest / 2);
+  p->low = subtract(p->low, more);
+  p->high = add(p->high, more);
+}
+
 /* The box around the corners; of a quadric those of a cube around the whole of it, taken to the world. */
 static void bound_primitive(const world *w, primitive *p) {
   const placement *where = &w->placements[p->placement];
@@ -38,6 +60,7 @@ static void bound_primitive(const world *w, primitive *p) {
   }
   for (int k = 0; k < 3 && def->kind == VL_SHAPE_TRIANGLES; k++) include_point(p, p->corner[k]);
   if (def->kind != VL_SHAPE_TRIANGLES && !is_quadric(def->kind)) bound_more(w, p);
+  if (where->moves) bound_motion(where->moves, p);
 }
 
 static double along(vector v, int axis) {

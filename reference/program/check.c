@@ -65,7 +65,6 @@ static bool check_camera(const vlCamera *c, vlSource source, vlError *error) {
   bool planes = c->near_plane > 0 || isfinite(c->far_plane);
   if (missing || lens || (planes && c->projection > VL_PROJECTION_EQUISOLID))
     return refuse(error, source, "this projection");
-  if (c->moves || c->readout != 0) return refuse(error, source, "a moving camera or a rolling shutter");
   if (l->blades || l->aperture || l->ratio != 1 || l->tilt[0] != 0 || l->tilt[1] != 0 || l->vignetting ||
       l->hinge[0] != 0 || l->hinge[1] != 0 || c->eye_circle != 0)
     return refuse(error, source, "this lens");
@@ -94,10 +93,6 @@ bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlE
   for (uint32_t i = 1; (shape = vl_scene_shape(scene, (vlShapeId){i})); i++) {
     const vlEmissionDef *emission = vl_scene_emission(scene, shape->emission);
     if (!check_shape(shape, error) || (emission && !check_emission(emission, shape, error))) return false;
-  }
-  vlInstanceInfo info;
-  for (uint32_t i = 1; vl_scene_instance(scene, (vlInstanceId){i}, &info) == VL_OK; i++) {
-    if (info.moves && info.shown) return refuse(error, info.source, "a moving instance");
   }
   const vlTextureDef *texture;
   for (uint32_t i = 1; (texture = vl_scene_texture(scene, (vlTextureId){i})); i++) {

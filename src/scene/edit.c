@@ -36,6 +36,9 @@ vlResult vl_scene_instance(const vlScene *scene, vlInstanceId id, vlInstanceInfo
   if (!instance || instance->removed || !info) return VL_ERROR_ARGUMENT;
   *info = (vlInstanceInfo){.group = instance->group,
                            .moves = instance->keys > 0,
+                           .keys = instance->keys,
+                           .times = instance->keys > 0 ? instance->times : NULL,
+                           .poses = instance->keys > 0 ? instance->poses : NULL,
                            .shown = !instance->hidden,
                            .source = instance->source,
                            .label = instance->label};

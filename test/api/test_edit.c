@@ -408,7 +408,16 @@ static void wrong_edits(void **state) {
   assert_int_equal(vl_scene_instance(t.scene, t.instances[0], &info), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_scene_remove_instance(t.scene, t.instances[0], &error), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_scene_instance(t.scene, t.instances[1], &info), VL_OK);
-  assert_true(info.shown && !info.moves);
+  assert_true(info.shown && !info.moves && info.keys == 0 && !info.times && !info.poses);
+  double poses[32];
+  small_place(poses, 1, 2, 3);
+  small_place(poses + 16, 4, 5, 6);
+  vlInstanceId moving =
+      vl_scene_add_moving_instance(t.scene, info.group, 2, (const double[2]){0.25, 0.5}, poses, (vlSource){0});
+  assert_int_equal(vl_scene_instance(t.scene, moving, &info), VL_OK);
+  assert_true(info.moves && info.keys == 2 && info.times[0] == 0.25 && info.times[1] == 0.5);
+  assert_memory_equal(info.poses, poses, sizeof poses);
+  assert_memory_equal(info.world_from_group, poses, sizeof info.world_from_group);
   vl_world_destroy(world);
   vl_world_destroy(same);
   vl_scene_destroy(t.scene);

@@ -114,6 +114,27 @@ def media_on_grids_agree_with_velo():
 
 
 @case
+def moving_things_and_a_rolling_shutter_agree_with_velo():
+    path, size = os.path.join(SOURCE, "scenes/reference/motion.pbrt"), ("--resolution", "32x24")
+    z = worst_z(render_velo(path, "velo_motion.exr", 1024, *size), render(path, "motion.exr", 512, *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
+def every_direction_of_a_rolling_shutter_agrees_with_velo():
+    for direction in ("down", "up", "left", "right"):
+        path = os.path.join(WORK, "shutter.pbrt")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('Camera "pinhole" "point3 eye" [ 0 0 -3 ] "point3 lookat" [ 0 0 0 ] "float shutterclose" .3 "float readout" .7 '
+                       '"float shutterpoints" [ 0 .2  .4 1  1 0 ] "string readoutdirection" "' + direction + '"\n' + HEAD[HEAD.index("Film"):] +
+                       'WorldBegin\nLightSource "infinite" "rgb L" [ 1 .8 .6 ]\nActiveTransform EndTime\nTranslate .3 .4 0\nRotate 70 0 0 1\n'
+                       'ActiveTransform All\nScale 1 .3 1\nShape "disk" "float radius" .9\n')
+        options = ("--color", "rgb", "--max-depth", "1")
+        z = worst_z(render_velo(path, "velo_shutter.exr", 512, *options), render(path, "shutter.exr", 512, *options))
+        assert z < 4.5, "%s: z = %.1f" % (direction, z)
+
+
+@case
 def projections_and_distortions_agree_with_velo():
     eye = ' "point3 eye" [ .2 1 -1 ] "point3 lookat" [ 0 .9 0 ] "vector3 up" [ 0 1 0 ]\n'
     rest = HEAD[HEAD.index("Film"):] + ("WorldBegin\n"

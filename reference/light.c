@@ -15,7 +15,10 @@ bool read_lights(world *w, vlError *error) {
   for (uint32_t i = 1; (def = vl_scene_light(w->scene, (vlLightId){i})); i++) {
     light *l = add_light(w, def->space);
     l->def = def;
-    if (def->kind == VL_LIGHT_INFINITE && !read_sky(w, l, error)) return false;
+    l->world_from_light = load_matrix(def->world_from_light);
+    l->light_from_world = invert(&l->world_from_light);
+    if (!read_light_image(w, l, error)) return false;
+    if (l->map.image && def->kind == VL_LIGHT_INFINITE) make_sky(l);
     read_more_light(l);
   }
   for (uint32_t i = 0; i < w->primitive_count; i++) {
@@ -28,15 +31,17 @@ bool read_lights(world *w, vlError *error) {
     light *l = add_light(w, texture ? texture->space : VL_SPACE_SRGB);
     l->emission = emission;
     l->what = p;
+    if (!read_light_image(w, l, error)) return false;
     l->factor = emission_factor(w, l);
   }
   return true;
 }
 
-/* An image multiplies the white of its colour space. */
+/* An image in colours multiplies the white of its colour space. */
 spectrum light_color(const light *l, const wavelengths *lambda) {
   const vlSpectrum *own = l->def ? &l->def->color : &l->emission->radiance;
-  bool image = l->sums || (l->emission && l->emission->texture.index);
+  bool colored = l->emission ? l->emission->texture.index > 0 : l->def->kind != VL_LIGHT_GONIOMETRIC;
+  bool image = colored && (l->map.image || l->emission);
   return scaled(l->factor, color_at(find_color(image ? &l->white : own, VL_PARAMETER_ILLUMINANT), lambda));
 }
 
@@ -45,6 +50,7 @@ spectrum emitted_by_surface(const world *w, const shade_record *at, vector towar
   const light *l = &w->lights[at->what->light];
   if (!l->emission->two_sided && dot(towards, at->normal) <= 0) return gray(0);
   spectrum radiance = light_color(l, lambda);
+  if (l->map.image) return times(radiance, shown_on_surface(l, at, lambda));
   vlSpectrumInput image = {.texture = l->emission->texture};
   if (!image.texture.index) return radiance;
   return times(radiance, spectrum_at(w, &image, VL_PARAMETER_UNBOUNDED, at, lambda));
@@ -95,22 +101,23 @@ bool sample_light(const world *w, vector point, sampler *s, const wavelengths *l
   const light *l = &w->lights[choose(s, w->light_count)];
   *result = (light_sample){.distance = (double)INFINITY, .single = true, .density = 1.0 / w->light_count};
   if (!l->def) return sample_surface(w, l, point, s, lambda, result);
-  matrix m = load_matrix(l->def->world_from_light);
-  vector from = transform_point(&m, from_floats(l->def->from)), to = transform_point(&m, from_floats(l->def->to));
+  vector from = transform_point(&l->world_from_light, from_floats(l->def->from));
+  vector to = transform_point(&l->world_from_light, from_floats(l->def->to));
   vector axis = normalize(subtract(to, from));
   result->direction = negate(axis);
   result->radiance = light_color(l, lambda);
   if (l->def->kind == VL_LIGHT_INFINITE) {
     result->direction = sample_sky(l, s);
     result->single = false;
-    result->radiance = sky_radiance(l, result->direction, lambda);
+    result->radiance = sky_radiance(l, point, result->direction, lambda);
     result->density = sky_density(w, l, result->direction);
     return true;
   }
   bool spot = l->def->kind == VL_LIGHT_SPOT;
   if (l->def->kind == VL_LIGHT_DISTANT) return true;
   if (!aim_at(from, point, result)) return false;
-  double share = spot ? spot_share(l->def, -dot(result->direction, axis)) : 1;
-  result->radiance = scaled(share / square(result->distance), result->radiance);
+  spectrum share = gray(spot ? spot_share(l->def, -dot(result->direction, axis)) : 1);
+  if (l->map.image) share = shown_by_lamp(l, negate(result->direction), lambda);
+  result->radiance = scaled(1 / square(result->distance), times(share, result->radiance));
   return true;
 }

@@ -9,7 +9,7 @@ static void sky_pixel(const light *l, uint32_t index, double rgb[4]) {
 
 /* The table of sums of the pixels' luminances: a number drawn from 0 to 1 lies between two of them, which is the pixel.
  * A tenth of the samples is spread evenly, so that no direction that shines is left out. */
-static void make_table(light *l) {
+void make_sky(light *l) {
   uint32_t count = l->map.width * l->map.width;
   l->sums = resize(NULL, (size_t)count + 1, sizeof *l->sums);
   l->sums[0] = 0;
@@ -23,17 +23,6 @@ static void make_table(light *l) {
     l->sums[i] = even * i / count + (total > 0 ? (1 - even) * l->sums[i] / total : 0);
 }
 
-bool read_sky(const world *w, light *l, vlError *error) {
-  vlImage *image = NULL;
-  if (l->def->path && vl_image_read(w->context, l->def->path, &image, error) != VL_OK) return false;
-  if (!image && !l->def->image) return true;
-  l->map = make_image_map(image ? image : l->def->image);
-  l->world_from_light = load_matrix(l->def->world_from_light);
-  l->light_from_world = invert(&l->world_from_light);
-  make_table(l);
-  return true;
-}
-
 /* The pixel of a direction. */
 static uint32_t pixel_at(const light *l, vector direction) {
   square_point p = square_of(normalize(transform_vector(&l->light_from_world, direction)));
@@ -41,8 +30,9 @@ static uint32_t pixel_at(const light *l, vector direction) {
   return (uint32_t)clamp(floor(p.y * n), 0, n - 1) * n + (uint32_t)clamp(floor(p.x * n), 0, n - 1);
 }
 
-spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda) {
+spectrum sky_radiance(const light *l, vector from, vector direction, const wavelengths *lambda) {
   double rgb[4];
+  if (!is_through_portal(l, from, direction)) return gray(0);
   if (!l->sums) return light_color(l, lambda);
   sky_pixel(l, pixel_at(l, direction), rgb);
   return times(light_color(l, lambda), texel_spectrum(l->def->space, rgb, VL_PARAMETER_UNBOUNDED, lambda));

@@ -83,7 +83,7 @@ static void add_met_light(path *p, spectrum emitted, double light_density) {
 static void add_skies(path *p) {
   for (const light *l = p->w->lights; l < p->w->lights + p->w->light_count; l++) {
     if (!l->def || l->def->kind != VL_LIGHT_INFINITE) continue;
-    add_met_light(p, sky_radiance(l, p->r.direction, p->lambda), sky_density(p->w, l, p->r.direction));
+    add_met_light(p, sky_radiance(l, p->r.origin, p->r.direction, p->lambda), sky_density(p->w, l, p->r.direction));
   }
 }
 

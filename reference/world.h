@@ -64,9 +64,9 @@ typedef struct light {
   const primitive *what;
   double factor;    /* on the colour */
   vlSpectrum white; /* of what an image shows */
-  /* the sky: its image, and the table from which directions are drawn in proportion to it */
-  image_map map;
+  image_map map;    /* the image that it shows; empty for most */
   matrix world_from_light, light_from_world;
+  /* the sky: the table from which directions are drawn in proportion to its image */
   double *sums; /* of all pixels before each one, row by row, over the sum of all: width^2 + 1 numbers; null: even */
 } light;
 
@@ -145,8 +145,9 @@ spectrum spectrum_at(const world *w, const vlSpectrumInput *input, vlParameterRo
                      const wavelengths *lambda);
 square_point texture_coordinates(const vlTextureDef *def, const shade_record *at);
 
-/* Reads the images of all textures. False, with an error. */
+/* Reads the images of all textures, or that of a light. False, with an error. */
 bool read_images(world *w, vlError *error);
+bool read_light_image(const world *w, light *l, vlError *error);
 image_map make_image_map(const vlImage *image);
 /* The pixel at (x, y), which may lie outside: `wrap` says what is there. All four values are set, and linear: grey
  * fills the colours, a missing coverage is 1. */
@@ -175,9 +176,9 @@ spectrum light_color(const light *l, const wavelengths *lambda);
 /* What a surface emits towards a direction, and the density with which sample_light finds it from a point. */
 spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda);
 double density_of_surface(const world *w, const shade_record *at, vector point);
-/* The same for a light of the sky, which a ray finds when it leaves the world. */
-bool read_sky(const world *w, light *l, vlError *error);
-spectrum sky_radiance(const light *l, vector direction, const wavelengths *lambda);
+/* The same for a light of the sky, which a ray from a point finds when it leaves the world. */
+void make_sky(light *l);
+spectrum sky_radiance(const light *l, vector from, vector direction, const wavelengths *lambda);
 double sky_density(const world *w, const light *l, vector direction);
 vector sample_sky(const light *l, sampler *s);
 

@@ -49,7 +49,11 @@ void marble(vector p, double omega, uint32_t octaves, double variation, double r
 void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]);
 double number_of_texel(const vlTextureDef *def, uint32_t channels, const double value[4]);
 
-/* more/lights.c: what a light or an emission makes of its spectrum: its scale, or its power (pbrt-v4). */
+/* more/lights.c: what images of lights show in a direction, or at a point of a surface; whether a sky with a portal is
+ * seen. What a light or an emission makes of its spectrum: its scale, or its power (pbrt-v4). */
+spectrum shown_by_lamp(const light *l, vector direction, const wavelengths *lambda);
+spectrum shown_on_surface(const light *l, const shade_record *at, const wavelengths *lambda);
+bool is_through_portal(const light *l, vector from, vector direction);
 void read_more_light(light *l);
 double emission_factor(const world *w, const light *l);
 

@@ -37,15 +37,12 @@ static bool is_square(vlContext *context, const vlLightDef *def, vlError *error)
 }
 
 static bool check_light(vlContext *context, const vlLightDef *def, vlError *error) {
-  if (def->has_portal) return refuse(error, def->source, "a portal");
-  if (def->kind > VL_LIGHT_INFINITE) return refuse_kind(error, def->source, "lights", (uint32_t)def->kind);
   return def->kind != VL_LIGHT_INFINITE || is_square(context, def, error);
 }
 
 static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vlError *error) {
   bool by_power = def->power > 0;
-  if (def->image) return refuse(error, def->source, "an emission image");
-  if (by_power && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index))
+  if (by_power && (shape->kind != VL_SHAPE_TRIANGLES || def->texture.index || def->image))
     return refuse(error, def->source, "this emission by power");
   return true;
 }

@@ -37,6 +37,18 @@ static bool read_image_map(vlContext *context, const vlTextureDef *def, image_ma
   return true;
 }
 
+/* The primitives of a shape that emits an image share it. */
+bool read_light_image(const world *w, light *l, vlError *error) {
+  const light *before = l > w->lights && l->emission && l[-1].emission == l->emission ? l - 1 : NULL;
+  const char *path = l->def ? l->def->path : l->emission->image;
+  vlImage *image = NULL;
+  if (before) l->map = before->map;
+  if (before || (!path && !(l->def && l->def->image))) return true;
+  if (path && vl_image_read(w->context, path, &image, error) != VL_OK) return false;
+  l->map = make_image_map(image ? image : l->def->image);
+  return true;
+}
+
 bool read_images(world *w, vlError *error) {
   const vlTextureDef *def;
   for (uint32_t i = 0; (def = vl_scene_texture(w->scene, (vlTextureId){i + 1})); i++) {

@@ -80,7 +80,8 @@ typedef struct world {
   placement *placements;
   primitive *primitives;
   light *lights;
-  image_map *images; /* per texture; empty for kinds without an image */
+  image_map *images;      /* per texture; empty for kinds without an image */
+  image_map *normal_maps; /* per material; empty for those without one */
   node *nodes;
   vlMaterialDef standard_material; /* of shapes without one */
   uint32_t placement_count, primitive_count, light_count;

@@ -1,5 +1,5 @@
-/* more/bump.c: bump maps. The surface p + h n has other normals than p. Shapes are maps of two coordinates (a, b); so
- * the displaced surface is one, too, and its slopes are differences. */
+/* more/bump.c: bump maps and normal maps. The surface p + h n has other normals than p. Shapes are maps of two
+ * coordinates (a, b); so the displaced surface is one, too, and its slopes are differences. */
 #include "more.h"
 
 static vector displaced(const world *w, const vlMaterialDef *m, const shade_record *at, double a, double b) {
@@ -14,9 +14,8 @@ static vector point_of(const world *w, const shade_record *at, double a, double 
   return near.point;
 }
 
-void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
+static void follow_bumps(const world *w, const vlMaterialDef *m, shade_record *at) {
   const double d = 1e-5;
-  if (!m->displacement.texture.index) return;
   vector along_a = subtract(displaced(w, m, at, at->a + d, at->b), displaced(w, m, at, at->a - d, at->b));
   vector along_b = subtract(displaced(w, m, at, at->a, at->b + d), displaced(w, m, at, at->a, at->b - d));
   vector n = cross(along_a, along_b);
@@ -31,4 +30,21 @@ void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
     at->tangent = add(by_a, by_b);
   }
   at->shading_normal = face_forward(normalize(n), at->shading_normal);
+}
+
+/* A texel of a normal map has a normal's coordinates, from -1 to 1, in the frame of the tangent and the normal. */
+void tilt_normal(const double rgb[4], double factor, shade_record *at) {
+  frame f = make_frame(at->shading_normal, at->tangent);
+  vector local = make_vector(factor * (2 * rgb[0] - 1), factor * (2 * rgb[1] - 1), 2 * rgb[2] - 1);
+  at->shading_normal = normalize(from_local(f, local));
+}
+
+void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
+  if (m->displacement.texture.index) follow_bumps(w, m, at);
+  if (!m->normal_map) return;
+  uint32_t i = 0;
+  while (vl_scene_material(w->scene, (vlMaterialId){i + 1}) != m) i++;
+  double rgb[4];
+  pixels_around(&w->normal_maps[i], at->u, 1 - at->v, VL_WRAP_REPEAT, VL_WRAP_REPEAT, rgb);
+  tilt_normal(rgb, 1, at);
 }

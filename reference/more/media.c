@@ -1,4 +1,4 @@
-/* more/media.c: what homogeneous media emit; media given on a grid (pbrt book 11.4). */
+/* more/media.c: what homogeneous media emit; media given on a grid, clouds (pbrt book 11.4). */
 #include "more.h"
 
 bool is_homogeneous(const vlMediumDef *m) {
@@ -59,6 +59,10 @@ static void local_medium(const vlMediumDef *m, vector p, const wavelengths *lamb
     return;
   }
   spectrum density = grid_value(m, m->density, p, lambda);
+  vector low = from_floats(m->low), size = subtract(from_floats(m->high), low);
+  vector place = add(low, make_vector(p.x * size.x, p.y * size.y, p.z * size.z));
+  if (m->kind == VL_MEDIUM_CLOUD)
+    density = gray(cloud_density(place, (double)m->cloud_density, (double)m->wispiness, (double)m->frequency));
   sigma[0] = times(density, coefficient(m, &m->sigma_a, lambda));
   sigma[1] = times(density, coefficient(m, &m->sigma_s, lambda));
   spectrum emission = color_at(find_color(&m->emission, VL_PARAMETER_ILLUMINANT), lambda);

@@ -30,7 +30,9 @@ spectrum absorption_of_hair_color(spectrum looks, double beta_n);
 spectrum diffuse_transmission_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_diffuse_transmission(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 void sample_thin_glass(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. */
+/* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. A texel of a normal map, its
+ * x and y times a factor. */
+void tilt_normal(const double rgb[4], double factor, shade_record *at);
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at);
 
 /* more/textures.c */
@@ -43,6 +45,7 @@ double fbm(vector p, double omega, uint32_t octaves);
 double turbulence(vector p, double omega, uint32_t octaves);
 double windy_waves(vector p);
 bool is_in_dot(square_point st);
+double cloud_density(vector p, double density, double wispiness, double frequency);
 void marble(vector p, double omega, uint32_t octaves, double variation, double rgb[3]);
 /* A texel's scale, tint and the like. An image as one number: the channel that the texture selects, else coverage if
  * there is one, else the mean. */

@@ -78,6 +78,25 @@ double windy_waves(vector p) {
   return fabs(fbm(scale(0.1, p), 0.5, 3)) * fbm(p, 0.5, 6);
 }
 
+/* A cloud, thick below y = 0.5 and thin at y = 1: octaves of noise at places that the slopes of finer noise displace
+ * (docs/media.md). */
+double cloud_density(vector p, double density, double wispiness, double frequency) {
+  const double d = 0.01;
+  vector q = scale(frequency, p);
+  double strength = 0.05 * wispiness, finer = 10;
+  for (int i = 0; i < 2; i++) {
+    vector at = scale(finer, q);
+    vector beside = make_vector(noise(add(at, make_vector(d, 0, 0))), noise(add(at, make_vector(0, d, 0))),
+                                noise(add(at, make_vector(0, 0, d))));
+    double here = noise(at);
+    q = add(q, scale(strength / d, subtract(beside, make_vector(here, here, here))));
+    strength /= 2;
+    finer *= 1.99;
+  }
+  double thin = clamp(4.5 * density * (1 - p.y) * fbm(q, 0.5, 5) / 2, 0, 1);
+  return fmin(1, thin + 2 * fmax(0, 0.5 - p.y));
+}
+
 /* A half of all cells has a dot, at a random place in the cell. */
 bool is_in_dot(square_point st) {
   double s = floor(st.x + 0.5), t = floor(st.y + 0.5);

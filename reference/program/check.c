@@ -6,6 +6,7 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
   if (def->centers) return refuse(error, def->source, "many spheres as one shape");
   if (def->positions_close) return refuse(error, def->source, "a moving mesh");
   if (def->displacement.texture.index) return refuse(error, def->source, "a displaced mesh");
+  if (def->tangents) return refuse(error, def->source, "a mesh with tangents");
   if (def->one_sided) return refuse(error, def->source, "a mesh with one side");
   return true;
 }
@@ -13,7 +14,6 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
 static bool check_material(const vlMaterialDef *def, vlError *error) {
   bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
   if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
-  if (def->normal_map) return refuse(error, def->source, "a normal map");
   bool missing =
       def->kind == VL_MATERIAL_PRINCIPLED || def->kind == VL_MATERIAL_MEASURED || def->kind == VL_MATERIAL_SUBSURFACE;
   return !missing || refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
@@ -50,7 +50,7 @@ static bool check_emission(const vlEmissionDef *def, const vlShapeDef *shape, vl
 static bool check_medium(const vlMediumDef *def, vlError *error) {
   if (def->rgb_absorption) return refuse(error, def->source, "absorption by RGB channel");
   if (def->temperature || def->rgb_emission) return refuse(error, def->source, "this emission of a medium");
-  if (def->kind <= VL_MEDIUM_RGB_GRID) return true;
+  if (def->kind <= VL_MEDIUM_CLOUD) return true;
   return refuse_kind(error, def->source, "media", (uint32_t)def->kind);
 }
 

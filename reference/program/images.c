@@ -55,5 +55,11 @@ bool read_images(world *w, vlError *error) {
     w->images = resize(w->images, i + 1, sizeof *w->images);
     if (def->kind == VL_TEXTURE_IMAGE && !read_image_map(w->context, def, &w->images[i], error)) return false;
   }
+  const vlMaterialDef *m;
+  for (uint32_t i = 0; (m = vl_scene_material(w->scene, (vlMaterialId){i + 1})); i++) {
+    vlTextureDef linear = {.path = m->normal_map, .encoding_given = true, .encoding = VL_ENCODING_LINEAR};
+    w->normal_maps = resize(w->normal_maps, i + 1, sizeof *w->normal_maps);
+    if (m->normal_map && !read_image_map(w->context, &linear, &w->normal_maps[i], error)) return false;
+  }
   return true;
 }

@@ -5,8 +5,8 @@
 #include "math/vec.h"
 #include "world/medium/kinds.h"
 
-/* Cloud density changes with height: one majorant per slab. The absolute value of noise is at most 1.04, that of the sum
- * of its five octaves at most 1.01. Above y = 1 the factor of the noise is negative, and grows again. */
+/* Cloud density changes with height: one majorant per slab. The absolute value of noise is at most 1.04, that of the
+ * sum of its five octaves at most 1.01. Above y = 1 the factor of the noise is negative, and grows again. */
 vlResult vl_compile_medium_cloud(vlWorld *world, const vlMediumDef *def, vlWorldMedium *m, vlError *error) {
   enum { SLABS = 16 };
   memcpy(m->low, def->low, sizeof m->low);

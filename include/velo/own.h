@@ -59,7 +59,8 @@ typedef void vlOwnPixelsFn(void *user, const vlOwnSpacePoints *points);
 typedef struct vlOwnCamera {
   const char *name;      /**< required; it must live as long as the camera */
   vlOwnRaysFn *rays;     /**< required */
-  vlOwnPixelsFn *pixels; /**< null: the camera cannot project; vl_camera_project then returns false */
+  vlOwnPixelsFn *pixels; /**< null: the camera cannot project; vl_camera_project then returns false, and light paths are
+                            not connected to it */
   bool lens;             /**< rays reads lens_u and lens_v */
   void *user;            /**< passed to both functions */
 } vlOwnCamera;

@@ -52,6 +52,22 @@ bool vl_own_ray_at(const vlCameraCompiled *c, const vlOwnRows *r, uint32_t i, vl
   return ray->length > 0.0 && isfinite(sum) && isfinite(ray->ox + ray->oy + ray->oz);
 }
 
+void vl_own_world_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRay *rays) {
+  vlOwnRows rows;
+  vl_own_chief_rays(c, n, x, y, &rows);
+  for (uint32_t i = 0; i < n; i++) {
+    vlWorldRay w;
+    vlOwnRay *r = &rays[i];
+    r->good = vl_own_ray_at(c, &rows, i, &w);
+    if (!r->good) continue;
+    const double o[3] = {w.ox, w.oy, w.oz}, d[3] = {w.dx * w.inv_length, w.dy * w.inv_length, w.dz * w.inv_length};
+    memcpy(r->o, o, sizeof o);
+    memcpy(r->d, d, sizeof d);
+    r->stretch = w.length / vl_length3(rows.dx[i], rows.dy[i], rows.dz[i]);
+    r->weight = rows.weight[i];
+  }
+}
+
 /* ---- making ------------------------------------------------------------------------------------------------------ */
 
 static bool is_name(const char *name) {

@@ -2,6 +2,7 @@
 #ifndef CAMERA_OWN_H
 #define CAMERA_OWN_H
 
+#include "camera/own_rays.h"
 #include "camera/parts.h"
 #include "camera/place.h"
 
@@ -17,10 +18,6 @@ typedef struct vlOwnRows {
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *rows);
 /* The chief rays of n film points (pixels of the compiled camera), at the start of the exposure. */
 void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRows *rows);
-/* The film points (pixels of the compiled camera) of n points in camera space; NaN where there is none. n is at most
- * VL_OWN_BATCH. */
-void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, const double *z,
-                   double *film_x, double *film_y);
 
 /* A ray of camera space in the world. */
 static inline vlWorldRay vl_own_place(const vlCameraCompiled *c, double ox, double oy, double oz, double dx, double dy,

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "base/error.h"
 #include "camera/rays.h"
+#include "render/own_view.h"
 #include "trace/ground_truth/ground_truth.h"
 
 /* Length of the camera's axes if all have the same length and are at right angles; else 0. */
@@ -35,7 +36,12 @@ void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView 
   view->sees = c.projection == VL_PROJECTION_PERSPECTIVE && c.plain && !c.shaped && !vl_camera_weighted(&c) &&
                c.eye_circle == 0.0 && camera->skew == 0.0 && s > 0;
   if (c.when.moves && fabs(axes_length(camera->world_from_camera_close) - s) > 1e-5 * s) view->sees = false;
-  if (!view->sees) return;
+  view->low_x = (float)film->crop[0] - film->filter.radius_x;
+  view->high_x = (float)film->crop[2] + film->filter.radius_x;
+  view->low_y = (float)film->crop[1] - film->filter.radius_y;
+  view->high_y = (float)film->crop[3] + film->filter.radius_y;
+  vl_own_view(&c, film, view);
+  if (!view->sees || view->look) return;
   view->position = (vlVec3){(float)m[3], (float)m[7], (float)m[11]};
   view->right = axis(m, 0, s);
   view->down = axis(m, 1, s);
@@ -48,10 +54,6 @@ void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView 
   view->focus = (float)(camera->focus_distance * s);
   view->near_plane = (float)(camera->near_plane * s);
   view->far_plane = (float)(camera->far_plane * s);
-  view->low_x = (float)film->crop[0] - film->filter.radius_x;
-  view->high_x = (float)film->crop[2] + film->filter.radius_x;
-  view->low_y = (float)film->crop[1] - film->filter.radius_y;
-  view->high_y = (float)film->crop[3] + film->filter.radius_y;
 }
 
 void vl_camera_view_move(vlCameraView *view, vlAffine at) {

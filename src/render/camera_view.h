@@ -5,8 +5,9 @@
 #include "math/motion.h"
 #include "trace/two_way/two_way.h"
 
-/* Sets the view. view->sees is false unless the camera is perspective with a round lens or a pinhole. A moving
- * camera has its first pose. */
+/* Sets the view. view->sees is false unless the camera is perspective with a round lens or a pinhole, or one of one's
+ * own that projects points, has no lens and does not move (own_view.h); for the last, the caller sets view->camera. A
+ * moving camera has its first pose. */
 void vl_camera_view(const vlCamera *camera, const vlFilmDef *film, vlCameraView *view);
 /* Moves the view to another pose; at: world from camera. */
 void vl_camera_view_move(vlCameraView *view, vlAffine at);

@@ -72,7 +72,12 @@ static bool has_regularisation(Scene *s) {
 static bool has_other_camera(Scene *s) {
   vlCameraView view;
   vl_camera_view(s->camera, s->film, &view);
-  return !view.sees;
+  return !view.sees && !s->camera->own;
+}
+static bool has_other_own_camera(Scene *s) {
+  vlCameraView view;
+  vl_camera_view(s->camera, s->film, &view);
+  return !view.sees && s->camera->own;
 }
 
 /* Light paths start at lights. Other tracers find a medium's own light by paths from the camera. */
@@ -98,6 +103,7 @@ static const Feature features[] = {
     {"material \"hair\"", has_hair, FROM_LIGHTS},
     {"regularization", has_regularisation, FROM_LIGHTS},
     {"cameras other than perspective ones with a round lens", has_other_camera, BIT(VL_TRACER_LIGHT_PATH)},
+    {"own cameras that do not project points, have a lens or move", has_other_own_camera, BIT(VL_TRACER_LIGHT_PATH)},
     {"light from media", has_emissive_media, BIT(VL_TRACER_LIGHT_PATH)},
     {"media that do not fit together", has_differing_media, FROM_LIGHTS},
 };

@@ -469,6 +469,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   run->starts = vl_two_way_choice(world, run->choice) && run->most_paths > 0;
   if (run->most_paths == 0) memset(run->choice, 0, (world->lights.count + 1) * sizeof *run->choice);
   if (run->starts) vl_camera_view(camera, f, &way->eye);
+  way->eye.camera = &rays->camera;
   if (result == VL_OK && way->eye.sees && rays->camera.when.moves) result = make_eyes(run, error);
   if (result == VL_OK && way->merge && def->merge_radius > 0) /* clamped, so that its cube is finite */
     run->first_radius = (float)fmin(fmax(def->merge_radius, 1e-12), 1e9);

@@ -277,24 +277,6 @@ static void wrong_cameras(void **state) {
   assert_string_equal(vl_projection_name(VL_PROJECTION_OWN), "own");
 }
 
-/* Light paths are not connected to it: the tracer that lives of that names it. */
-static void what_tracers_lack(void **state) {
-  (void)state;
-  Stage s = small_stage(NULL, &pinhole);
-  vlWorld *world;
-  vlCamera camera;
-  vlError error = {0};
-  assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
-  assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
-  assert_non_null(vl_tracer_lacks(world, &camera, &s.film, VL_TRACER_LIGHT_PATH));
-  assert_null(vl_tracer_lacks(world, &camera, &s.film, VL_TRACER_BIDIRECTIONAL));
-  vl_world_destroy(world);
-  s.render.tracer = VL_TRACER_BIDIRECTIONAL;
-  Image p = stage_finish(&s);
-  assert_int_equal(p.stats.not_finite, 0);
-  image_free(&p);
-}
-
 /* ---- samplers -----------------------------------------------------------------------------------------------------
  */
 
@@ -686,12 +668,15 @@ static void names_in_receipts(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_velo),  cmocka_unit_test(same_in_motion), cmocka_unit_test(same_on_all_machines),
-      cmocka_unit_test(other_sizes),   cmocka_unit_test(ground_truth),   cmocka_unit_test(no_rays),
-      cmocka_unit_test(what_it_gets),  cmocka_unit_test(wrong_cameras),  cmocka_unit_test(what_tracers_lack),
-      cmocka_unit_test(sampler_mean),  cmocka_unit_test(sampler_bits),   cmocka_unit_test(wrong_samplers),
-      cmocka_unit_test(tracer_means),  cmocka_unit_test(tracer_bits),    cmocka_unit_test(what_the_world_answers),
-      cmocka_unit_test(wrong_tracers), cmocka_unit_test(names_in_films), cmocka_unit_test(names_in_receipts),
+      cmocka_unit_test(same_as_velo),         cmocka_unit_test(same_in_motion),
+      cmocka_unit_test(same_on_all_machines), cmocka_unit_test(other_sizes),
+      cmocka_unit_test(ground_truth),         cmocka_unit_test(no_rays),
+      cmocka_unit_test(what_it_gets),         cmocka_unit_test(wrong_cameras),
+      cmocka_unit_test(sampler_mean),         cmocka_unit_test(sampler_bits),
+      cmocka_unit_test(wrong_samplers),       cmocka_unit_test(tracer_means),
+      cmocka_unit_test(tracer_bits),          cmocka_unit_test(what_the_world_answers),
+      cmocka_unit_test(wrong_tracers),        cmocka_unit_test(names_in_films),
+      cmocka_unit_test(names_in_receipts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

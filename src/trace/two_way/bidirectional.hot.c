@@ -28,7 +28,7 @@ static float seen_weight(const vlTracing *t, const vlPaths *p, uint32_t i, uint3
   const vlCameraView *eye = vl_eye_of(t, lane);
   if (!at || !eye->sees || way->light_only) return 1.0f;
   vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-  float per_square = 1.0f / (vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead)) * at->t * at->t);
+  float per_square = 1.0f / (vl_eye_pixel(t, lane, d, at->t) * at->t * at->t);
   float area_pdf = vl_emission_area_pdf(t->world, way, light, at->p);
   return 1.0f / (1.0f + vl_shown(way, light, area_pdf, per_square, vl_abs(vl_dot(d, at->g))) / vl_last_odds(t, lane));
 }
@@ -97,9 +97,8 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
     r->cosine[i] = cosine;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] * inv;
     r->b[i] = depth > 0 && vl_is_inner_end(t, i) ? vl_linked(t, r, lane, f->t[i], inv) : 0.0f;
-    const vlCameraView *eye = vl_eye_of(t, lane);
-    if (depth > 0 || !eye->sees) continue;
-    float pixel = vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
+    if (depth > 0 || !vl_eye_of(t, lane)->sees) continue;
+    float pixel = vl_eye_pixel(t, lane, d, f->t[i]);
     r->b[i] = t->def->two_way->paths * pixel * f->t[i] * f->t[i] * inv / vl_last_odds(t, lane);
   }
 }
@@ -233,6 +232,7 @@ void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
   bool media = vl_has_media(t);
+  vl_measure_camera_rays(t);
   if (media) vl_volume_start(t, n, NULL);
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
     if (media) {

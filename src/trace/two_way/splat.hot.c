@@ -28,7 +28,38 @@ vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, floa
   r.w = vl_mul(to, -1.0f / d);
   r.per_square = 1.0f / (vl_camera_view_pixel_area(eye, c) * d2);
   r.end = 1.0f - eye->near_plane * inv;
+  r.weight = 1.0f;
   return r;
+}
+
+void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float *x, const float *y, const float *z) {
+  const vlCameraView *eye = &t->def->two_way->eye;
+  if (eye->look) eye->look(eye, n, x, y, z, rows->views);
+}
+
+/* A point of each camera ray is looked at from the camera. Where that gives the sample's own pixel and ray again, light
+ * paths are connected there by the same functions, so both sides know the same density. Elsewhere they are not:
+ * `pixels` may leave out what `rays` sees. */
+void vl_measure_camera_rays(const vlTracing *t) {
+  const vlCameraView *eye = &t->def->two_way->eye;
+  const vlTraceBatch *b = t->batch;
+  vlTwoWayRows *r = b->two_way;
+  if (!eye->look) return;
+  float *x = r->rows[0], *y = r->rows[1], *z = r->rows[2];
+  for (uint32_t i = 0; i < b->n; i++) {
+    vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i);
+    float far = 1.0f + vl_length(o); /* rounding of the point is small against the distance */
+    vl_set_lane3(x, y, z, i, vl_add(o, vl_mul(vl_lane3(b->dx, b->dy, b->dz, i), far)));
+  }
+  vl_look_from(t, r, b->n, x, y, z);
+  for (uint32_t i = 0; i < b->n; i++) {
+    const vlCameraSample *v = &r->views[i];
+    vlVec3 o = vl_lane3(b->ox, b->oy, b->oz, i), d = vl_lane3(b->dx, b->dy, b->dz, i);
+    bool same = v->seen && vl_abs(v->x - (float)b->px[i] - 0.5f) <= eye->reach_x &&
+                vl_abs(v->y - (float)b->py[i] - 0.5f) <= eye->reach_y && vl_length2(vl_add(v->w, d)) < 1e-6f &&
+                vl_length(vl_sub(v->from, o)) <= 1e-5f * (1.0f + vl_length(o));
+    for (int k = 0; k < 3; k++) r->area[k][i] = same ? v->area[k] : 0.0f;
+  }
 }
 
 bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, float passes[4], float *scale) {
@@ -118,10 +149,11 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
   float(*wi)[VL_ROW_SIZE] = s->rows; /* the textures' stack is not in use */
   float *per_square = s->rows[3], *end = s->rows[4];
-  float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7];
+  float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7], *weight = s->rows[8];
+  vl_look_from(t, r, n, f->px, f->py, f->pz);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    uint32_t lane = p->lane[i < n ? i : n - 1];
-    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    uint32_t k = i < n ? i : n - 1, lane = p->lane[k];
+    vlCameraSample view = vl_view_of(t, r, k, lane, vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
     vlVec3 w = view.w;
     wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
     wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
@@ -129,6 +161,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
     per_square[i] = view.seen ? cosine * view.per_square : 0.0f; /* density of the camera path's first vertex here */
     end[i] = view.end;
+    weight[i] = view.weight;
     r->x[i] = view.x;
     r->y[i] = view.y;
     vl_set_lane3(fx, fy, fz, i, view.from);
@@ -143,7 +176,8 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     r->own[count] = way->paths / per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
-    for (int c = 0; c < 4; c++) q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv;
+    for (int c = 0; c < 4; c++)
+      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv * weight[i];
     r->x[count] = r->x[i];
     r->y[count] = r->y[i];
     count++;
@@ -164,11 +198,16 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) 
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
+    vl_set_lane3(r->rows[0], r->rows[1], r->rows[2], i, vl_lane3(r->lx, r->ly, r->lz, lane));
+  }
+  vl_look_from(t, r, n, r->rows[0], r->rows[1], r->rows[2]);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t lane = p->lane[i];
     uint32_t light = r->light[lane];
     if (!(r->a[i] > 0.0f)) continue;
     vlVec3 at = vl_lane3(r->lx, r->ly, r->lz, lane);
     vlVec3 g = vl_lane3(r->lnx, r->lny, r->lnz, lane);
-    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), at, sh->u1[i], sh->u2[i]);
+    vlCameraSample view = vl_view_of(t, r, i, lane, at, sh->u1[i], sh->u2[i]);
     float cosine = vl_dot(view.w, g);
     if (!view.seen || !(r->cosine[i] * cosine >= 0.0f) || cosine == 0.0f) continue;
     float shown = vl_shown(way, light, r->a[i], view.per_square, vl_abs(cosine));
@@ -191,7 +230,7 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) 
     q->lane[count] = lane;
     r->own[count] = shown;
     r->others[count] = 1.0f;
-    for (int c = 0; c < 4; c++) q->radiance[c][count] = r->flux[c][lane] * r->density[lane];
+    for (int c = 0; c < 4; c++) q->radiance[c][count] = r->flux[c][lane] * r->density[lane] * view.weight;
     r->x[count] = view.x;
     r->y[count] = view.y;
     count++;

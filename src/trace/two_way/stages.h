@@ -23,6 +23,7 @@ typedef struct vlTwoWayRows {
   VL_ROW float lx[VL_ROW_SIZE], ly[VL_ROW_SIZE],
       lz[VL_ROW_SIZE]; /* point on the light, or direction of an infinite light */
   VL_ROW float lnx[VL_ROW_SIZE], lny[VL_ROW_SIZE], lnz[VL_ROW_SIZE]; /* the light's normal at this point */
+  VL_ROW float area[3][VL_ROW_SIZE]; /* of a camera path of one's own camera: vlCameraSample.area; 0: not connected */
   /* The following rows are indexed by element of the sorted batch. */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
   VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
@@ -33,7 +34,8 @@ typedef struct vlTwoWayRows {
   VL_ROW float
       rows[12][VL_ROW_SIZE]; /* value, wavelength and 1 / PDF of splats, 4 rows each; also wavelengths of the batch */
   VL_ROW uint32_t first[VL_ROW_SIZE + 1], count[VL_ROW_SIZE];
-  uint32_t pair[VL_MERGE_PAIRS]; /* photon indices, grouped by lane */
+  vlCameraSample views[VL_BATCH]; /* vl_look_from */
+  uint32_t pair[VL_MERGE_PAIRS];  /* photon indices, grouped by lane */
   union {
     vlPhoton photons[VL_BATCH];
     vlLightVertex vertices[VL_BATCH];
@@ -115,16 +117,12 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
 /* Density with which next-event estimation would have sampled the light that this lane's path came from. */
 float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
 
-/* A connection of a scene point to a point on the lens. */
-typedef struct vlCameraSample {
-  bool seen;
-  vlVec3 w;         /* unit, towards the lens */
-  vlVec3 from;      /* point on the lens */
-  float x, y;       /* film point, pixels */
-  float end;        /* fraction of the segment at which it crosses the near plane */
-  float per_square; /* 1 / (solid angle of a pixel * distance squared) */
-} vlCameraSample;
+/* For perspective cameras. */
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
+/* For cameras of one's own: fills rows->views, by lane of the n points. For others it does nothing. */
+void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float *x, const float *y, const float *z);
+/* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh light paths. */
+void vl_measure_camera_rays(const vlTracing *t);
 
 /* Writes to rows->rev the density of sampling wo if the path had come from wi (local), and to shade.value the BSDF's
  * value f(wi, wo) |cos wo|. Keeps shade.wo; overwrites shade.wi, shade.pdf and the light samples' wx, wy, wz. */
@@ -207,10 +205,26 @@ static inline float vl_light_density(const vlTracing *t, const vlTwoWayRows *r, 
   return t->world->lights.items[r->light[lane]].at_point ? r->density[lane] / (distance * distance) : r->density[lane];
 }
 
+/* The sample of point i (of vl_look_from), which belongs to a path's lane. u, v: random numbers for the lens. */
+static inline vlCameraSample vl_view_of(const vlTracing *t, const vlTwoWayRows *r, uint32_t i, uint32_t lane, vlVec3 at,
+                                        float u, float v) {
+  const vlCameraView *eye = vl_eye_of(t, lane);
+  return eye->look ? r->views[i] : vl_sample_camera(eye, at, u, v);
+}
+
 /* Solid angle of a pixel in a direction whose cosine with the camera's axis is c. At depth 1 the pixel's sides are 1 /
  * fx and 1 / fy. */
 static inline float vl_camera_view_pixel_area(const vlCameraView *eye, float c) {
   return c * c * c / (eye->fx * eye->fy);
+}
+/* The same for the camera ray d of a lane; of a camera of one's own, a pixel's area at a distance, divided by the
+ * distance squared. 0: no light path is connected there. */
+static inline float vl_eye_pixel(const vlTracing *t, uint32_t lane, vlVec3 d, float distance) {
+  const vlCameraView *eye = vl_eye_of(t, lane);
+  if (!eye->look) return vl_camera_view_pixel_area(eye, vl_dot(d, eye->ahead));
+  const float(*area)[VL_ROW_SIZE] = t->batch->two_way->area;
+  float at = vl_abs(area[0][lane] + distance * (area[1][lane] + distance * area[2][lane])) / (distance * distance);
+  return at < VL_INFINITY ? at : 0.0f; /* not for NaN */
 }
 
 /* Cell coordinates of the photon map, and the bucket of a cell. */

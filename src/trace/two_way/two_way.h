@@ -36,15 +36,34 @@
 
 #include "trace/trace.h"
 
-/* A perspective camera, with a round lens or a pinhole, to which light paths connect. Axes have unit length; lengths
- * are in world units. */
+/* A connection of a scene point to a point on the lens. */
+typedef struct vlCameraSample {
+  bool seen;
+  vlVec3 w;         /* unit, towards the lens */
+  vlVec3 from;      /* point on the lens */
+  float x, y;       /* film point, pixels */
+  float end;        /* fraction of the segment at which it crosses the near plane */
+  float per_square; /* 1 / (solid angle of a pixel * distance squared) */
+  float weight;     /* factor on the radiance */
+  float area[3];    /* of a camera of one's own: at distance t a pixel is |area[0] + area[1] t + area[2] t^2| large */
+} vlCameraSample;
+/* Fills the samples of n points (world space), n <= VL_BATCH. camera: vlCameraView.camera. */
+typedef void vlCameraLookFn(const struct vlCameraView *view, uint32_t n, const float *x, const float *y, const float *z,
+                            vlCameraSample *samples);
+
+/* A camera to which light paths connect: a perspective one with a round lens or a pinhole, or one of one's own. Axes
+ * have unit length; lengths are in world units. */
 typedef struct vlCameraView {
-  bool sees; /* false: the camera is of another kind, and there are no splats */
+  bool sees;            /* false: the camera is of another kind, and there are no splats */
+  vlCameraLookFn *look; /* of a camera of one's own: connects points to it; null: perspective. Then only it, `camera`
+                           and the bounds are set */
+  const void *camera;   /* for look: the compiled camera */
   vlVec3 position, right, down, ahead;
   float fx, fy, cx, cy;
   float lens_radius, focus; /* focus: focus distance (depth); lens_radius 0: pinhole */
   float near_plane, far_plane;
   float low_x, low_y, high_x, high_y; /* bounds of film points that reach a pixel */
+  float reach_x, reach_y; /* how far from its pixel's middle a camera sample may be, with room for rounding; pixels */
 } vlCameraView;
 
 /* A photon: a vertex of a light path. power is the flux divided by |w . geometric normal|; the radiance is the BSDF's

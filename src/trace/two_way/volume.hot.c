@@ -36,15 +36,13 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
-    const vlCameraView *eye = vl_eye_of(t, lane);
     float dense = extinction(t, i), distance = v->t[t->s->order[i]];
     r->cosine[i] = dense;
     r->a[i] = depth == 0 ? 0.0f : r->carry[lane] / dense;
     r->b[i] = depth == 0 ? 0.0f : vl_linked(t, r, lane, distance, 1.0f / dense);
-    if (depth > 0 || !eye->sees) continue;
-    float c = vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), eye->ahead);
-    r->b[i] =
-        t->def->two_way->paths * vl_camera_view_pixel_area(eye, c) * distance * distance / (dense * v->odds[lane]);
+    if (depth > 0 || !vl_eye_of(t, lane)->sees) continue;
+    float pixel = vl_eye_pixel(t, lane, vl_lane3(p->dx, p->dy, p->dz, i), distance);
+    r->b[i] = t->def->two_way->paths * pixel * distance * distance / (dense * v->odds[lane]);
   }
 }
 
@@ -196,10 +194,11 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   if (way->eye.lens_radius > 0.0f)
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
   uint32_t count = 0;
+  vl_look_from(t, r, n, p->ox, p->oy, p->oz);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlCameraSample view = vl_sample_camera(vl_eye_of(t, lane), o, sh->u1[i], sh->u2[i]);
+    vlCameraSample view = vl_view_of(t, r, i, lane, o, sh->u1[i], sh->u2[i]);
     if (!view.seen) continue;
     float phase = phase_of(t, i, view.w);
     vl_set_lane3(q->ox, q->oy, q->oz, count, o);
@@ -210,7 +209,7 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
     r->own[count] = way->paths / view.per_square;
     r->others[count] = way->light_only ? 0.0f : r->cosine[i] * (way->merged_volume + r->a[i] * phase + r->b[i]);
     for (int c = 0; c < 4; c++) {
-      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * phase;
+      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * phase * view.weight;
       v->density[c][count] = v->c.u[c][i];
     }
     v->shadow_medium[count] = v->c.medium[i];

@@ -5,8 +5,9 @@
  *   build/release/bin/example_own_sampler examples/corner.pbrt examples/own_sampler.jpg
  */
 #include <math.h>
-
-#include "example.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <velo/velo.h>
 
 static double hash(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   uint32_t h = a * 0x9e3779b9u ^ (b + 0x7f4a7c15u) * 0x85ebca6bu ^ (c + 0x165667b1u) * 0xc2b2ae35u ^ d * 0x27d4eb2fu;
@@ -27,11 +28,43 @@ static void numbers_of(void *user, const vlOwnSamples *s) {
   for (uint32_t i = 0; s->v && i < s->count; i++) s->v[i] = number(s, i, s->dimension + 1);
 }
 
+/* Of a call that fails: one line, and the end of the program. */
+static void must(vlResult result, const vlError *error) {
+  if (result == VL_OK) return;
+  fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
+  exit(1);
+}
+
 int main(int count, char **arguments) {
   static const vlOwnSampler sampler = {.name = "Kronecker", .numbers = numbers_of};
-  Example e = example_open(count, arguments, NULL);
-  e.defs->render.own_sampler = &sampler;
-  example_render(&e);
-  example_write(&e, arguments[2]);
-  return example_close(&e);
+  if (count != 3) {
+    fprintf(stderr, "usage: own_sampler SCENE IMAGE\n");
+    return 2;
+  }
+  vlError error = {0};
+  vlContextDef def = vl_default_context_def();
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  vlFilm *film;
+  vlImage *image;
+  vlCamera camera;
+  must(vl_context_create(&def, &context), &error);
+  must(vl_scene_create(context, &scene), &error);
+  must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
+  defs->render.own_sampler = &sampler;
+  must(vl_world_build(scene, &defs->build, &world, &error), &error);
+  must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
+  must(vl_film_create(context, &defs->film, &film), &error);
+  must(vl_render(world, &camera, film, &defs->render, NULL, &error), &error);
+  must(vl_film_develop(film, &defs->develop, &image), &error);
+  must(vl_image_write(image, arguments[2], NULL, &error), &error);
+  vl_image_destroy(image);
+  vl_film_destroy(film);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+  return 0;
 }

@@ -4,7 +4,9 @@
  *   own_tracer SCENE IMAGE
  *   build/release/bin/example_own_tracer examples/corner.pbrt examples/own_tracer.jpg
  */
-#include "example.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <velo/velo.h>
 
 static void radiance_of(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   (void)user;
@@ -28,11 +30,43 @@ static void radiance_of(void *user, vlTrace *trace, const vlOwnPaths *paths) {
   }
 }
 
+/* Of a call that fails: one line, and the end of the program. */
+static void must(vlResult result, const vlError *error) {
+  if (result == VL_OK) return;
+  fprintf(stderr, "%s: %s %s\n", vl_result_name(result), error->file, error->message);
+  exit(1);
+}
+
 int main(int count, char **arguments) {
   static const vlOwnTracer two_surfaces = {.name = "two surfaces", .radiance = radiance_of};
-  Example e = example_open(count, arguments, NULL);
-  e.defs->render.own_tracer = &two_surfaces;
-  example_render(&e);
-  example_write(&e, arguments[2]);
-  return example_close(&e);
+  if (count != 3) {
+    fprintf(stderr, "usage: own_tracer SCENE IMAGE\n");
+    return 2;
+  }
+  vlError error = {0};
+  vlContextDef def = vl_default_context_def();
+  vlContext *context;
+  vlScene *scene;
+  vlWorld *world;
+  vlFilm *film;
+  vlImage *image;
+  vlCamera camera;
+  must(vl_context_create(&def, &context), &error);
+  must(vl_scene_create(context, &scene), &error);
+  must(vl_scene_load(scene, arguments[1], NULL, &error), &error);
+  must(vl_scene_complete(scene, NULL, &error), &error); /* adds a camera and light if the file has none */
+  vlSceneDefs *defs = vl_scene_defs(scene);             /* the file's settings */
+  defs->render.own_tracer = &two_surfaces;
+  must(vl_world_build(scene, &defs->build, &world, &error), &error);
+  must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);
+  must(vl_film_create(context, &defs->film, &film), &error);
+  must(vl_render(world, &camera, film, &defs->render, NULL, &error), &error);
+  must(vl_film_develop(film, &defs->develop, &image), &error);
+  must(vl_image_write(image, arguments[2], NULL, &error), &error);
+  vl_image_destroy(image);
+  vl_film_destroy(film);
+  vl_world_destroy(world);
+  vl_scene_destroy(scene);
+  vl_context_destroy(context);
+  return 0;
 }

@@ -1,0 +1,39 @@
+/* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over the rows; what they need
+ * beyond a row is the kind's case. */
+#include "conformance.h"
+#include "files.h"
+#include "lights.h"
+#include "materials.h"
+#include "parameters.h"
+#include "shapes.h"
+#include "textures.h"
+
+static int setup(void **state) {
+  (void)state;
+  vlContextDef def = vl_default_context_def();
+  def.threads = 1;
+  if (!mkdtemp(folder) || vl_context_create(&def, &context) != VL_OK) return 1;
+  contexts[1] = context;
+  def.isa = VL_ISA_BASE;
+  return vl_context_create(&def, &contexts[0]) != VL_OK || !write_files();
+}
+
+static int teardown(void **state) {
+  (void)state;
+  remove_files();
+  vl_context_destroy(contexts[0]);
+  vl_context_destroy(context);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(parameters_of_all_families),
+      cmocka_unit_test(laws_of_materials),
+      cmocka_unit_test(laws_of_lights),
+      cmocka_unit_test(laws_of_emission),
+      cmocka_unit_test(laws_of_shapes),
+      cmocka_unit_test(laws_of_textures),
+  };
+  return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -37,7 +37,8 @@ static char folder[40] = "/tmp/velo_conformance_XXXXXX";
 /* Counts and prints the laws that a kind breaks, so that one run names them all. */
 static int failures;
 
-__attribute__((format(printf, 3, 4))) static void broken(const char *family, const char *kind, const char *format, ...) {
+__attribute__((format(printf, 3, 4))) static void broken(const char *family, const char *kind, const char *format,
+                                                         ...) {
   char text[400];
   va_list arguments;
   va_start(arguments, format);

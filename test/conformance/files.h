@@ -85,7 +85,8 @@ static const char ply[] =
 
 static bool write_files(void) {
   bool done = write_image("a.pfm", 0) && write_image("b.pfm", 1) && write_image("sky.pfm", 2) &&
-              write_image("other.pfm", 3) && write_image("normals.pfm", 4) && write_image("a.tga", 5) && write_quarters("quarters.pfm");
+              write_image("other.pfm", 3) && write_image("normals.pfm", 4) && write_image("a.tga", 5) &&
+              write_quarters("quarters.pfm");
   done = done && write_bytes("a.ply", ply, sizeof ply - 1);
   done = done && write_measured("a.bsdf", 0.3) && write_measured("b.bsdf", 0.1) && write_nanovdb("a.nvdb", 0) &&
          write_nanovdb("b.nvdb", 1);

@@ -31,7 +31,9 @@ static const LightCase point_light = {
         {.parameters = "\"point3 from\" [0 2 0] \"rgb I\" [4 2 1]",
          .known = {{0, 0, {1, .5, .25}}, {2, 0, {.5, .25, .125}}},
          .known_count = 2},
-        {.parameters = "\"point3 from\" [0 1 0] \"rgb I\" [1 1 1] \"float scale\" 3", .known = {{0, 0, {3, 3, 3}}}, .known_count = 1},
+        {.parameters = "\"point3 from\" [0 1 0] \"rgb I\" [1 1 1] \"float scale\" 3",
+         .known = {{0, 0, {3, 3, 3}}},
+         .known_count = 1},
         {.parameters = "\"point3 from\" [0 1 0] \"rgb I\" [1 1 1] \"float power\" 25.1327412",
          .known = {{0, 0, {2, 2, 2}}},
          .known_count = 1},
@@ -42,9 +44,14 @@ static const LightCase spot_light = {
     .variants = {
         {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [0 0 0] \"rgb I\" [1 1 1] \"float coneangle\" 40 \"float "
                        "conedeltaangle\" 20",
-         .known = {{0, 0, {1, 1, 1}}, {.612460, 0, {.363607, .363607, .363607}}, {.75, 0, {.063842, .063842, .063842}}, {1, 0, {0, 0, 0}}},
+         .known = {{0, 0, {1, 1, 1}},
+                   {.612460, 0, {.363607, .363607, .363607}},
+                   {.75, 0, {.063842, .063842, .063842}},
+                   {1, 0, {0, 0, 0}}},
          .known_count = 4},
-        {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]", .known = {{1, 0, {.5, 1, 2}}}, .known_count = 1},
+        {.parameters = "\"point3 from\" [0 1 0] \"point3 to\" [1 0 0] \"rgb I\" [1 2 4]",
+         .known = {{1, 0, {.5, 1, 2}}},
+         .known_count = 1},
     }};
 static const LightCase distant_light = {
     .variants = {
@@ -63,20 +70,24 @@ static const LightCase infinite_light = {
     }};
 /* The image has .2, .4, .6, .8 in its quarters: left top, right top, left bottom, right bottom. Its map has y upwards:
  * below the light, u goes with x and v with z. The distance is the root of 1.5. */
-static const LightCase goniometric_light = {
-    .before = "Translate 0 1 0",
-    .variants = {
-        {.parameters = "\"string filename\" \"quarters.pfm\" \"rgb I\" [1 1 1]",
-         .known = {{.5, .5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}}, {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}}, {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}}, {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
-         .known_count = 4},
-    }};
-static const LightCase projection_light = {
-    .before = "Translate 0 1 0 Rotate 90 1 0 0",
-    .variants = {
-        {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
-         .known = {{.5, .5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}}, {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}, {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}}, {1.2, 0, {0, 0, 0}}},
-         .known_count = 4},
-    }};
+static const LightCase goniometric_light = {.before = "Translate 0 1 0",
+                                            .variants = {
+                                                {.parameters = "\"string filename\" \"quarters.pfm\" \"rgb I\" [1 1 1]",
+                                                 .known = {{.5, .5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
+                                                           {-.5, .5, {.6 / 1.5, .6 / 1.5, .6 / 1.5}},
+                                                           {.5, -.5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
+                                                           {-.5, -.5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}}},
+                                                 .known_count = 4},
+                                            }};
+static const LightCase projection_light = {.before = "Translate 0 1 0 Rotate 90 1 0 0",
+                                           .variants = {
+                                               {.parameters = "\"string filename\" \"quarters.pfm\" \"float fov\" 90",
+                                                .known = {{.5, .5, {.4 / 1.5, .4 / 1.5, .4 / 1.5}},
+                                                          {-.5, .5, {.2 / 1.5, .2 / 1.5, .2 / 1.5}},
+                                                          {.5, -.5, {.8 / 1.5, .8 / 1.5, .8 / 1.5}},
+                                                          {1.2, 0, {0, 0, 0}}},
+                                                .known_count = 4},
+                                           }};
 
 #define LIGHT_CASE(NAME, name) &name##_light,
 static const LightCase *const light_cases[] = {VL_LIGHT_KINDS(LIGHT_CASE)};
@@ -222,7 +233,8 @@ static void check_emitting_shape(const char *family, const char *kind, const cha
                                  const char *emission) {
   static char text[TEXT];
   snprintf(text, sizeof text,
-           HEAD "WorldBegin " FLOOR "AttributeBegin AreaLightSource \"diffuse\" %s Translate .3 1.1 .2 Rotate 70 1 .2 .1 "
+           HEAD "WorldBegin " FLOOR
+                "AttributeBegin AreaLightSource \"diffuse\" %s Translate .3 1.1 .2 Rotate 70 1 .2 .1 "
                 "Shape \"%s\" %s AttributeEnd\n",
            emission, shape, parameters);
   check_hit_light(family, kind, emission, text, false);

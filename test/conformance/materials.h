@@ -56,7 +56,9 @@ static const MaterialCase mix_material = {{
      .albedo = {.75 * .5 + .25 * .8, .75 * .5 + .25 * .1, .75 * .5 + .25 * .1},
      .reflected = 1,
      .one_way = true}, /* each ray chooses one of the two */
-    {.parameters = "\"string materials\" [\"grey\" \"red\"] \"float amount\" 1", .albedo = {.8, .1, .1}, .reflected = 1},
+    {.parameters = "\"string materials\" [\"grey\" \"red\"] \"float amount\" 1",
+     .albedo = {.8, .1, .1},
+     .reflected = 1},
 }};
 static const MaterialCase principled_material = {{
     {.parameters = "\"rgb basecolor\" [.9 .5 .2] \"float metallic\" 0 \"float roughness\" .5", .reflected = 1},
@@ -76,7 +78,9 @@ static const MaterialCase diffuse_transmission_material = {{
     {.parameters = "\"rgb reflectance\" [.3 .4 .1] \"rgb transmittance\" [.5 .2 .6]",
      .albedo = {.8, .6, .7},
      .both_sides = true},
-    {.parameters = "\"rgb reflectance\" [0 0 0] \"rgb transmittance\" [1 1 1]", .albedo = {1, 1, 1}, .both_sides = true},
+    {.parameters = "\"rgb reflectance\" [0 0 0] \"rgb transmittance\" [1 1 1]",
+     .albedo = {1, 1, 1},
+     .both_sides = true},
     {.parameters = "\"rgb reflectance\" [.2 .2 .2] \"rgb transmittance\" [.4 .4 .4] \"float scale\" .5",
      .albedo = {.3, .3, .3},
      .reflected = 1.0 / 3,
@@ -91,8 +95,7 @@ static const MaterialCase coated_conductor_material = {{
 }};
 static const MaterialCase hair_material = {{
     {.parameters = "", .one_way = true},
-    {.parameters = "\"rgb reflectance\" [.8 .5 .3] \"float beta_m\" .6 \"float beta_n\" .7",
-     .one_way = true},
+    {.parameters = "\"rgb reflectance\" [.8 .5 .3] \"float beta_m\" .6 \"float beta_n\" .7", .one_way = true},
 }};
 static const MaterialCase measured_material = {{
     {.parameters = "\"string filename\" \"a.bsdf\"", .reflected = 1, .one_way = true}, /* a table of one direction */

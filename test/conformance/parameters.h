@@ -6,8 +6,8 @@
 #ifndef TEST_CONFORMANCE_PARAMETERS_H
 #define TEST_CONFORMANCE_PARAMETERS_H
 
-#include "parameter_cases.h"
 #include "conformance.h"
+#include "parameter_cases.h"
 
 enum { VALUES = 3 };
 
@@ -154,8 +154,73 @@ static const char *form_of(const Family *family, const vlKindRow *row) {
   return lamp ? lamps : family->form;
 }
 
+/* ---- written and read again -------------------------------------------------------------------------------------- */
+
+/* Counts what a format cannot hold. */
+static void count_loss(void *user, const char *what, uint64_t count) {
+  (void)what;
+  (void)count;
+  ++*(int *)user;
+}
+
+/* Writes the scene of the text to a file and renders what is read from it. False: the format loses a part of it. */
+static bool render_written(const char *text, const char *file, float pixels[PIXELS], vlError *error) {
+  char path[100];
+  int losses = 0;
+  snprintf(path, sizeof path, "%s/%s", folder, file);
+  vlScene *scene = load_text(context, text, error);
+  assert_non_null(scene);
+  vlSaveDef save = vl_default_save_def();
+  save.lost = count_loss;
+  save.lost_user = &losses;
+  vlResult result = vl_scene_save(scene, path, &save, error);
+  vl_scene_destroy(scene);
+  if (result != VL_OK || losses) return losses > 0;
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  if (vl_scene_load(scene, path, NULL, error) != VL_OK) {
+    vl_scene_destroy(scene);
+    return false;
+  }
+  vl_scene_defs(scene)->render.spp = SAMPLES;
+  vlImage *image = render_scene(context, scene, error);
+  if (!image) return false;
+  memcpy(pixels, vl_image_const_pixels(image), PIXELS * sizeof *pixels);
+  vl_image_destroy(image);
+  return true;
+}
+
+/* The largest difference of two images, over the brightest pixel. */
+static double difference(const float a[PIXELS], const float b[PIXELS]) {
+  double most = 1e-9;
+  double far = 0;
+  for (int i = 0; i < PIXELS; i++) {
+    most = fmax(most, fabs((double)a[i]));
+    far = fmax(far, fabs((double)a[i] - (double)b[i]));
+  }
+  return far / most;
+}
+
+/* The scene with a changed parameter, as another instruction set renders it and as the pbrt file that is written holds
+ * it. */
+static void check_text(const char *family, const char *kind, const char *name, const char *text,
+                       const float pixels[PIXELS]) {
+  static float other[PIXELS];
+  vlError error = {0};
+  assert_true(render_in(contexts[0], text, other, &error));
+  if (memcmp(other, pixels, sizeof other) != 0)
+    broken(family, kind, "\"%s\": other bits in another instruction set", name);
+  memcpy(other, pixels, sizeof other);
+  if (!render_written(text, "written.pbrt", other, &error))
+    broken(family, kind, "\"%s\": written, it cannot be read again: %s", name, error.message);
+  else if (difference(pixels, other) > (strcmp(kind, "principled") == 0 ? 0.02 : 1e-4)) /* pbrt has it not */
+    broken(family, kind, "\"%s\": written and read again, the image differs by %.2g", name, difference(pixels, other));
+}
+
+/* ---- the effect of a parameter ----------------------------------------------------------------------------------- */
+
 /* Whether the image changes with the parameter. */
-static bool has_effect(const char *form, const char *kind, const char *base, const char *value, const char *name) {
+static bool has_effect(const char *family, const char *form, const char *kind, const char *base, const char *value,
+                       const char *name) {
   static float plain[PIXELS];
   static float changed[PIXELS];
   static char parameters[TEXT];
@@ -176,7 +241,9 @@ static bool has_effect(const char *form, const char *kind, const char *base, con
   strcat(parameters, value);
   scene_text(text, form, kind, parameters);
   if (!render_text(text, changed, &error)) fail_msg("%s %s: %s\n%s", kind, name, error.message, text);
-  return memcmp(plain, changed, sizeof plain) != 0;
+  bool effect = memcmp(plain, changed, sizeof plain) != 0;
+  if (effect) check_text(family, kind, name, text, changed);
+  return effect;
 }
 
 static void check_parameter(const Family *family, const vlKindRow *row, const vlParameter *p) {
@@ -193,11 +260,92 @@ static void check_parameter(const Family *family, const vlKindRow *row, const vl
       broken(family->name, row->name, "\"%s\": the test has no value for it", p->name);
       return;
     }
-    effect = has_effect(form, c && c->directive ? c->directive : row->name, base, value, p->name);
+    effect = has_effect(family->name, form, c && c->directive ? c->directive : row->name, base, value, p->name);
   }
   bool expected = !(c && c->no_effect);
   if (effect != expected)
     broken(family->name, row->name, "\"%s\" %s", p->name, effect ? "has an effect after all" : "changes nothing");
+}
+
+/* ---- textures of parameters -------------------------------------------------------------------------------------- */
+
+static bool takes_texture(const vlParameter *p) {
+  bool input = p->type == VL_PARAMETER_FLOAT_INPUT || p->type == VL_PARAMETER_SPECTRUM_INPUT ||
+               p->type == VL_PARAMETER_EITHER_INPUT;
+  const uint32_t without =
+      VL_PARAMETER_NO_TEXTURE | VL_PARAMETER_FILE_NUMBER | VL_PARAMETER_RULE | VL_PARAMETER_SHORTHAND;
+  return p->name && input && !(p->flags & without);
+}
+
+/* The statements of textures, one for each parameter that takes one (only >= 0: for that one alone), and the
+ * parameters that name them. */
+static void append_textures(const vlKindRow *row, bool floats, int only, char textures[TEXT], char parameters[TEXT]) {
+  char line[200];
+  textures[0] = 0;
+  for (uint32_t k = 0; k < row->parameter_count; k++) {
+    const vlParameter *p = &row->parameters[k];
+    if (!takes_texture(p) || (only >= 0 && (int)k != only)) continue;
+    bool number = p->type == VL_PARAMETER_FLOAT_INPUT || (p->type == VL_PARAMETER_EITHER_INPUT && floats);
+    snprintf(line, sizeof line, "Texture \"used%u\" \"%s\" \"constant\" \"%s value\" %s\n", k,
+             number ? "float" : "spectrum", number ? "float" : "rgb", number ? ".3" : "[.3 .3 .3]");
+    strcat(textures, line);
+    snprintf(line, sizeof line, " \"texture %s\" \"used%u\"", p->name, k);
+    strcat(parameters, line);
+  }
+}
+
+/* The doctor finds none of them unused. */
+static void check_doctor(const Family *family, const vlKindRow *row, int only) {
+  static char textures[TEXT];
+  static char parameters[TEXT];
+  static char text[2 * TEXT];
+  static char form[2 * TEXT];
+  vlError error = {0};
+  const ParameterCase *kind_case = find_case(family->name, row->name, NULL);
+  bool material = strcmp(family->name, "materials") == 0;
+  parameters[0] = 0;
+  append_base(parameters, kind_case ? kind_case->base : NULL, NULL);
+  append_textures(row, is_float_texture(family, row), only, textures, parameters);
+  if (!*textures) return;
+  snprintf(form, sizeof form, "%s", form_of(family, row));
+  const char *named = strstr(form, NAMED);
+  const char *kept =
+      "MakeNamedMaterial \"grey\" \"string type\" \"diffuse\"\n"
+      "MakeNamedMaterial \"red\" \"string type\" \"diffuse\"\n";
+  bool mixes = (material && strcmp(row->name, "mix") == 0) || is_float_texture(family, row);
+  const char *start = strstr(form, "WorldBegin") + strlen("WorldBegin");
+  int head = (int)((named ? named : start) - form);
+  const char *rest = named ? named + strlen(NAMED) : start;
+  snprintf(text, sizeof text, "%.*s\n%s%s%s", head, form, mixes ? kept : "", textures, rest);
+  strcpy(form, text);
+  scene_text(text, form, row->name, parameters);
+  vlScene *scene = load_text(context, text, &error);
+  if (!scene && only < 0) { /* some exclude each other */
+    for (uint32_t k = 0; k < row->parameter_count && row->parameter_count > 1; k++) check_doctor(family, row, (int)k);
+    return;
+  }
+  if (!scene) return; /* it needs another parameter, beside which the first attempt had it */
+  vlCheckDef def = vl_default_check_def();
+  vlCheck *check = NULL;
+  def.names_only = true;
+  assert_int_equal(vl_scene_check(scene, &def, &check, &error), VL_OK);
+  for (uint32_t i = 0; i < vl_check_count(check); i++) {
+    const vlFinding *finding = vl_check_finding(check, i);
+    if (finding->kind == VL_FINDING_UNUSED) broken(family->name, row->name, "the doctor: %s", finding->message);
+  }
+  vl_check_destroy(check);
+  vl_scene_destroy(scene);
+}
+
+static void textures_of_parameters(void **state) {
+  (void)state;
+  for (size_t f = 0; f < 2; f++) {
+    const Family *family = &families[f];
+    const vlKindFamily *rows = vl_kind_family_find(family->name);
+    for (uint32_t i = 0; i < rows->kind_count; i++)
+      if (rows->rows[i]->name) check_doctor(family, rows->rows[i], -1);
+  }
+  expect_no_failures();
 }
 
 static void parameters_of_all_families(void **state) {

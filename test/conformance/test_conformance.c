@@ -1,12 +1,15 @@
-/* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over the rows; what they need
- * beyond a row is the kind's case. */
+/* test_conformance.c: every kind of every family obeys the laws of its family. The laws go over the rows; what they
+ * need beyond a row is the kind's case. */
+#include "cameras.h"
 #include "conformance.h"
 #include "files.h"
 #include "lights.h"
 #include "materials.h"
 #include "parameters.h"
+#include "sampling.h"
 #include "shapes.h"
 #include "textures.h"
+#include "transport.h"
 
 static int setup(void **state) {
   (void)state;
@@ -29,11 +32,18 @@ static int teardown(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(parameters_of_all_families),
+      cmocka_unit_test(textures_of_parameters),
       cmocka_unit_test(laws_of_materials),
       cmocka_unit_test(laws_of_lights),
       cmocka_unit_test(laws_of_emission),
       cmocka_unit_test(laws_of_shapes),
       cmocka_unit_test(laws_of_textures),
+      cmocka_unit_test(laws_of_projections),
+      cmocka_unit_test(laws_of_distortions),
+      cmocka_unit_test(laws_of_samplers),
+      cmocka_unit_test(laws_of_filters),
+      cmocka_unit_test(laws_of_media),
+      cmocka_unit_test(laws_of_tracers),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -24,7 +24,12 @@ typedef struct TextureCase {
 } TextureCase;
 
 static const TextureCase constant_texture = {{
-    {.parameters = "\"rgb value\" [.7 .4 .2]", .low = .2, .high = .7, .even = true, .known = {{.3, .4, {.7, .4, .2}}}, .known_count = 1},
+    {.parameters = "\"rgb value\" [.7 .4 .2]",
+     .low = .2,
+     .high = .7,
+     .even = true,
+     .known = {{.3, .4, {.7, .4, .2}}},
+     .known_count = 1},
 }};
 static const TextureCase scale_texture = {{
     {.parameters = "\"rgb tex\" [.8 .4 .2] \"float scale\" .5",
@@ -76,7 +81,8 @@ static const TextureCase image_texture = {{
      .high = .8,
      .known = {{.25, .25, {.6, .6, .6}}, {.75, .25, {.8, .8, .8}}, {.25, .75, {.2, .2, .2}}, {.75, .75, {.4, .4, .4}}},
      .known_count = 4},
-    {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float scale\" .5 \"string filter\" \"point\"",
+    {.parameters =
+         "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float scale\" .5 \"string filter\" \"point\"",
      .low = .6,
      .high = .9,
      .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}},
@@ -101,7 +107,10 @@ static const TextureCase bilerp_texture = {{
     {.parameters = "\"rgb v00\" [.1 .1 .1] \"rgb v01\" [.3 .3 .3] \"rgb v10\" [.5 .5 .5] \"rgb v11\" [.9 .9 .9]",
      .low = .1,
      .high = .9,
-     .known = {{.001, .001, {.1, .1, .1}}, {.001, .999, {.3, .3, .3}}, {.999, .001, {.5, .5, .5}}, {.5, .5, {.45, .45, .45}}},
+     .known = {{.001, .001, {.1, .1, .1}},
+               {.001, .999, {.3, .3, .3}},
+               {.999, .001, {.5, .5, .5}},
+               {.5, .5, {.45, .45, .45}}},
      .known_count = 4},
 }};
 /* The noise is 0 at points of the lattice: here at uv = (.5, .5), which is the origin. */
@@ -172,7 +181,7 @@ static void ask_texture(Probe *probe, vlTrace *trace, const vlOwnPaths *paths) {
   if (!v->even && !((double)(high - low) > 0.02)) broken("textures", t->kind, "%s: no pattern", v->parameters);
 }
 
-#define HALVES                                                                                          \
+#define HALVES                                                                                             \
   "Texture \"halves\" \"float\" \"checkerboard\" \"float uscale\" 2 \"float vscale\" 0 \"float tex1\" .1 " \
   "\"float tex2\" .8\n"
 
@@ -184,12 +193,14 @@ static void laws_of_textures(void **state) {
     const vlKindRow *row = family->rows[k];
     const TextureCase *c = texture_cases[k];
     assert_true(!row->name || c->variants[0].parameters);
-    const char *form = row->traits & VL_TEXTURE_FLOAT_ONLY
-                           ? HEAD "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
-                                  "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
-                                  "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP
-                           : HEAD "WorldBegin LightSource \"infinite\" " HALVES "Texture \"t\" \"spectrum\" %s "
-                                  "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP;
+    const char *form = row->traits & VL_TEXTURE_FLOAT_ONLY ? HEAD
+                           "WorldBegin LightSource \"infinite\" Texture \"f\" \"float\" %s Texture \"t\" "
+                           "\"spectrum\" \"scale\" \"rgb tex\" [1 1 1] \"texture scale\" \"f\" "
+                           "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP
+                                                           : HEAD
+                           "WorldBegin LightSource \"infinite\" " HALVES
+                           "Texture \"t\" \"spectrum\" %s "
+                           "Material \"diffuse\" \"texture reflectance\" \"t\" " SQUARE_UP;
     for (int i = 0; i < TEXTURE_VARIANTS && row->name && c->variants[i].parameters; i++) {
       TextureLaws t = {.kind = row->name, .variant = &c->variants[i], .rays = new_rays()};
       t.hits = calloc(1, sizeof *t.hits);

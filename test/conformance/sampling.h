@@ -1,0 +1,260 @@
+/* conformance/sampling.h: the laws of samplers (numbers in [0, 1), even, pairs not correlated, as many in each cell as
+ * the kind promises) and of pixel filters (they integrate to 1, and spread light as their formula says). */
+#ifndef TEST_CONFORMANCE_SAMPLING_H
+#define TEST_CONFORMANCE_SAMPLING_H
+
+#include "conformance.h"
+
+/* ---- samplers ---------------------------------------------------------------------------------------------------- */
+
+enum { SETS = 64, SET = 64, SIDE = 8 }; /* pixels; samples of each; cells along a side */
+
+typedef struct SamplerCase {
+  bool rows;   /* each of 64 intervals has one u of a pixel, and one v */
+  bool cells;  /* each of 8 x 8 cells has one pair of a pixel */
+  bool centre; /* numbers are the centres of cells: not even inside */
+  bool hash;   /* no better than independent numbers */
+} SamplerCase;
+
+static const SamplerCase independent_sampler = {.hash = true};
+static const SamplerCase regular_sampler = {.cells = true, .centre = true};
+static const SamplerCase stratified_sampler = {.cells = true};
+static const SamplerCase nrooks_sampler = {.rows = true};
+static const SamplerCase multi_jittered_sampler = {.rows = true, .cells = true};
+static const SamplerCase hammersley_sampler = {.rows = true, .cells = true};
+static const SamplerCase halton_sampler = {0};
+static const SamplerCase sobol_sampler = {.rows = true, .cells = true};
+static const SamplerCase zsobol_sampler = {.rows = true, .cells = true};
+
+#define SAMPLER_CASE(NAME, name) &name##_sampler,
+static const SamplerCase *const sampler_cases[] = {VL_SAMPLER_KINDS(SAMPLER_CASE)};
+
+typedef struct Numbers2 {
+  double u[SETS][SET], v[SETS][SET], other[SETS][SET];
+  uint32_t count;
+} Numbers2;
+
+static void take_numbers(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  static float u[VL_OWN_BATCH];
+  static float v[VL_OWN_BATCH];
+  static float other[VL_OWN_BATCH];
+  Numbers2 *n = user;
+  vl_trace_numbers(trace, 0, u, v);
+  vl_trace_numbers(trace, 1, other, NULL);
+  for (uint32_t i = 0; i < paths->count; i++) {
+    uint32_t pixel = (uint32_t)(paths->y[i] * 8 + paths->x[i]);
+    uint32_t index = paths->index[i];
+    assert_true(pixel < SETS && index < SET);
+    n->u[pixel][index] = (double)u[i];
+    n->v[pixel][index] = (double)v[i];
+    n->other[pixel][index] = (double)other[i];
+    n->count++;
+  }
+}
+
+static void draw_numbers(vlSamplerKind kind, Numbers2 *n) {
+  vlError error = {0};
+  vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
+  assert_non_null(scene);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  const vlOwnTracer tracer = {.name = "numbers", .radiance = take_numbers, .user = n};
+  defs->camera = vl_default_camera_def(8, 8);
+  defs->film = vl_default_film_def(8, 8);
+  defs->film.filter = vl_default_pixel_filter(VL_PIXEL_FILTER_BOX);
+  defs->render.spp = SET;
+  defs->render.sequence = SET;
+  defs->render.sampler = kind;
+  defs->render.share_samples = false;
+  defs->render.own_tracer = &tracer;
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image) fail_msg("%s", error.message);
+  vl_image_destroy(image);
+  assert_int_equal(n->count, SETS * SET);
+}
+
+/* Chi-square over 256 intervals of all numbers, as standard deviations above what independent numbers have. */
+static double unevenness(double numbers[SETS][SET]) {
+  enum { BINS = 256 };
+  double bins[BINS] = {0};
+  double sum = 0;
+  for (int p = 0; p < SETS; p++)
+    for (int i = 0; i < SET; i++) bins[(int)(numbers[p][i] * BINS)]++;
+  for (int k = 0; k < BINS; k++) {
+    double expected = (double)SETS * SET / BINS;
+    sum += (bins[k] - expected) * (bins[k] - expected) / expected;
+  }
+  return (sum - (BINS - 1)) / sqrt(2.0 * (BINS - 1));
+}
+
+static double correlation(double a[SETS][SET], double b[SETS][SET]) {
+  double sum = 0;
+  for (int p = 0; p < SETS; p++)
+    for (int i = 0; i < SET; i++) sum += (a[p][i] - 0.5) * (b[p][i] - 0.5);
+  return 12 * sum / (SETS * SET);
+}
+
+/* The variance of the mean of f over a pixel, times the samples, over that of independent numbers. */
+static double spread(double u[SETS][SET], double v[SETS][SET]) {
+  Mean m = {0};
+  for (int p = 0; p < SETS; p++) {
+    double sum = 0;
+    for (int i = 0; i < SET; i++) sum += u[p][i] * v[p][i];
+    mean_add(&m, sum / SET);
+  }
+  double variance = variance_of_mean(&m) * SETS;
+  return variance * SET / (1.0 / 9 - 1.0 / 16);
+}
+
+static int empty_cells(double numbers[SETS][SET], double others[SETS][SET], int columns, int rows) {
+  int empty = 0;
+  for (int p = 0; p < SETS; p++) {
+    bool used[SET] = {false};
+    for (int i = 0; i < SET; i++) used[(int)(others[p][i] * rows) * columns + (int)(numbers[p][i] * columns)] = true;
+    for (int i = 0; i < SET; i++) empty += !used[i];
+  }
+  return empty;
+}
+
+static void laws_of_samplers(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("samplers");
+  for (uint32_t k = 0; k < family->kind_count; k++) {
+    const SamplerCase *c = sampler_cases[k];
+    const char *name = family->rows[k]->name;
+    Numbers2 *n = calloc(1, sizeof *n);
+    draw_numbers((vlSamplerKind)k, n);
+    uint32_t outside = 0;
+    for (int p = 0; p < SETS; p++)
+      for (int i = 0; i < SET; i++)
+        outside += !(n->u[p][i] >= 0 && n->u[p][i] < 1 && n->v[p][i] >= 0 && n->v[p][i] < 1);
+    if (outside) {
+      broken("samplers", name, "%u numbers outside [0, 1)", outside);
+      free(n);
+      continue;
+    }
+    double uneven = fmax(unevenness(n->u), unevenness(n->v));
+    if (!c->centre && !(uneven < 5)) broken("samplers", name, "uneven by %.1f standard deviations", uneven);
+    double pairs = fmax(fabs(correlation(n->u, n->v)), fabs(correlation(n->u, n->other)));
+    if (!(pairs < 5.0 / 64)) broken("samplers", name, "numbers correlate by %.3f", pairs);
+    if (c->rows && (empty_cells(n->u, n->u, SET, 1) || empty_cells(n->v, n->v, SET, 1)))
+      broken("samplers", name, "%d columns and %d rows are empty", empty_cells(n->u, n->u, SET, 1),
+             empty_cells(n->v, n->v, SET, 1));
+    if (c->cells && empty_cells(n->u, n->v, SIDE, SIDE))
+      broken("samplers", name, "%d cells are empty", empty_cells(n->u, n->v, SIDE, SIDE));
+    double ratio = spread(n->u, n->v);
+    if (!(c->hash ? ratio > 0.5 && ratio < 1.7 : ratio < 0.5))
+      broken("samplers", name, "a mean has %.3f of the variance of independent numbers", ratio);
+    free(n);
+  }
+  expect_no_failures();
+}
+
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
+
+/* The formulas, written apart from the library; x: distance from the centre, pixels. */
+typedef double FilterShape(double x, double radius);
+static double box_shape(double x, double radius) {
+  (void)x;
+  (void)radius;
+  return 1;
+}
+static double triangle_shape(double x, double radius) {
+  return radius - x;
+}
+static double gaussian_shape(double x, double radius) {
+  return exp(-x * x / (2 * .5 * .5)) - exp(-radius * radius / (2 * .5 * .5));
+}
+static double mitchell_shape(double x, double radius) {
+  double b = 1.0 / 3;
+  double c = 1.0 / 3;
+  double t = 2 * x / radius;
+  double near = (12 - 9 * b - 6 * c) * t * t * t + (-18 + 12 * b + 6 * c) * t * t + 6 - 2 * b;
+  double far = (-b - 6 * c) * t * t * t + (6 * b + 30 * c) * t * t + (-12 * b - 48 * c) * t + 8 * b + 24 * c;
+  return t < 1 ? near : far;
+}
+static double sinc_of(double x) {
+  return x == 0 ? 1 : sin(PI * x) / (PI * x);
+}
+static double lanczos_shape(double x, double radius) {
+  (void)radius;
+  return sinc_of(x) * sinc_of(x / 3);
+}
+static double blackman_harris_shape(double x, double radius) {
+  double t = PI * (x / radius + 1);
+  return 0.35875 - 0.48829 * cos(t) + 0.14128 * cos(2 * t) - 0.01168 * cos(3 * t);
+}
+
+#define FILTER_CASE(NAME, name) name##_shape,
+static FilterShape *const filter_shapes[] = {VL_PIXEL_FILTER_KINDS(FILTER_CASE)};
+
+enum { FILTERED = 16 };
+
+/* Light through the pixel in the middle alone, seen by an orthographic camera of one unit per pixel. */
+static void light_middle(void *user, vlTrace *trace, const vlOwnPaths *paths) {
+  (void)user;
+  (void)trace;
+  for (uint32_t i = 0; i < paths->count; i++) {
+    double x = (double)paths->rays->origin[0][i];
+    double y = (double)paths->rays->origin[1][i];
+    for (int c = 0; c < 3; c++) paths->radiance[c][i] = fabs(x) < 0.5 && fabs(y) < 0.5;
+    paths->alpha[i] = 1;
+  }
+}
+
+/* The share of the light of a pixel that one `far` pixels away gets, along one axis. */
+static double filtered_share(FilterShape *shape, double radius, int far) {
+  enum { STEPS = 4000 };
+  double whole = 0;
+  double part = 0;
+  for (int i = 0; i < STEPS; i++) {
+    double across = ((i + 0.5) / STEPS * 2 - 1) * radius;
+    double value = shape(fabs(across), radius);
+    whole += value;
+    part += fabs(across - far) < 0.5 ? value : 0;
+  }
+  return part / whole;
+}
+
+static void check_filter(vlPixelFilterKind kind, const char *name, bool share) {
+  vlError error = {0};
+  vlScene *scene = load_text(context, HEAD "WorldBegin LightSource \"infinite\"", &error);
+  assert_non_null(scene);
+  vlSceneDefs *defs = vl_scene_defs(scene);
+  const vlOwnTracer tracer = {.name = "middle", .radiance = light_middle};
+  defs->camera = vl_default_camera_def(FILTERED + 1, FILTERED + 1);
+  defs->camera.projection = VL_PROJECTION_ORTHOGRAPHIC;
+  defs->camera.fx = defs->camera.fy = 1;
+  defs->film = vl_default_film_def(FILTERED + 1, FILTERED + 1);
+  defs->film.filter = vl_default_pixel_filter(kind);
+  defs->build.color = VL_COLOR_RGB;
+  defs->render.spp = 1024;
+  defs->render.sampler = VL_SAMPLER_ZSOBOL;
+  defs->render.share_samples = share;
+  defs->render.own_tracer = &tracer;
+  double radius = (double)defs->film.filter.radius_x;
+  vlImage *image = render_scene(context, scene, &error);
+  if (!image) fail_msg("%s", error.message);
+  double sum = 0;
+  double worst = 0;
+  double shares[2 * FILTERED];
+  for (int k = 0; k < 2 * FILTERED; k++) shares[k] = filtered_share(filter_shapes[kind], radius, k - FILTERED / 2);
+  for (uint32_t y = 0; y <= FILTERED; y++)
+    for (uint32_t x = 0; x <= FILTERED; x++) {
+      double value = (double)vl_image_get(image, x, y, 1);
+      sum += value;
+      worst = fmax(worst, fabs(value - shares[x] * shares[y]));
+    }
+  vl_image_destroy(image);
+  if (!(fabs(sum - 1) < 0.02)) broken("filters", name, "%s: light of 1 becomes %.4f", share ? "shared" : "own", sum);
+  if (!(worst < 0.01)) broken("filters", name, "%s: a pixel is off by %.4f", share ? "shared" : "own", worst);
+}
+
+static void laws_of_filters(void **state) {
+  (void)state;
+  const vlKindFamily *family = vl_kind_family_find("filters");
+  for (uint32_t k = 0; k < family->kind_count; k++)
+    for (int share = 0; share < 2; share++) check_filter((vlPixelFilterKind)k, family->rows[k]->name, share == 1);
+  expect_no_failures();
+}
+
+#endif

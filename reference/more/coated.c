@@ -65,6 +65,46 @@ static spectrum sample_base(const bsdf *b, vector wo, sampler *s, vector *wi) {
   return density > 0 ? scaled(1 / density, value) : gray(0);
 }
 
+/* ---- a smooth metal under a smooth coat -------------------------------------------------------------------------- */
+
+/* The sum of all reflections: F + T^2 R a^2 / (1 - F R a^2), R of the metal, a what one way through the coat leaves. */
+static spectrum all_reflections(const bsdf *b, vector wo) {
+  vector down;
+  double eta;
+  double f = reflected_by_glass(wo.z, b->ior);
+  if (!refract(wo, make_vector(0, 0, 1), b->ior, &eta, &down)) return gray(1);
+  double twice = square(absorbed(b->more.coat_thickness, down));
+  bsdf_sample metal;
+  sample_conductor(b, negate(down), NULL, &metal);
+  for (int i = 0; i < CHANNELS; i++) {
+    double r = metal.weight.c[i] * twice;
+    metal.weight.c[i] = f + square(1 - f) * r / (1 - f * r);
+  }
+  return metal.weight;
+}
+
+/* What light from wi, which goes down inside along `in`, adds at height z of the medium: straight, by the metal, and by
+ * all further reflections between metal and coat. No walk finds these directions. */
+static spectrum haze_from(const bsdf *b, vector travel, double z, vector wi, vector in) {
+  double thickness = b->more.coat_thickness, g = b->more.coat_g;
+  vector up = make_vector(in.x, in.y, -in.z);
+  double straight = absorbed(thickness - z, in) * phase(g, negate(travel), negate(in));
+  double mirrored = absorbed(thickness + z, in) * phase(g, negate(travel), negate(up));
+  double turn = reflected_by_glass(wi.z, b->ior) * square(absorbed(thickness, in));
+  bsdf_sample metal;
+  sample_conductor(b, negate(in), NULL, &metal);
+  spectrum sum = b->more.coat_albedo;
+  for (int i = 0; i < CHANNELS; i++) {
+    double r = metal.weight.c[i];
+    sum.c[i] *= (straight + r * mirrored) / (1 - r * turn);
+  }
+  return sum;
+}
+
+static bool is_all_smooth(const bsdf *b, const bsdf *coat) {
+  return b->more.metal && is_smooth(coat) && is_smooth(b);
+}
+
 /* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
 /* A mirror under a rough coat: no light that comes in at wi has just the direction that the mirror needs. So paths ask
@@ -80,15 +120,21 @@ static spectrum light_from(const bsdf *b, const bsdf *coat, vector travel, doubl
   double eta;
   double through = go_through(coat, wi, s, &in, &eta);
   if (through == 0) return gray(0);
-  through *= absorbed(b->more.coat_thickness - z, in) * fabs(wi.z / in.z);
+  through *= fabs(wi.z / in.z);
+  if (!at_base && is_all_smooth(b, coat)) return scaled(through, haze_from(b, travel, z, wi, in));
+  through *= absorbed(b->more.coat_thickness - z, in);
   if (at_base) return scaled(through, base_value(b, negate(travel), negate(in)));
   return scaled(through * phase(b->more.coat_g, negate(travel), negate(in)), b->more.coat_albedo);
+}
+
+static bool has_haze(const bsdf *b) {
+  return largest(b->more.coat_albedo) > 0 && b->more.coat_thickness > 0;
 }
 
 /* One walk from wo. Its height is z: the base's is 0. */
 static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, sampler *s) {
   double eta, z = b->more.coat_thickness;
-  bool at_exit = asks_at_exit(b, coat), medium = largest(b->more.coat_albedo) > 0 && z > 0;
+  bool at_exit = asks_at_exit(b, coat), medium = has_haze(b);
   vector travel;
   double entered = go_through(coat, wo, s, &travel, &eta);
   spectrum sum = gray(0), throughput = gray(entered / square(eta));
@@ -118,28 +164,6 @@ static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, samp
   return sum;
 }
 
-/* ---- a smooth metal under a smooth coat -------------------------------------------------------------------------- */
-
-/* The sum of all reflections: F + T^2 R a^2 / (1 - F R a^2), R of the metal, a what one way through the coat leaves. */
-static spectrum all_reflections(const bsdf *b, vector wo) {
-  vector down;
-  double eta;
-  double f = reflected_by_glass(wo.z, b->ior);
-  if (!refract(wo, make_vector(0, 0, 1), b->ior, &eta, &down)) return gray(1);
-  double twice = square(absorbed(b->more.coat_thickness, down));
-  bsdf_sample metal;
-  sample_conductor(b, negate(down), NULL, &metal);
-  for (int i = 0; i < CHANNELS; i++) {
-    double r = metal.weight.c[i] * twice;
-    metal.weight.c[i] = f + square(1 - f) * r / (1 - f * r);
-  }
-  return metal.weight;
-}
-
-static bool is_all_smooth(const bsdf *b, const bsdf *coat) {
-  return b->more.metal && is_smooth(coat) && is_smooth(b);
-}
-
 /* ---- directions -------------------------------------------------------------------------------------------------- */
 
 /* Roughly what the base's mirrors look like from above. */
@@ -154,10 +178,11 @@ static double mirror_density(const bsdf *mirrors, vector wo, vector wi) {
 }
 
 /* The density of sampled directions: half by the cosine, or by a metal's mirrors, half by the coat's reflection. A
- * smooth coat's reflection is none of these, and leaves its share out. */
+ * smooth coat's reflection is none of these, and leaves its share out: half where the metal is smooth, too. */
 static double direction_density(const bsdf *b, const bsdf *coat, vector wo, vector wi) {
   bsdf base = seen_base(b);
   double density = fabs(wi.z) / PI;
+  if (is_all_smooth(b, coat)) return 0.5 * density;
   if (b->more.metal) density = 0.2 * density + 0.8 * mirror_density(&base, wo, wi);
   if (is_smooth(coat)) return (1 - reflected_by_glass(wo.z, coat->ior)) * density;
   return 0.5 * density + 0.5 * mirror_density(coat, wo, wi);
@@ -169,7 +194,7 @@ enum { WALKS = 4 };
 spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
   bsdf coat = coat_of(b);
   double ignored;
-  if (wo.z * wi.z <= 0 || is_all_smooth(b, &coat)) return gray(0);
+  if (wo.z * wi.z <= 0 || (is_all_smooth(b, &coat) && !has_haze(b))) return gray(0);
   if (wo.z < 0) {
     wo = negate(wo);
     wi = negate(wi);
@@ -185,13 +210,14 @@ bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   vector o = wo.z < 0 ? negate(wo) : wo;
   double reflected = is_smooth(&coat) ? reflected_by_glass(o.z, coat.ior) : 0.5;
   bool all_smooth = is_all_smooth(b, &coat);
-  bool reflects = all_smooth || next_number(s) < reflected;
+  if (all_smooth) reflected = has_haze(b) ? 0.5 : 1;
+  bool reflects = next_number(s) < reflected;
   result->specular = reflects && is_smooth(&coat);
-  if (all_smooth) result->weight = all_reflections(b, o);
+  if (all_smooth) result->weight = scaled(1 / reflected, all_reflections(b, o));
   vector wi = sample_cosine_hemisphere(s);
   if (reflects)
     wi = reflect(o, mirror_normal(&coat, o, s));
-  else if (b->more.metal && next_number(s) < 0.8)
+  else if (b->more.metal && !all_smooth && next_number(s) < 0.8)
     wi = reflect(o, sample_visible_normal(&base, o, s));
   result->wi = wo.z < 0 ? negate(wi) : wi;
   return wi.z > 0;

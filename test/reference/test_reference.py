@@ -100,6 +100,18 @@ def coated_and_thin_materials_agree_with_velo():
 
 
 @case
+def haze_between_a_smooth_coat_and_a_smooth_metal_agrees_with_velo():
+    """Both mirrors are deltas: only a path that knows all their reflections leads from the haze to a light."""
+    path = scene("haze.pbrt", 'WorldBegin\nLightSource "infinite" "rgb L" [ .4 .5 .7 ]\n'
+                 'LightSource "distant" "point3 from" [ 1 1 -2 ] "point3 to" [ 0 0 0 ] "rgb L" [ 2 1.8 1.5 ]\n'
+                 'Material "coatedconductor" "float interface.roughness" 0 "float conductor.roughness" 0 "float thickness" .3 '
+                 '"rgb albedo" [ .8 .6 .3 ] "rgb reflectance" [ .9 .6 .3 ]\nShape "sphere" "float radius" .8\n')
+    options = ("--max-depth", "2")
+    z = worst_z(render_velo(path, "velo_haze.exr", 256, *options), render(path, "haze.exr", 256, *options))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
 def procedural_textures_bumps_and_normal_maps_agree_with_velo():
     path, size = os.path.join(SOURCE, "scenes/reference/textures.pbrt"), ("--resolution", "32x24")
     z = worst_z(render_velo(path, "velo_textures.exr", 1024, *size), render(path, "textures.exr", 512, *size))

@@ -3,7 +3,7 @@
  * first pixel's centre is (0, 0). */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 typedef struct {
   const char *name;
@@ -37,7 +37,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
                               "basalt: unknown camera_type \"%s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
                               "eucm, ucm, fov",
                               vl_short_text(name).text);
-  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, values, names[i], &f[i]);
+  if (result == VL_OK) result = vl_camera_read_named(file, values, names, 4, false, f);
   for (int i = 0; i < 2 && model->shapes[i] && result == VL_OK; i++)
     result = vl_camera_number(file, values, model->shapes[i], &d->shape[i]);
   uint32_t count = 0;
@@ -60,7 +60,7 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *pose, vlCamera
   static const char *const names[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
   double v[7], r[9], m[16] = {[15] = 1.0};
   vlResult result = VL_OK;
-  for (int i = 0; i < 7 && result == VL_OK; i++) result = vl_camera_number(file, pose, names[i], &v[i]);
+  if (result == VL_OK) result = vl_camera_read_named(file, pose, names, 7, false, v);
   if (result != VL_OK) return result;
   if (!vl_rotation_from_quaternion(v + 3, r))
     return vl_camera_wrong_in(file, pose, "qw", "basalt: the quaternion of T_imu_cam is zero");
@@ -105,7 +105,7 @@ static bool is_basalt(const json_t *tree) {
 
 static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], r[9], t[3], q[4];
+  double k[14], r[9], q[4];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
@@ -116,19 +116,18 @@ static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *rec
     if (models[i].family == family && !model) model = &models[i];
   if (!model || (family == VL_LENS_OPENCV && n > 8)) return vl_camera_no_model(file, &record->camera);
   for (int i = 0; i < 9; i++) r[i] = c.world_from_camera[4 * (i / 3) + i % 3];
-  for (int i = 0; i < 3; i++) t[i] = c.world_from_camera[4 * i + 3];
   vl_rotation_to_quaternion(r, q);
-  vl_camera_put(text, "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": %.17g, \"py\": %.17g, \"pz\": %.17g, ",
-                t[0] + 0.0, t[1] + 0.0, t[2] + 0.0);
-  vl_camera_put(text, "\"qx\": %.17g, \"qy\": %.17g, \"qz\": %.17g, \"qw\": %.17g}\n    ],\n", q[1] + 0.0, q[2] + 0.0,
-                q[3] + 0.0, q[0] + 0.0);
-  vl_camera_put(text, "    \"intrinsics\": [\n      {\"camera_type\": \"%s\", \"intrinsics\": {", model->name);
-  vl_camera_put(text, "\"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g", c.fx, c.fy, c.cx - 0.5, c.cy - 0.5);
+  VL_PUT_FORM(
+      text, record, &c,
+      "{\n  \"value0\": {\n    \"T_imu_cam\": [\n      {\"px\": $centre@0, \"py\": $centre@1, \"pz\": $centre@2, "
+      "\"qx\": $q@1, \"qy\": $q@2, \"qz\": $q@3, \"qw\": $q@0}\n    ],\n"
+      "    \"intrinsics\": [\n      {\"camera_type\": \"$type\", \"intrinsics\": {\"fx\": $fx, \"fy\": $fy, "
+      "\"cx\": $cx0, \"cy\": $cy0",
+      VL_WORD("type", model->name), VL_VALUES("q", q, 4));
   for (int i = 0; i < 2 && model->shapes[i]; i++) vl_camera_put(text, ", \"%s\": %.17g", model->shapes[i], c.shape[i]);
   for (int i = 0; i < 8 && model->lens[i]; i++) vl_camera_put(text, ", \"%s\": %.17g", model->lens[i], k[i] + 0.0);
   if (family == VL_LENS_OPENCV) vl_camera_put(text, ", \"rpmax\": 0");
-  vl_camera_put(text, "}}\n    ],\n    \"resolution\": [[%u, %u]]\n  }\n}\n", c.width, c.height);
-  return VL_OK;
+  return vl_camera_put_form(text, record, &c, NULL, "}}\n    ],\n    \"resolution\": [[$width, $height]]\n  }\n}\n");
 }
 
 const vlCameraFormat vl_format_basalt = {

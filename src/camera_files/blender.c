@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
@@ -20,8 +20,8 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
     return vl_camera_wrong_in(file, tree, "sensor_fit",
                               "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
                               vl_short_text(fit).text);
-  vlResult result = vl_camera_side(file, tree, "resolution_x", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, "resolution_y", &d->height);
+  vlResult result =
+      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width), VL_FIELD_SIDE("resolution_y", &d->height));
   if (result == VL_OK)
     result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho) : vl_camera_number(file, tree, "lens", &lens);
   const struct {
@@ -31,8 +31,8 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
                 {"shift_y", &shift_y},           {"pixel_aspect_x", &aspect_x},     {"pixel_aspect_y", &aspect_y},
                 {"clip_start", &d->near_plane},  {"clip_end", &d->far_plane}};
   for (size_t i = 0; i < sizeof fields / sizeof *fields && result == VL_OK; i++)
-    result = vl_camera_optional(file, tree, fields[i].key, fields[i].value);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "matrix_world", m, 16, 16, NULL);
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL(fields[i].key, fields[i].value),
+                            VL_FIELD_LIST("matrix_world", m, 16));
   if (result != VL_OK) return result;
   if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 && aspect_x > 0.0 && aspect_y > 0.0))
     return vl_camera_wrong(file, "blender: lens, sensor, scale and pixel aspect must be above zero");
@@ -45,8 +45,7 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   d->cx = 0.5 * w - shift_x * side;
   d->cy = 0.5 * h + shift_y * side / ratio;
   d->projection = flat ? VL_PROJECTION_ORTHOGRAPHIC : VL_PROJECTION_PERSPECTIVE;
-  d->has_matrix = true;
-  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_set_flipped(d, m);
   vl_camera_name(record, vl_camera_text(tree, "name"));
   return VL_OK;
 }

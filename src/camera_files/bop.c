@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_image(const vlCameraFile *file, const json_t *image, const char *name, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
@@ -17,8 +17,7 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_origin(d);
   if (vl_camera_has(image, "cam_R_w2c") || vl_camera_has(image, "cam_t_w2c")) {
-    result = vl_camera_numbers(file, image, "cam_R_w2c", r, 9, 9, NULL);
-    if (result == VL_OK) result = vl_camera_numbers(file, image, "cam_t_w2c", t, 3, 3, NULL);
+    result = VL_READ_FIELDS(file, image, VL_FIELD_LIST("cam_R_w2c", r, 9), VL_FIELD_LIST("cam_t_w2c", t, 3));
     if (result != VL_OK) return result;
     vl_camera_set_pose(d, r, t);
   }
@@ -34,7 +33,7 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, vlCameraR
   static const char *const names[] = {"fx", "fy", "cx", "cy"};
   double f[4];
   vlResult result = VL_OK;
-  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, tree, names[i], &f[i]);
+  if (result == VL_OK) result = vl_camera_read_named(file, tree, names, 4, false, f);
   if (result == VL_OK) result = vl_camera_sides(file, tree, "width", "height", record);
   if (result != VL_OK) return result;
   vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);
@@ -65,21 +64,12 @@ static bool is_bop(const json_t *tree) {
   return one || (first && vl_camera_has(json_object_iter_value(first), "cam_K"));
 }
 
-static vlResult write_bop(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double r[9], t[3];
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  vl_camera_get_pose(&c, r, t);
-  vl_camera_put(text, "{\n  \"0\": {\n    \"cam_K\": [");
-  vl_camera_put_numbers(text, (double[]){c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);
-  vl_camera_put(text, "],\n    \"cam_R_w2c\": [");
-  vl_camera_put_numbers(text, r, 9);
-  vl_camera_put(text, "],\n    \"cam_t_w2c\": [");
-  vl_camera_put_numbers(text, t, 3);
-  vl_camera_put(text, "],\n    \"depth_scale\": 1.0,\n    \"width\": %u,\n    \"height\": %u\n  }\n}\n", c.width,
-                c.height);
-  return VL_OK;
-}
-
-const vlCameraFormat vl_format_bop = {.name = "bop", .is_tree = is_bop, .read = read_bop, .write = write_bop};
+const vlCameraFormat vl_format_bop = {
+    .name = "bop",
+    .is_tree = is_bop,
+    .read = read_bop,
+    .holds = VL_HOLDS_POSE,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form =
+        "{\n  \"0\": {\n    \"cam_K\": [$K],\n    \"cam_R_w2c\": [$R],\n    \"cam_t_w2c\": [$t],\n"
+        "    \"depth_scale\": 1.0,\n    \"width\": $width,\n    \"height\": $height\n  }\n}\n"};

@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 typedef struct {
   const char *name;
@@ -102,8 +102,8 @@ static vlResult read_pose(const vlCameraFile *file, const json_t *tree, uint32_t
   if (vl_camera_has(tree, key)) {
     result = vl_camera_numbers(file, tree, key, m, 16, 16, NULL);
   } else if (index == 0 && vl_camera_has(tree, "extrinsicRotation")) {
-    result = vl_camera_numbers(file, tree, "extrinsicRotation", r, 9, 9, NULL);
-    if (result == VL_OK) result = vl_camera_numbers(file, tree, "extrinsicTranslation", t, 3, 3, NULL);
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("extrinsicRotation", r, 9),
+                            VL_FIELD_LIST("extrinsicTranslation", t, 3));
     for (int i = 0; i < 12 && result == VL_OK; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : t[i / 4];
   } else {
     return VL_OK;
@@ -156,9 +156,10 @@ static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *
     if (models[i].family == family && (!full || models[i].lens[4]) && !model) model = &models[i];
   if (!model || (family == VL_LENS_UNIFIED && n > 4)) return vl_camera_no_model(file, &record->camera);
   const double f[4] = {c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
-  vl_camera_put(text, "%%YAML:1.0\n---\nmodel_type: %s\ncamera_name: ", model->name);
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, "\nimage_width: %u\nimage_height: %u\n", c.width, c.height);
+  VL_PUT_FORM(text, record, &c,
+              "%YAML:1.0\n---\nmodel_type: $model\ncamera_name: $name\nimage_width: $width\n"
+              "image_height: $height\n",
+              VL_WORD("model", model->name));
   if (family == VL_LENS_UNIFIED) vl_camera_put(text, "mirror_parameters:\n  xi: %.17g\n", c.shape[0]);
   bool fisheye = family == VL_LENS_FISHEYE;
   vl_camera_put(text, fisheye ? "projection_parameters:\n" : "distortion_parameters:\n");

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -165,8 +165,9 @@ static vlResult read_collada(const vlCameraFile *file, const json_t *tree, vlCam
   for (int depth = 0; depth < s.depth && result == VL_OK; depth++)
     result = add_transforms(file, s.stops[depth], &world);
   if (result == VL_OK) result = read_sides(file, lens, flat, half);
-  if (result == VL_OK) result = vl_camera_child_number(file, lens, "znear", false, &d->near_plane);
-  if (result == VL_OK) result = vl_camera_child_number(file, lens, "zfar", false, &d->far_plane);
+  if (result == VL_OK)
+    result = VL_READ_CHILDREN(file, lens, VL_FIELD_OPTIONAL("znear", &d->near_plane),
+                              VL_FIELD_OPTIONAL("zfar", &d->far_plane));
   if (result == VL_OK) result = vl_camera_size(file, half[0] / half[1], record);
   if (result != VL_OK) return result;
   if (flat) d->projection = VL_PROJECTION_ORTHOGRAPHIC;
@@ -184,7 +185,7 @@ static bool is_collada(const json_t *tree) {
 
 static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double k[14], m[16];
+  double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
   if (result != VL_OK) return result;
@@ -194,33 +195,30 @@ static vlResult write_collada(const vlCameraFile *file, const vlCameraRecord *re
   result = vl_camera_refuse_off_centre(file, &c);
   if (result != VL_OK) return result;
   double x = 0.5 * c.width / c.fx, y = 0.5 * c.height / c.fy;
-  const char *kind = flat ? "orthographic" : "perspective", side = flat ? 'm' : 'f';
-  const char *rest = flat ? "ag" : "ov";
+  const char *kind = flat ? "orthographic" : "perspective", *side = flat ? "mag" : "fov";
   if (!flat) {
     x = 2.0 / degree * vl_precise_atan(x);
     y = 2.0 / degree * vl_precise_atan(y);
   }
-  vl_camera_flip_axes(c.world_from_camera, m);
-  vl_camera_put(
-      text,
+  const double planes[2] = {c.near_plane > 0.0 || flat ? c.near_plane : 0.01,
+                            isinf(c.far_plane) ? 10000.0 : c.far_plane};
+  return VL_PUT_FORM(
+      text, record, &c,
       "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n"
       "<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n"
       "  <asset><created>1970-01-01T00:00:00</created><modified>1970-01-01T00:00:00</modified>"
       "<unit name=\"meter\" meter=\"1\"/><up_axis>Y_UP</up_axis></asset>\n"
       "  <library_cameras>\n    <camera id=\"camera-lens\" name=\"camera\">\n      <optics><technique_common>\n"
-      "        <%s>\n          <x%c%s>%.17g</x%c%s>\n          <y%c%s>%.17g</y%c%s>\n"
-      "          <znear>%.17g</znear>\n          <zfar>%.17g</zfar>\n        </%s>\n"
-      "      </technique_common></optics>\n    </camera>\n  </library_cameras>\n",
-      kind, side, rest, x, side, rest, side, rest, y, side, rest, c.near_plane > 0.0 || flat ? c.near_plane : 0.01,
-      isinf(c.far_plane) ? 10000.0 : c.far_plane, kind);
-  vl_camera_put(text,
-                "  <library_visual_scenes>\n    <visual_scene id=\"scene\" name=\"scene\">\n"
-                "      <node id=\"camera\" name=\"camera\" type=\"NODE\">\n        <matrix sid=\"transform\">");
-  for (int i = 0; i < 16; i++) vl_camera_put(text, "%s%.17g", i ? " " : "", m[i] + 0.0);
-  vl_camera_put(text,
-                "</matrix>\n        <instance_camera url=\"#camera-lens\"/>\n      </node>\n    </visual_scene>\n"
-                "  </library_visual_scenes>\n  <scene><instance_visual_scene url=\"#scene\"/></scene>\n</COLLADA>\n");
-  return VL_OK;
+      "        <$kind>\n          <x$side>$x</x$side>\n          <y$side>$y</y$side>\n"
+      "          <znear>$planes@0</znear>\n          <zfar>$planes@1</zfar>\n        </$kind>\n"
+      "      </technique_common></optics>\n    </camera>\n  </library_cameras>\n"
+      "  <library_visual_scenes>\n    <visual_scene id=\"scene\" name=\"scene\">\n"
+      "      <node id=\"camera\" name=\"camera\" type=\"NODE\">\n        <matrix "
+      "sid=\"transform\">$flipped:s</matrix>\n"
+      "        <instance_camera url=\"#camera-lens\"/>\n      </node>\n    </visual_scene>\n"
+      "  </library_visual_scenes>\n  <scene><instance_visual_scene url=\"#scene\"/></scene>\n</COLLADA>\n",
+      VL_WORD("kind", kind), VL_WORD("side", side), VL_VALUES("x", &x, 1), VL_VALUES("y", &y, 1),
+      VL_VALUES("planes", planes, 2));
 }
 
 const vlCameraFormat vl_format_collada = {

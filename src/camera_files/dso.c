@@ -92,22 +92,11 @@ static bool is_dso(const char *text, size_t size) {
          (strcmp(lines.text, "crop") == 0 || strcmp(lines.text, "full") == 0 || strcmp(lines.text, "none") == 0);
 }
 
-static vlResult write_dso(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON | 1 << VL_LENS_FOV, 4, &c, &fit);
-  if (result != VL_OK) return result;
-  bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV, fov = fit.family == VL_LENS_FOV;
-  vl_camera_put(text, "%s %.17g %.17g %.17g %.17g",
-                fisheye ? "KannalaBrandt"
-                : bent  ? "RadTan"
-                : fov   ? "FOV"
-                        : "Pinhole",
-                c.fx, c.fy, c.cx - 0.5, c.cy - 0.5);
-  if (fov) fit.k[0] = c.shape[0];
-  for (int i = 0; i < (fisheye || bent ? 4 : 1); i++) vl_camera_put(text, " %.17g", fit.k[i] + 0.0);
-  vl_camera_put(text, "\n%u %u\nfull\n%u %u\n", c.width, c.height, c.width, c.height);
-  return VL_OK;
-}
-
-const vlCameraFormat vl_format_dso = {.name = "dso", .is_text = is_dso, .read_text = read_dso, .write = write_dso};
+const vlCameraFormat vl_format_dso = {.name = "dso",
+                                      .is_text = is_dso,
+                                      .read_text = read_dso,
+                                      .lenses = VL_LENSES_COMMON | 1 << VL_LENS_FOV,
+                                      .least = 1,
+                                      .most = 4,
+                                      .lens_words = {"Pinhole", "RadTan", "KannalaBrandt", "FOV"},
+                                      .form = "$lens $fx $fy $cx0 $cy0 $k:s\n$width $height\nfull\n$width $height\n"};

@@ -2,7 +2,7 @@
  * T_BS is body (IMU) from camera, and the world's space is that of the body. The first pixel's centre is (0, 0). */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   double k[5];
@@ -34,8 +34,7 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree, vlCamer
   if (model && strcmp(model, "pinhole") != 0)
     return vl_camera_wrong_in(file, tree, "camera_model", "euroc: unknown camera_model \"%s\"; there is pinhole",
                               vl_short_text(model).text);
-  vlResult result = vl_camera_numbers(file, tree, "intrinsics", k, 4, 4, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "T_BS", m, 16, 16, NULL);
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", k, 4), VL_FIELD_LIST("T_BS", m, 16));
   if (result == VL_OK)
     result = vl_camera_has(tree, "resolution") ? vl_camera_side_pair(file, tree, "resolution", record)
                                                : vl_camera_size_beside(file, NULL, record);
@@ -51,23 +50,16 @@ static bool is_euroc(const json_t *tree) {
   return vl_camera_has(tree, "T_BS") || vl_camera_has(tree, "sensor_type");
 }
 
-static vlResult write_euroc(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result != VL_OK) return result;
-  if (fit.count == 0) fit.count = 4;
-  vl_camera_put(text, "sensor_type: camera\ncomment: ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, "\nT_BS:\n  cols: 4\n  rows: 4\n  data: [");
-  vl_camera_put_numbers(text, c.world_from_camera, 16);
-  vl_camera_put(text, "]\nresolution: [%u, %u]\ncamera_model: pinhole\nintrinsics: [", c.width, c.height);
-  vl_camera_put_numbers(text, (double[]){c.fx, c.fy, c.cx - 0.5, c.cy - 0.5}, 4);
-  vl_camera_put(text, "]\ndistortion_model: %s\ndistortion_coefficients: [",
-                fit.family == VL_LENS_FISHEYE ? "equidistant" : "radial-tangential");
-  vl_camera_put_numbers(text, fit.k, fit.count);
-  vl_camera_put(text, "]\n");
-  return VL_OK;
-}
-
-const vlCameraFormat vl_format_euroc = {.name = "euroc", .is_tree = is_euroc, .read = read_euroc, .write = write_euroc};
+const vlCameraFormat vl_format_euroc = {
+    .name = "euroc",
+    .is_tree = is_euroc,
+    .read = read_euroc,
+    .holds = VL_HOLDS_POSE,
+    .lenses = VL_LENSES_COMMON,
+    .least = 4,
+    .most = 5,
+    .lens_words = {"radial-tangential", "radial-tangential", "equidistant"},
+    .form =
+        "sensor_type: camera\ncomment: $name\nT_BS:\n  cols: 4\n  rows: 4\n  data: [$pose]\n"
+        "resolution: [$width, $height]\ncamera_model: pinhole\nintrinsics: [$fx, $fy, $cx0, $cy0]\n"
+        "distortion_model: $lens\ndistortion_coefficients: [$k]\n"};

@@ -6,6 +6,7 @@
 #include "base/cookie.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "camera_files/fields.h"
 #include "camera_files/formats.h"
 #include "camera_files/trajectory.h"
 #include "velo/own.h"
@@ -218,11 +219,11 @@ vlResult vl_camera_write(vlContext *context, const char *path, const vlCameraFil
   const vlCameraFormat *format = vl_camera_formats[dialect];
   vlCameraFile file = {.context = context, .path = path, .dialect = format->name, .def = def, .error = error};
   if (format->write_folder) return format->write_folder(&file, record);
-  if (!format->write)
+  if (!format->write && !format->form)
     return vl_fail(error, VL_ERROR_UNSUPPORTED, "camera file: %s is not written: %s", format->name,
                    format->not_written);
   vlCameraText text = {.context = context};
-  result = format->write(&file, record, &text);
+  result = format->form ? vl_camera_write_form(&file, format, record, &text) : format->write(&file, record, &text);
   if (result == VL_OK && text.failed) result = vl_fail_memory(error);
   vlFileWriter writer;
   if (result == VL_OK) result = vl_file_open_write(&writer, context, path, VL_OUTPUT_PLAIN, error);

@@ -234,6 +234,14 @@ typedef struct vlCameraFormat {
   vlCameraWriteText *write;
   vlCameraWriteFolder *write_folder; /* in place of write: the path is that of a folder of files, or of one of them */
   const char *not_written;           /* why there is no writer */
+  /* In place of write: a text for vl_camera_put_form (fields.h), with $k, the coefficients of the lens, and $lens, its
+   * word. holds: of vl_camera_fit. lenses, most: of vl_camera_fit_lens. */
+  const char *form;
+  uint32_t holds, lenses, most;
+  uint32_t least;                        /* $k has at least so many coefficients */
+  const char *lens_words[VL_LENS_OTHER]; /* by family */
+  const char *unnamed;                   /* $name of a record without a name; null: "camera" */
+  bool centred, square;                  /* the principal point must be the image's centre; fx must be fy */
 } vlCameraFormat;
 
 extern const vlCameraFormat vl_format_velo, vl_format_opencv, vl_format_ros, vl_format_colmap, vl_format_nerf,

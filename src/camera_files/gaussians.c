@@ -3,7 +3,7 @@
  * image's middle. */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *list = json_object_get(tree, "[]"), *camera = NULL;
@@ -14,12 +14,9 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree, vlC
     if (vl_camera_is_frame(file, i, vl_camera_text(json_array_get(list, i), "img_name")))
       camera = json_array_get(list, i);
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = vl_camera_side(file, camera, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
-  if (result == VL_OK) result = vl_camera_number(file, camera, "fx", &d->fx);
-  if (result == VL_OK) result = vl_camera_number(file, camera, "fy", &d->fy);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "position", p, 3, 3, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "rotation", r, 9, 9, NULL);
+  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height),
+                                   VL_FIELD("fx", &d->fx), VL_FIELD("fy", &d->fy), VL_FIELD_LIST("position", p, 3),
+                                   VL_FIELD_LIST("rotation", r, 9));
   if (result != VL_OK) return result;
   for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : p[i / 4];
   vl_camera_set_matrix(d, m, false);
@@ -32,26 +29,13 @@ static bool is_gaussians(const json_t *tree) {
          vl_camera_has_in(tree, "[]", "fx");
 }
 
-static vlResult write_gaussians(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK) return result;
-  const double *m = c.world_from_camera;
-  vl_camera_put(text, "[\n  {\"id\": 0, \"img_name\": ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, ", \"width\": %u, \"height\": %u,\n   \"position\": [", c.width, c.height);
-  vl_camera_put_numbers(text, (double[]){m[3], m[7], m[11]}, 3);
-  vl_camera_put(text, "],\n   \"rotation\": [");
-  for (int i = 0; i < 3; i++) {
-    vl_camera_put(text, "%s[", i ? ", " : "");
-    vl_camera_put_numbers(text, m + 4 * i, 3);
-    vl_camera_put(text, "]");
-  }
-  vl_camera_put(text, "],\n   \"fy\": %.17g, \"fx\": %.17g}\n]\n", c.fy, c.fx);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_gaussians = {
-    .name = "gaussians", .is_tree = is_gaussians, .read = read_gaussians, .write = write_gaussians};
+    .name = "gaussians",
+    .is_tree = is_gaussians,
+    .read = read_gaussians,
+    .holds = VL_HOLDS_POSE,
+    .centred = true,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form =
+        "[\n  {\"id\": 0, \"img_name\": $name, \"width\": $width, \"height\": $height,\n"
+        "   \"position\": [$centre],\n   \"rotation\": [$axes:3],\n   \"fy\": $fy, \"fx\": $fx}\n]\n"};

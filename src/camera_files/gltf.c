@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -82,10 +82,8 @@ static vlResult find_parents(const vlCameraFile *file, const json_t *nodes, int6
 static vlResult read_perspective(const vlCameraFile *file, const json_t *lens, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double yfov = 0.0, aspect = VL_UNSET;
-  vlResult result = vl_camera_number(file, lens, "yfov", &yfov);
-  if (result == VL_OK) result = vl_camera_optional(file, lens, "aspectRatio", &aspect);
-  if (result == VL_OK) result = vl_camera_number(file, lens, "znear", &d->near_plane);
-  if (result == VL_OK) result = vl_camera_optional(file, lens, "zfar", &d->far_plane);
+  vlResult result = VL_READ_FIELDS(file, lens, VL_FIELD("yfov", &yfov), VL_FIELD_OPTIONAL("aspectRatio", &aspect),
+                                   VL_FIELD("znear", &d->near_plane), VL_FIELD_OPTIONAL("zfar", &d->far_plane));
   if (result == VL_OK && !(yfov > 0.0 && yfov < 3.14159265358979))
     return vl_camera_wrong(file, "gltf: \"yfov\" is %g radians; it must lie between 0 and pi", yfov);
   if (aspect == 0.0) aspect = VL_UNSET; /* not valid, but Assimp writes it where it knows none */
@@ -102,10 +100,8 @@ static vlResult read_perspective(const vlCameraFile *file, const json_t *lens, v
 static vlResult read_orthographic(const vlCameraFile *file, const json_t *lens, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double x = 0.0, y = 0.0;
-  vlResult result = vl_camera_number(file, lens, "xmag", &x);
-  if (result == VL_OK) result = vl_camera_number(file, lens, "ymag", &y);
-  if (result == VL_OK) result = vl_camera_number(file, lens, "znear", &d->near_plane);
-  if (result == VL_OK) result = vl_camera_number(file, lens, "zfar", &d->far_plane);
+  vlResult result = VL_READ_FIELDS(file, lens, VL_FIELD("xmag", &x), VL_FIELD("ymag", &y),
+                                   VL_FIELD("znear", &d->near_plane), VL_FIELD("zfar", &d->far_plane));
   /* some exporters write negative values; the extent is the same */
   x = fabs(x);
   y = fabs(y);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/transform.h"
 
 typedef struct {
@@ -172,10 +172,10 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
   }
   vl_camera_put(text, "cam0:\n  camera_model: %s\n  intrinsics: [", model->name);
   for (uint32_t i = 0; i < model->shapes; i++) vl_camera_put(text, "%.17g, ", c.shape[i]);
-  vl_camera_put(text, "%.17g, %.17g, %.17g, %.17g]\n  distortion_model: %s\n  distortion_coeffs: [", c.fx, c.fy,
-                c.cx - 0.5, c.cy - 0.5, lens);
-  vl_camera_put_numbers(text, k, n);
-  vl_camera_put(text, "]\n  resolution: [%u, %u]\n", c.width, c.height);
+  VL_PUT_FORM(text, record, &c,
+              "$fx, $fy, $cx0, $cy0]\n  distortion_model: $lens\n  distortion_coeffs: [$k]\n"
+              "  resolution: [$width, $height]\n",
+              VL_WORD("lens", lens), VL_VALUES("k", k, n));
   bool posed = false;
   for (int i = 0; i < 16; i++) posed = posed || c.camera_from_world[i] != (i % 5 == 0 ? 1.0 : 0.0);
   if (posed) vl_camera_put(text, "  T_cam_imu:\n"); /* the world's space is the IMU's */

@@ -119,25 +119,12 @@ static bool is_kitti(const char *text, size_t size) {
   return p || strncmp(lines.text, "S_0", 3) == 0 || strncmp(lines.text, "K_0", 3) == 0;
 }
 
-static void put_row(vlCameraText *text, const char *key, const double *values, uint32_t count) {
-  vl_camera_put(text, "%s:", key);
-  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, " %.17g", values[i] + 0.0);
-  vl_camera_put(text, "\n");
-}
-
-static vlResult write_kitti(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double k[14], r[9], t[3];
-  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE, k, &c);
-  if (result != VL_OK) return result;
-  vl_camera_get_pose(&c, r, t);
-  put_row(text, "S_00", (double[]){c.width, c.height}, 2);
-  put_row(text, "K_00", (double[]){c.fx, 0, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);
-  put_row(text, "D_00", k, 5);
-  put_row(text, "R_00", r, 9);
-  put_row(text, "T_00", t, 3);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_kitti = {
-    .name = "kitti", .is_text = is_kitti, .read_text = read_kitti, .write = write_kitti};
+    .name = "kitti",
+    .is_text = is_kitti,
+    .read_text = read_kitti,
+    .holds = VL_HOLDS_POSE,
+    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
+    .least = 5,
+    .most = 5,
+    .form = "S_00: $width $height\nK_00: $K:s\nD_00: $k:s\nR_00: $R:s\nT_00: $t:s\n"};

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 /* Converts a JSON number, or a text that contains a number. */
 static bool number_of(const json_t *value, double *number) {
@@ -183,50 +183,37 @@ static bool is_meshroom(const json_t *tree) {
   return vl_camera_has(tree, "views") && vl_camera_has(tree, "intrinsics") && !vl_camera_has(tree, "sfm_data_version");
 }
 
-static void put_texts(vlCameraText *text, const double *values, uint32_t count) {
-  for (uint32_t i = 0; i < count; i++) vl_camera_put(text, "%s\"%.17g\"", i ? ", " : "", values[i] + 0.0);
-}
-
 static vlResult write_meshroom(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   vlFittedLens fit;
   vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON | 1 << VL_LENS_FOV, 5, &c, &fit);
   if (result != VL_OK) return result;
-  const char *lens = fit.family == VL_LENS_PINHOLE   ? "none"
-                     : fit.family == VL_LENS_OPENCV  ? "brown"
-                     : fit.family == VL_LENS_FISHEYE ? "fisheye4"
-                     : fit.family == VL_LENS_FOV     ? "fisheye1"
-                                                     : NULL;
-  const double brown[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
-  const double sensor = record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0,
-               *m = c.world_from_camera;
-  vl_camera_put(text,
-                "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", \"poseId\": \"1\", "
-                "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, ", \"width\": \"%u\", \"height\": \"%u\"}\n  ],\n", c.width, c.height);
-  vl_camera_put(text, "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": \"%u\", \"height\": \"%u\",\n",
-                c.width, c.height);
-  vl_camera_put(text, "     \"sensorWidth\": \"%.17g\", \"sensorHeight\": \"%.17g\", \"serialNumber\": \"\",\n", sensor,
-                sensor * (c.fx / c.fy) * c.height / c.width);
-  vl_camera_put(text,
-                "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": \"%.17g\",\n",
-                c.fx * sensor / c.width);
-  vl_camera_put(text, "     \"pixelRatio\": \"%.17g\", \"principalPoint\": [", c.fy / c.fx);
-  put_texts(text, (double[]){c.cx - 0.5 * c.width, c.cy - 0.5 * c.height}, 2);
-  vl_camera_put(text, "],\n     \"distortionType\": \"%s\", \"distortionParams\": [", lens);
-  if (fit.family == VL_LENS_FOV)
-    put_texts(text, c.shape, 1);
-  else
-    put_texts(text, fit.family == VL_LENS_OPENCV ? brown : fit.k, fit.family == VL_LENS_OPENCV ? 5 : fit.count);
-  vl_camera_put(text,
-                "], \"locked\": \"false\"}\n  ],\n  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n"
-                "      \"rotation\": [");
-  put_texts(text, (double[]){m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, 9);
-  vl_camera_put(text, "],\n      \"center\": [");
-  put_texts(text, (double[]){m[3], m[7], m[11]}, 3);
-  vl_camera_put(text, "]}, \"locked\": \"0\"}}\n  ]\n}\n");
-  return VL_OK;
+  static const char *const words[] = {"none", "brown", "fisheye4", "fisheye1"};
+  const bool brown = fit.family == VL_LENS_OPENCV, fov = fit.family == VL_LENS_FOV;
+  const double k[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
+  const double sensor = record->camera.sensor_width_mm > 0.0 ? record->camera.sensor_width_mm : 36.0;
+  const double values[] = {sensor, sensor * (c.fx / c.fy) * c.height / c.width, c.fx * sensor / c.width};
+  const double middle[2] = {c.cx - 0.5 * c.width, c.cy - 0.5 * c.height};
+  return VL_PUT_FORM(
+      text, record, &c,
+      "{\n  \"version\": [\"1\", \"2\", \"8\"],\n  \"views\": [\n    {\"viewId\": \"1\", \"poseId\": \"1\", "
+      "\"frameId\": \"0\", \"intrinsicId\": \"1\",\n     \"path\": $name, \"width\": $width:q, "
+      "\"height\": $height:q}\n  ],\n"
+      "  \"intrinsics\": [\n    {\"intrinsicId\": \"1\", \"width\": $width:q, \"height\": $height:q,\n"
+      "     \"sensorWidth\": $sensor@0:q, \"sensorHeight\": $sensor@1:q, \"serialNumber\": \"\",\n"
+      "     \"type\": \"pinhole\", \"initializationMode\": \"calibrated\", \"focalLength\": $sensor@2:q,\n"
+      "     \"pixelRatio\": $aspect:q, \"principalPoint\": [$middle:q],\n"
+      "     \"distortionType\": \"$lens\", \"distortionParams\": [$own:q], \"locked\": \"false\"}\n  ],\n"
+      "  \"poses\": [\n    {\"poseId\": \"1\", \"pose\": {\"transform\": {\n      \"rotation\": [$axes:q],\n"
+      "      \"center\": [$centre:q]}, \"locked\": \"0\"}}\n  ]\n}\n",
+      VL_VALUES("sensor", values, 3), VL_VALUES("middle", middle, 2), VL_WORD("lens", words[fit.family]),
+      VL_VALUES("own",
+                fov     ? c.shape
+                : brown ? k
+                        : fit.k,
+                fov     ? 1
+                : brown ? 5
+                        : fit.count));
 }
 
 const vlCameraFormat vl_format_meshroom = {

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 /* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy from the image's corner.
  */
@@ -16,14 +16,12 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration
   bool old = vl_camera_child(calibration, "fx") != NULL;
   vlResult result = vl_camera_child_number(file, calibration, old ? "fy" : "f", true, &f);
   if (result == VL_OK && old) result = vl_camera_child_number(file, calibration, "fx", true, &d->fx);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, "cx", false, &c[0]);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, "cy", false, &c[1]);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, "b1", false, &b[0]);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, old ? "skew" : "b2", false, &b[1]);
+  if (result == VL_OK)
+    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]), VL_FIELD_OPTIONAL("cy", &c[1]),
+                              VL_FIELD_OPTIONAL("b1", &b[0]), VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1]));
   for (int i = 0; i < 6 && result == VL_OK; i++)
-    result = vl_camera_child_number(file, calibration, names[i], false, &k[i]);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, "p3", false, &more[0]);
-  if (result == VL_OK) result = vl_camera_child_number(file, calibration, "p4", false, &more[1]);
+    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL(names[i], &k[i]), VL_FIELD_OPTIONAL("p3", &more[0]),
+                              VL_FIELD_OPTIONAL("p4", &more[1]));
   if (result != VL_OK) return result;
   if (more[0] != 0.0 || more[1] != 0.0)
     return vl_camera_wrong_element(file, calibration, "p3 and p4 are no terms of velo's distortion");
@@ -134,8 +132,7 @@ static vlResult read_calibration(const vlCameraFile *file, const json_t *root, v
   vlCameraDef *d = &record->camera;
   double size[2] = {0.0, 0.0};
   const char *text = vl_camera_text(vl_camera_child(root, "projection"), "$");
-  vlResult result = vl_camera_child_number(file, root, "width", true, &size[0]);
-  if (result == VL_OK) result = vl_camera_child_number(file, root, "height", true, &size[1]);
+  vlResult result = VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1]));
   if (result == VL_OK) result = set_type(file, root, text, d);
   if (result != VL_OK) return result;
   for (int i = 0; i < 2; i++)

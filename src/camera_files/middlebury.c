@@ -85,14 +85,9 @@ static bool is_middlebury(const char *text, size_t size) {
   return vl_camera_next_line(&lines) && strncmp(lines.text, "cam0=[", 6) == 0;
 }
 
-static vlResult write_middlebury(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, 0, &c);
-  if (result != VL_OK) return result;
-  vl_camera_put(text, "cam0=[%.17g 0 %.17g; 0 %.17g %.17g; 0 0 1]\nwidth=%u\nheight=%u\n", c.fx, c.cx - 0.5, c.fy,
-                c.cy - 0.5, c.width, c.height);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_middlebury = {
-    .name = "middlebury", .is_text = is_middlebury, .read_text = read_middlebury, .write = write_middlebury};
+    .name = "middlebury",
+    .is_text = is_middlebury,
+    .read_text = read_middlebury,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form = "cam0=[$fx 0 $cx0; 0 $fy $cy0; 0 0 1]\nwidth=$width\nheight=$height\n"};

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "camera_files/fields.h"
 #include "camera_files/trajectory.h"
 
 #include "math/elementary.h"
@@ -82,8 +83,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
   if (vl_is_unset(d->fx) && vl_is_unset(d->fy))
     return vl_camera_wrong(file, "nerf: the field \"fl_x\" is missing, and \"camera_angle_x\" too");
   if (count == 12) m[15] = 1.0;
-  d->has_matrix = true;
-  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_set_flipped(d, m);
   vl_camera_name(record, vl_camera_text(frame, "file_path"));
   return VL_OK;
 }
@@ -107,7 +107,7 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   static const char *const radial_names[] = {"k1", "k2", "k3", "k4"}, *const names[] = {"k1", "k2", "p1", "p2", "k3"};
   const vlCameraDef *d = &record->camera;
   vlCamera c;
-  double k[14] = {0}, m[16];
+  double k[14] = {0};
   uint32_t n = 0;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE, &c);
   if (result != VL_OK) return result;
@@ -120,22 +120,17 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   }
   for (int i = 5; i < 14; i++)
     if (k[i] != 0.0) return vl_camera_no_model(file, d);
-  vl_camera_flip_axes(c.world_from_camera, m);
-  vl_camera_put(text, "{\n  \"camera_model\": \"%s\",\n  \"w\": %u,\n  \"h\": %u,\n",
-                fisheye ? "OPENCV_FISHEYE"
-                : n     ? "OPENCV"
-                        : "PINHOLE",
-                c.width, c.height);
-  vl_camera_put(text, "  \"fl_x\": %.17g,\n  \"fl_y\": %.17g,\n  \"cx\": %.17g,\n  \"cy\": %.17g", c.fx, c.fy, c.cx,
-                c.cy);
+  VL_PUT_FORM(text, record, &c,
+              "{\n  \"camera_model\": \"$model\",\n  \"w\": $width,\n  \"h\": $height,\n  \"fl_x\": $fx,\n"
+              "  \"fl_y\": $fy,\n  \"cx\": $cx,\n  \"cy\": $cy",
+              VL_WORD("model", fisheye ? "OPENCV_FISHEYE"
+                               : n     ? "OPENCV"
+                                       : "PINHOLE"));
   for (uint32_t i = 0; n && i < (fisheye ? 4u : 5u); i++)
     vl_camera_put(text, ",\n  \"%s\": %.17g", fisheye ? radial_names[i] : names[i], k[i]);
   vl_camera_put(text, ",\n  \"frames\": [\n    {\"file_path\": ");
   vl_camera_put_string(text, record->name);
-  vl_camera_put(text, ",\n     \"transform_matrix\": [");
-  vl_camera_put_rows(text, m);
-  vl_camera_put(text, "]}\n  ]\n}\n");
-  return VL_OK;
+  return vl_camera_put_form(text, record, &c, NULL, ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
 }
 
 static bool is_nerf(const json_t *tree) {

@@ -3,7 +3,7 @@
  * image's middle. */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
@@ -37,8 +37,7 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vl
   if (result == VL_OK && d->projection != VL_PROJECTION_EQUIRECTANGULAR)
     result = vl_camera_number(file, camera, "fov", &fov);
   if (result != VL_OK) return result;
-  d->has_matrix = true;
-  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_set_flipped(d, m);
   if (d->projection == VL_PROJECTION_EQUIRECTANGULAR) return VL_OK;
   if (!(fov > 0.0 && fov < 180.0))
     return vl_camera_wrong_in(file, camera, "fov", "nerfstudio: \"fov\" is %g; it must be between 0 and 180 degrees",
@@ -51,25 +50,16 @@ static bool is_nerfstudio(const json_t *tree) {
   return vl_camera_has_in(tree, "camera_path", "camera_to_world");
 }
 
-static vlResult write_nerfstudio(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double m[16];
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  result = vl_camera_refuse_off_centre(file, &c);
-  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
-  vl_camera_flip_axes(c.world_from_camera, m);
-  vl_camera_put(
-      text,
-      "{\n  \"camera_type\": \"perspective\",\n  \"render_width\": %u,\n  \"render_height\": %u,\n"
-      "  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": [],\n  \"camera_path\": [\n    {\"camera_to_world\": [",
-      c.width, c.height);
-  vl_camera_put_numbers(text, m, 16);
-  vl_camera_put(text, "],\n     \"fov\": %.17g, \"aspect\": %.17g}\n  ]\n}\n",
-                2.0 / degree * vl_precise_atan(0.5 * c.height / c.fy), (double)c.width / c.height);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_nerfstudio = {
-    .name = "nerfstudio", .is_tree = is_nerfstudio, .read = read_nerfstudio, .write = write_nerfstudio};
+    .name = "nerfstudio",
+    .is_tree = is_nerfstudio,
+    .read = read_nerfstudio,
+    .holds = VL_HOLDS_POSE,
+    .centred = true,
+    .square = true,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form =
+        "{\n  \"camera_type\": \"perspective\",\n  \"render_width\": $width,\n"
+        "  \"render_height\": $height,\n  \"fps\": 24,\n  \"seconds\": 1,\n  \"keyframes\": [],\n"
+        "  \"camera_path\": [\n    {\"camera_to_world\": [$flipped],\n"
+        "     \"fov\": $yfov, \"aspect\": $ratio}\n  ]\n}\n"};

@@ -2,7 +2,7 @@
  * sensor (IMU) from camera, and the world's space is that of the sensor. The first pixel's centre is (0, 0). */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
   const json_t *type;
@@ -39,9 +39,8 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree, vlCamer
   if (!camera)
     return vl_camera_wrong_in(file, tree, "cameras", "okvis: there is no camera \"%s\" among the %u",
                               vl_camera_asked(file, "0").text, record->frames);
-  vlResult result = vl_camera_numbers(file, camera, "T_SC", m, 16, 16, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "focal_length", f, 2, 2, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "principal_point", c, 2, 2, NULL);
+  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_LIST("T_SC", m, 16), VL_FIELD_LIST("focal_length", f, 2),
+                                   VL_FIELD_LIST("principal_point", c, 2));
   if (result == VL_OK)
     result = vl_camera_has(camera, "image_dimension") ? vl_camera_side_pair(file, camera, "image_dimension", record)
                                                       : vl_camera_size_beside(file, NULL, record);
@@ -61,18 +60,14 @@ static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *reco
   vlFittedLens fit;
   vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 8, &c, &fit);
   if (result != VL_OK) return result;
-  fit.count = fit.count > 4 ? 8 : 4;
-  vl_camera_put(text, "%%YAML:1.0\ncameras:\n  - {T_SC: [");
-  vl_camera_put_numbers(text, c.world_from_camera, 16);
-  vl_camera_put(text, "],\n     image_dimension: [%u, %u],\n     distortion_coefficients: [", c.width, c.height);
-  vl_camera_put_numbers(text, fit.k, fit.count);
-  vl_camera_put(text, "],\n     distortion_type: %s,\n     focal_length: [%.17g, %.17g],\n",
-                fit.family == VL_LENS_FISHEYE ? "equidistant"
-                : fit.count == 8              ? "radialtangential8"
-                                              : "radialtangential",
-                c.fx, c.fy);
-  vl_camera_put(text, "     principal_point: [%.17g, %.17g]}\n", c.cx - 0.5, c.cy - 0.5);
-  return VL_OK;
+  const bool full = fit.count > 4;
+  const char *brown = full ? "radialtangential8" : "radialtangential";
+  return VL_PUT_FORM(
+      text, record, &c,
+      "%YAML:1.0\ncameras:\n  - {T_SC: [$pose],\n     image_dimension: [$width, $height],\n"
+      "     distortion_coefficients: [$k],\n     distortion_type: $lens,\n     focal_length: [$fx, $fy],\n"
+      "     principal_point: [$cx0, $cy0]}\n",
+      VL_VALUES("k", fit.k, full ? 8 : 4), VL_WORD("lens", fit.family == VL_LENS_FISHEYE ? "equidistant" : brown));
 }
 
 const vlCameraFormat vl_format_okvis = {.name = "okvis", .is_tree = is_okvis, .read = read_okvis, .write = write_okvis};

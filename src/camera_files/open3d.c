@@ -62,19 +62,14 @@ static bool is_open3d(const json_t *tree) {
   return flat || (vl_camera_has(tree, "extrinsic") && vl_camera_has_in(tree, "intrinsic", "intrinsic_matrix"));
 }
 
-static vlResult write_open3d(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, &c);
-  if (result != VL_OK) return result;
-  double m[16];
-  for (int i = 0; i < 16; i++) m[i] = c.camera_from_world[4 * (i % 4) + i / 4];
-  vl_camera_put(text, "{\n  \"class_name\": \"PinholeCameraParameters\",\n  \"extrinsic\": [");
-  vl_camera_put_numbers(text, m, 16);
-  vl_camera_put(text, "],\n  \"intrinsic\": {\n    \"height\": %u,\n    \"intrinsic_matrix\": [", c.height);
-  vl_camera_put_numbers(text, (double[]){c.fx, 0, 0, c.skew, c.fy, 0, c.cx - 0.5, c.cy - 0.5, 1}, 9);
-  vl_camera_put(text, "],\n    \"width\": %u\n  },\n  \"version_major\": 1,\n  \"version_minor\": 0\n}\n", c.width);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_open3d = {
-    .name = "open3d", .is_tree = is_open3d, .read = read_open3d, .write = write_open3d};
+    .name = "open3d",
+    .is_tree = is_open3d,
+    .read = read_open3d,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form =
+        "{\n  \"class_name\": \"PinholeCameraParameters\",\n  \"extrinsic\": [$viewcolumns],\n"
+        "  \"intrinsic\": {\n    \"height\": $height,\n"
+        "    \"intrinsic_matrix\": [$fx, 0, 0, $skew, $fy, 0, $cx0, $cy0, 1],\n    \"width\": $width\n"
+        "  },\n  \"version_major\": 1,\n  \"version_minor\": 0\n}\n"};

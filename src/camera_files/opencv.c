@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "camera_files/fields.h"
 #include "camera_files/opencv.h"
 
 /* The names of lens models in both dialects; without a name the number of coefficients decides. */
@@ -156,8 +157,7 @@ static vlResult read_stereo(const vlCameraFile *file, const json_t *tree, const 
   if (result == VL_OK && vl_camera_has(tree, lens)) result = vl_opencv_read_lens(file, tree, lens, d);
   vl_camera_set_origin(d);
   if (result == VL_OK && second) {
-    result = vl_camera_numbers(file, tree, "R", r, 9, 9, NULL);
-    if (result == VL_OK) result = vl_camera_numbers(file, tree, "T", t, 3, 3, NULL);
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("T", t, 3));
     if (result == VL_OK) vl_camera_set_pose(d, r, t);
   }
   vl_camera_name(record, second ? "right" : "left");

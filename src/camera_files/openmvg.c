@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 /* The number at key, -1 where there is none. The tree's numbers are doubles. */
 static double id_of(const json_t *object, const char *key) {
@@ -89,8 +89,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
     return VL_OK;
   }
   const json_t *data = data_of(item, "focal_length");
-  result = vl_camera_number(file, data, "focal_length", &f);
-  if (result == VL_OK) result = vl_camera_numbers(file, data, "principal_point", c, 2, 2, NULL);
+  result = VL_READ_FIELDS(file, data, VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2));
   if (result != VL_OK) return result;
   d->fx = d->fy = f;
   d->cx = c[0];
@@ -106,8 +105,8 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   double r[9], center[3], t[3];
   if (!item) return vl_camera_wrong_in(file, view, "id_intrinsic", "openmvg: the view's intrinsic is missing");
   vlResult result = read_intrinsic(file, intrinsics, item, record);
-  if (result == VL_OK) result = vl_camera_numbers(file, pose, "rotation", r, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, pose, "center", center, 3, 3, NULL);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9), VL_FIELD_LIST("center", center, 3));
   if (result != VL_OK) return result;
   for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * center[0] + r[3 * i + 1] * center[1] + r[3 * i + 2] * center[2]);
   vl_camera_set_pose(&record->camera, r, t);
@@ -145,50 +144,40 @@ static bool is_openmvg(const json_t *tree) {
 }
 
 static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  static const char *const names[] = {"pinhole", "pinhole_brown_t2", "fisheye"};
   vlCamera c;
-  double k[14] = {0}, r[9], t[3], center[3];
-  uint32_t n;
-  vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
+  vlFittedLens fit;
+  vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE, VL_LENSES_COMMON, 5, &c, &fit);
+  if (result == VL_OK) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
   if (result != VL_OK) return result;
-  vlLensFamily family = vl_camera_lens_family(&record->camera, k, &n);
-  int model = family == VL_LENS_PINHOLE            ? 0
-              : family == VL_LENS_OPENCV && n <= 5 ? 1
-              : family == VL_LENS_FISHEYE          ? 2
-                                                   : 3;
-  if (model == 3) return vl_camera_no_model(file, &record->camera);
-  result = vl_camera_refuse(file, "fy", c.fx != c.fy);
-  if (result != VL_OK) return result;
+  const double brown[5] = {fit.k[0], fit.k[1], fit.k[4], fit.k[2], fit.k[3]};
+  double r[9], t[3], centre[3];
   vl_camera_get_pose(&c, r, t);
-  for (int i = 0; i < 3; i++) center[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
-  vl_camera_put(text,
-                "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
-                "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
-                "\"\", \"filename\": ");
+  for (int i = 0; i < 3; i++) centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
+  const bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV;
+  vl_camera_put_form(text, record, &c, NULL,
+              "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
+              "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
+              "\"\", \"filename\": ");
   vl_camera_put_string(text, record->name);
-  vl_camera_put(text, ", \"width\": %u, \"height\": %u, \"id_view\": 0, \"id_intrinsic\": 0, \"id_pose\": 0}}}}],\n",
-                c.width, c.height);
-  vl_camera_put(text,
-                "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, \"polymorphic_name\": "
-                "\"%s\", \"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": %u, \"height\": %u, "
-                "\"focal_length\": %.17g, \"principal_point\": [%.17g, %.17g]",
-                names[model], c.width, c.height, c.fx, c.cx, c.cy);
-  if (model) {
-    vl_camera_put(text, model == 1 ? ", \"disto_t2\": [" : ", \"fisheye\": [");
-    if (model == 1) vl_camera_put_numbers(text, (double[]){k[0], k[1], k[4], k[2], k[3]}, 5);
-    if (model == 2) vl_camera_put_numbers(text, k, 4);
-    vl_camera_put(text, "]");
-  }
-  vl_camera_put(text, "}}}}],\n  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [");
-  for (int i = 0; i < 3; i++) {
-    vl_camera_put(text, i ? ", [" : "[");
-    vl_camera_put_numbers(text, r + 3 * i, 3);
-    vl_camera_put(text, "]");
-  }
-  vl_camera_put(text, "], \"center\": [");
-  vl_camera_put_numbers(text, center, 3);
-  vl_camera_put(text, "]}}],\n  \"structure\": [],\n  \"control_points\": []\n}\n");
-  return VL_OK;
+  return VL_PUT_FORM(
+      text, record, &c,
+      ", \"width\": $width, \"height\": $height, \"id_view\": 0, \"id_intrinsic\": 0, \"id_pose\": 0}}}}],\n"
+      "  \"intrinsics\": [{\"key\": 0, \"value\": {\"polymorphic_id\": 2147483649, \"polymorphic_name\": \"$model\", "
+      "\"ptr_wrapper\": {\"id\": 2147483650, \"data\": {\"width\": $width, \"height\": $height, "
+      "\"focal_length\": $fx, \"principal_point\": [$cx, $cy]$before$k$after}}}}],\n"
+      "  \"extrinsics\": [{\"key\": 0, \"value\": {\"rotation\": [$R:3], \"center\": [$center]}}],\n"
+      "  \"structure\": [],\n  \"control_points\": []\n}\n",
+      VL_WORD("model", fisheye ? "fisheye"
+                       : bent  ? "pinhole_brown_t2"
+                               : "pinhole"),
+      VL_WORD("before", fisheye ? ", \"fisheye\": ["
+                        : bent  ? ", \"disto_t2\": ["
+                                : ""),
+      VL_VALUES("k", fisheye ? fit.k : brown,
+                fisheye ? 4
+                : bent  ? 5
+                        : 0),
+      VL_WORD("after", fisheye || bent ? "]" : ""), VL_VALUES("center", centre, 3));
 }
 
 const vlCameraFormat vl_format_openmvg = {

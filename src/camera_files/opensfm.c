@@ -4,7 +4,7 @@
  * larger side, measured from its middle: velo's cx is width / 2 + c_x max(width, height). */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult coefficients(const vlCameraFile *file, const json_t *camera, const char *const *names, double *k,
                              uint32_t count) {
@@ -47,15 +47,14 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, vlCa
   const char *type = vl_camera_text(camera, "projection_type");
   double f[2], c[2] = {0.0, 0.0};
   if (!type) type = "perspective";
-  vlResult result = vl_camera_side(file, camera, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
+  vlResult result =
+      VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height));
   if (result == VL_OK) result = read_lens(file, camera, type, d);
   if (result != VL_OK || d->projection == VL_PROJECTION_EQUIRECTANGULAR) return result;
   bool one = vl_camera_has(camera, "focal");
-  result = vl_camera_number(file, camera, one ? "focal" : "focal_x", &f[0]);
-  if (result == VL_OK) result = vl_camera_number(file, camera, one ? "focal" : "focal_y", &f[1]);
-  if (result == VL_OK) result = vl_camera_optional(file, camera, "c_x", &c[0]);
-  if (result == VL_OK) result = vl_camera_optional(file, camera, "c_y", &c[1]);
+  result = VL_READ_FIELDS(file, camera, VL_FIELD(one ? "focal" : "focal_x", &f[0]),
+                          VL_FIELD(one ? "focal" : "focal_y", &f[1]), VL_FIELD_OPTIONAL("c_x", &c[0]),
+                          VL_FIELD_OPTIONAL("c_y", &c[1]));
   double side = d->width > d->height ? d->width : d->height;
   d->fx = f[0] * side;
   d->fy = f[1] * side;
@@ -68,8 +67,7 @@ static vlResult read_shot(const vlCameraFile *file, const json_t *shot, const js
                           vlCameraRecord *record) {
   double v[3], t[3], r[9];
   const char *camera = vl_camera_text(shot, "camera");
-  vlResult result = vl_camera_numbers(file, shot, "rotation", v, 3, 3, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, shot, "translation", t, 3, 3, NULL);
+  vlResult result = VL_READ_FIELDS(file, shot, VL_FIELD_LIST("rotation", v, 3), VL_FIELD_LIST("translation", t, 3));
   if (result != VL_OK) return result;
   if (!camera || !vl_camera_has(cameras, camera))
     return vl_camera_wrong_in(file, shot, "camera", "opensfm: the shot's camera \"%.60s\" is not there",
@@ -133,7 +131,7 @@ static bool is_opensfm(const json_t *tree) {
 static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
   vlCamera c;
-  double k[14], r[9], v[3], t[3];
+  double k[14];
   uint32_t n;
   vlResult result = vl_camera_fit(file, record, VL_HOLDS_POSE, &c);
   if (result != VL_OK) return result;
@@ -145,27 +143,22 @@ static vlResult write_opensfm(const vlCameraFile *file, const vlCameraRecord *re
   }
   if ((family != VL_LENS_PINHOLE && family != VL_LENS_OPENCV && !bent) || n > 5)
     return vl_camera_no_model(file, &record->camera);
-  double side = c.width > c.height ? c.width : c.height;
-  vl_camera_get_pose(&c, r, t);
-  vl_rotation_to_vector(r, v);
-  vl_camera_put(text, "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"%s\", ",
-                whole  ? "spherical"
-                : bent ? "fisheye_opencv"
-                       : "brown");
-  vl_camera_put(text, "\"width\": %u, \"height\": %u", c.width, c.height);
+  const char *type = whole ? "spherical" : bent ? "fisheye_opencv" : "brown";
+  const double side = c.width > c.height ? c.width : c.height;
+  const double f[4] = {c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side, (c.cy - 0.5 * c.height) / side};
+  VL_PUT_FORM(text, record, &c,
+              "[\n  {\n    \"cameras\": {\n      \"camera\": {\"projection_type\": \"$type\", \"width\": $width, "
+              "\"height\": $height",
+              VL_WORD("type", type));
   if (!whole)
-    vl_camera_put(text, ",\n        \"focal_x\": %.17g, \"focal_y\": %.17g, \"c_x\": %.17g, \"c_y\": %.17g",
-                  c.fx / side, c.fy / side, (c.cx - 0.5 * c.width) / side + 0.0, (c.cy - 0.5 * c.height) / side + 0.0);
+    VL_PUT_FORM(text, record, &c, ",\n        \"focal_x\": $f@0, \"focal_y\": $f@1, \"c_x\": $f@2, \"c_y\": $f@3",
+                VL_VALUES("f", f, 4));
   for (int i = 0; i < (bent ? 4 : 5) && !whole; i++)
     vl_camera_put(text, ", \"%s\": %.17g", bent ? fisheye[i] : brown[i], k[i] + 0.0);
-  vl_camera_put(text, "}\n    },\n    \"shots\": {\n      ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "camera");
-  vl_camera_put(text, ": {\"camera\": \"camera\",\n        \"rotation\": [");
-  vl_camera_put_numbers(text, v, 3);
-  vl_camera_put(text, "],\n        \"translation\": [");
-  vl_camera_put_numbers(text, t, 3);
-  vl_camera_put(text, "]}\n    },\n    \"points\": {}\n  }\n]\n");
-  return VL_OK;
+  return vl_camera_put_form(text, record, &c, NULL,
+                            "}\n    },\n    \"shots\": {\n      $name: {\"camera\": \"camera\",\n"
+                            "        \"rotation\": [$V],\n        \"translation\": [$t]}\n    },\n"
+                            "    \"points\": {}\n  }\n]\n");
 }
 
 const vlCameraFormat vl_format_opensfm = {

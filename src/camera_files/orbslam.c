@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static const char *key_of(char key[64], const char *prefix, const char *name) {
   snprintf(key, 64, "%s.%s", prefix, name);
@@ -84,14 +84,13 @@ static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *re
   vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
   if (result != VL_OK) return result;
   bool fisheye = fit.family == VL_LENS_FISHEYE;
-  vl_camera_put(text, "%%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"%s\"\n\n",
-                fisheye ? "KannalaBrandt8" : "PinHole");
-  vl_camera_put(text, "Camera1.fx: %.17g\nCamera1.fy: %.17g\nCamera1.cx: %.17g\nCamera1.cy: %.17g\n\n", c.fx, c.fy,
-                c.cx - 0.5, c.cy - 0.5);
+  VL_PUT_FORM(text, record, &c,
+              "%YAML:1.0\n\nFile.version: \"1.0\"\n\nCamera.type: \"$type\"\n\nCamera1.fx: $fx\nCamera1.fy: $fy\n"
+              "Camera1.cx: $cx0\nCamera1.cy: $cy0\n\n",
+              VL_WORD("type", fisheye ? "KannalaBrandt8" : "PinHole"));
   for (uint32_t i = 0; i < fit.count; i++)
     vl_camera_put(text, "Camera1.%s: %.17g\n", fisheye ? radial[i] : pinhole[i], fit.k[i] + 0.0);
-  vl_camera_put(text, "\nCamera.width: %u\nCamera.height: %u\n", c.width, c.height);
-  return VL_OK;
+  return vl_camera_put_form(text, record, &c, NULL, "\nCamera.width: $width\nCamera.height: $height\n");
 }
 
 const vlCameraFormat vl_format_orbslam = {

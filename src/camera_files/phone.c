@@ -5,11 +5,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static void set_arkit_pose(const double m[16], vlCameraDef *d) {
-  d->has_matrix = true;
-  vl_camera_flip_axes(m, d->world_from_camera);
+  vl_camera_set_flipped(d, m);
 }
 
 /* ---- Record3D ---------------------------------------------------------------------------------------------------- */
@@ -61,12 +60,9 @@ const vlCameraFormat vl_format_record3d = {.name = "record3d",
 static vlResult read_polycam(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   double m[16] = {[15] = 1.0};
-  vlResult result = vl_camera_side(file, tree, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, "height", &d->height);
-  if (result == VL_OK) result = vl_camera_number(file, tree, "fx", &d->fx);
-  if (result == VL_OK) result = vl_camera_number(file, tree, "fy", &d->fy);
-  if (result == VL_OK) result = vl_camera_number(file, tree, "cx", &d->cx);
-  if (result == VL_OK) result = vl_camera_number(file, tree, "cy", &d->cy);
+  vlResult result =
+      VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height),
+                     VL_FIELD("fx", &d->fx), VL_FIELD("fy", &d->fy), VL_FIELD("cx", &d->cx), VL_FIELD("cy", &d->cy));
   for (int i = 0; i < 12 && result == VL_OK; i++) {
     const char key[] = {'t', '_', (char)('0' + i / 4), (char)('0' + i % 4), 0};
     result = vl_camera_number(file, tree, key, &m[i]);
@@ -79,23 +75,18 @@ static bool is_polycam(const json_t *tree) {
   return vl_camera_has(tree, "t_00") && vl_camera_has(tree, "t_23") && vl_camera_has(tree, "fx");
 }
 
-static vlResult write_polycam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double m[16];
-  vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE, &c);
-  if (result != VL_OK) return result;
-  vl_camera_flip_axes(c.world_from_camera, m);
-  vl_camera_put(text,
-                "{\n  \"width\": %u, \"height\": %u,\n  \"fx\": %.17g, \"fy\": %.17g, \"cx\": %.17g, \"cy\": %.17g",
-                c.width, c.height, c.fx, c.fy, c.cx, c.cy);
-  for (int i = 0; i < 12; i++)
-    vl_camera_put(text, ",%s\"t_%d%d\": %.17g", i % 4 ? " " : "\n  ", i / 4, i % 4, m[i] + 0.0);
-  vl_camera_put(text, "\n}\n");
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_polycam = {
-    .name = "polycam", .is_tree = is_polycam, .read = read_polycam, .write = write_polycam};
+    .name = "polycam",
+    .is_tree = is_polycam,
+    .read = read_polycam,
+    .holds = VL_HOLDS_POSE,
+    .lenses = 1 << VL_LENS_PINHOLE,
+    .form =
+        "{\n  \"width\": $width, \"height\": $height,\n"
+        "  \"fx\": $fx, \"fy\": $fy, \"cx\": $cx, \"cy\": $cy,\n"
+        "  \"t_00\": $flipped@0, \"t_01\": $flipped@1, \"t_02\": $flipped@2, \"t_03\": $flipped@3,\n"
+        "  \"t_10\": $flipped@4, \"t_11\": $flipped@5, \"t_12\": $flipped@6, \"t_13\": $flipped@7,\n"
+        "  \"t_20\": $flipped@8, \"t_21\": $flipped@9, \"t_22\": $flipped@10, \"t_23\": $flipped@11\n}\n"};
 
 /* ---- 3D Scanner App ---------------------------------------------------------------------------------------------- */
 
@@ -104,8 +95,8 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCam
   double m[16], k[9];
   char image[300];
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *dot = strrchr(name, '.');
-  vlResult result = vl_camera_numbers(file, tree, "cameraPoseARFrame", m, 16, 16, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "intrinsics", k, 9, 9, NULL);
+  vlResult result =
+      VL_READ_FIELDS(file, tree, VL_FIELD_LIST("cameraPoseARFrame", m, 16), VL_FIELD_LIST("intrinsics", k, 9));
   if (result != VL_OK) return result;
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);
   set_arkit_pose(m, d);

@@ -5,7 +5,7 @@
  * from world, and position, the camera's centre; (0.5, 0.5). */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
   while (count && k[count - 1] == 0.0) count--;
@@ -98,9 +98,8 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
     record->frames++;
   }
   if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = vl_camera_numbers(file, chosen, "camera_intrinsic", k, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "rotation", q, 4, 4, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "translation", t, 3, 3, NULL);
+  vlResult result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("camera_intrinsic", k, 9),
+                                   VL_FIELD_LIST("rotation", q, 4), VL_FIELD_LIST("translation", t, 3));
   if (result == VL_OK) result = vl_camera_set_k(file, chosen, "camera_intrinsic", k, d);
   if (result != VL_OK) return result;
   if (!vl_rotation_from_quaternion(q, r))
@@ -134,10 +133,9 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCa
   }
   if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "K", k, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "distCoef", lens, 5, 5, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "R", r, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, chosen, "t", t, 3, 3, NULL);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, chosen, VL_FIELD_LIST("K", k, 9), VL_FIELD_LIST("distCoef", lens, 5),
+                            VL_FIELD_LIST("R", r, 9), VL_FIELD_LIST("t", t, 3));
   if (result == VL_OK) result = vl_camera_set_k(file, chosen, "K", k, d);
   if (result != VL_OK) return result;
   set_lens(lens, 5, d);
@@ -149,33 +147,19 @@ static bool is_panoptic(const json_t *tree) {
   return vl_camera_has_in(tree, "cameras", "distCoef") && vl_camera_has_in(tree, "cameras", "K");
 }
 
-static void put_list(vlCameraText *text, const char *key, const double *values, uint32_t count) {
-  vl_camera_put(text, ",\n   \"%s\": [", key);
-  for (uint32_t i = 0; i < count; i++)
-    vl_camera_put(text, "%s%.17g%s", i % 3 ? ", " : i ? ", [" : "[", values[i] + 0.0, i % 3 == 2 ? "]" : "");
-  vl_camera_put(text, "]");
-}
-
-static vlResult write_panoptic(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double k[14], r[9], t[3];
-  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, k, &c);
-  if (result != VL_OK) return result;
-  vl_camera_get_pose(&c, r, t);
-  vl_camera_put(text, "{\"cameras\": [\n  {\"name\": ");
-  vl_camera_put_string(text, record->name[0] ? record->name : "00_00");
-  vl_camera_put(text, ", \"type\": \"hd\", \"resolution\": [%u, %u], \"panel\": 0, \"node\": 0", c.width, c.height);
-  put_list(text, "K", (double[]){c.fx, c.skew, c.cx - 0.5, 0, c.fy, c.cy - 0.5, 0, 0, 1}, 9);
-  vl_camera_put(text, ",\n   \"distCoef\": [");
-  vl_camera_put_numbers(text, k, 5);
-  vl_camera_put(text, "]");
-  put_list(text, "R", r, 9);
-  vl_camera_put(text, ",\n   \"t\": [[%.17g], [%.17g], [%.17g]]}\n]}\n", t[0], t[1], t[2]);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_panoptic = {
-    .name = "panoptic", .is_tree = is_panoptic, .read = read_panoptic, .write = write_panoptic};
+    .name = "panoptic",
+    .is_tree = is_panoptic,
+    .read = read_panoptic,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
+    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
+    .least = 5,
+    .most = 5,
+    .unnamed = "00_00",
+    .form =
+        "{\"cameras\": [\n"
+        "  {\"name\": $name, \"type\": \"hd\", \"resolution\": [$width, $height], \"panel\": 0, \"node\": 0,\n"
+        "   \"K\": [$K:3],\n   \"distCoef\": [$k],\n   \"R\": [$R:3],\n   \"t\": [$t:1]}\n]}\n"};
 
 /* ---- Nerfies ----------------------------------------------------------------------------------------------------- */
 
@@ -183,16 +167,12 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCam
   vlCameraDef *d = &record->camera;
   double r[9], p[3], f, c[2], aspect = 1.0, radial[3] = {0.0}, tangential[2] = {0.0};
   vlResult result = vl_camera_side_pair(file, tree, "image_size", record);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "orientation", r, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "position", p, 3, 3, NULL);
-  if (result == VL_OK) result = vl_camera_number(file, tree, "focal_length", &f);
-  if (result == VL_OK) result = vl_camera_numbers(file, tree, "principal_point", c, 2, 2, NULL);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "skew", &d->skew);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "pixel_aspect_ratio", &aspect);
-  if (result == VL_OK && vl_camera_has(tree, "radial_distortion"))
-    result = vl_camera_numbers(file, tree, "radial_distortion", radial, 0, 3, NULL);
-  if (result == VL_OK && vl_camera_has(tree, "tangential_distortion"))
-    result = vl_camera_numbers(file, tree, "tangential_distortion", tangential, 0, 2, NULL);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("orientation", r, 9), VL_FIELD_LIST("position", p, 3),
+                            VL_FIELD("focal_length", &f), VL_FIELD_LIST("principal_point", c, 2),
+                            VL_FIELD_OPTIONAL("skew", &d->skew), VL_FIELD_OPTIONAL("pixel_aspect_ratio", &aspect),
+                            VL_FIELD_LIST_OPTIONAL("radial_distortion", radial, 3, NULL),
+                            VL_FIELD_LIST_OPTIONAL("tangential_distortion", tangential, 2, NULL));
   if (result != VL_OK) return result;
   d->fx = f;
   d->fy = f * aspect;
@@ -208,27 +188,16 @@ static bool is_nerfies(const json_t *tree) {
          vl_camera_has(tree, "principal_point");
 }
 
-static vlResult write_nerfies(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  double k[14], r[9], t[3];
-  vlResult result = vl_camera_fit_opencv(file, record, VL_HOLDS_POSE | VL_HOLDS_SKEW, k, &c);
-  if (result != VL_OK) return result;
-  const double *m = c.world_from_camera;
-  vl_camera_get_pose(&c, r, t);
-  vl_camera_put(text, "{\n  \"orientation\": [");
-  for (int i = 0; i < 3; i++) {
-    vl_camera_put(text, "%s[", i ? ", " : "");
-    vl_camera_put_numbers(text, r + 3 * i, 3);
-    vl_camera_put(text, "]");
-  }
-  vl_camera_put(
-      text,
-      "],\n  \"position\": [%.17g, %.17g, %.17g],\n  \"focal_length\": %.17g,\n  \"principal_point\": [%.17g, "
-      "%.17g],\n  \"skew\": %.17g,\n  \"pixel_aspect_ratio\": %.17g,\n  \"radial_distortion\": [%.17g, %.17g, "
-      "%.17g],\n  \"tangential_distortion\": [%.17g, %.17g],\n  \"image_size\": [%u, %u]\n}\n",
-      m[3], m[7], m[11], c.fx, c.cx, c.cy, c.skew, c.fy / c.fx, k[0], k[1], k[4], k[2], k[3], c.width, c.height);
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_nerfies = {
-    .name = "nerfies", .is_tree = is_nerfies, .read = read_nerfies, .write = write_nerfies};
+    .name = "nerfies",
+    .is_tree = is_nerfies,
+    .read = read_nerfies,
+    .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
+    .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
+    .least = 5,
+    .most = 5,
+    .form =
+        "{\n  \"orientation\": [$R:3],\n  \"position\": [$centre],\n  \"focal_length\": $fx,\n"
+        "  \"principal_point\": [$cx, $cy],\n  \"skew\": $skew,\n  \"pixel_aspect_ratio\": $aspect,\n"
+        "  \"radial_distortion\": [$k@0, $k@1, $k@4],\n  \"tangential_distortion\": [$k@2, $k@3],\n"
+        "  \"image_size\": [$width, $height]\n}\n"};

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 #include "camera_files/opencv.h"
 
@@ -15,12 +16,13 @@ static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraR
   const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
   bool message = k[0] != 'c';
   double binning[2] = {0, 0};
-  vlResult result = vl_camera_side(file, tree, message ? "width" : "image_width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, message ? "height" : "image_height", &d->height);
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
+                                   VL_FIELD_SIDE(message ? "height" : "image_height", &d->height));
   if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, k, d);
   if (result == VL_OK) result = vl_opencv_read_lens(file, tree, c, d);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_x", &binning[0]);
-  if (result == VL_OK) result = vl_camera_optional(file, tree, "binning_y", &binning[1]);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
+                            VL_FIELD_OPTIONAL("binning_y", &binning[1]));
   if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
     return vl_camera_wrong_in(file, tree, "binning_x",
                               "ros: binning of %g x %g pixels is not taken; give the full image's camera", binning[0],

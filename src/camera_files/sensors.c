@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/transform.h"
 
 static bool all_zero(const double *k, uint32_t count) {
@@ -51,9 +51,8 @@ static vlResult depthai_pose(const vlCameraFile *file, const json_t *list, const
     vlResult result = vl_camera_optional(file, extrinsics, "toCameraSocket", &socket);
     if (result != VL_OK || socket < 0.0) return result;
     result = vl_camera_numbers(file, extrinsics, "rotationMatrix", r, 9, 9, NULL);
-    if (result == VL_OK) result = vl_camera_number(file, shift, "x", &t[0]);
-    if (result == VL_OK) result = vl_camera_number(file, shift, "y", &t[1]);
-    if (result == VL_OK) result = vl_camera_number(file, shift, "z", &t[2]);
+    if (result == VL_OK)
+      result = VL_READ_FIELDS(file, shift, VL_FIELD("x", &t[0]), VL_FIELD("y", &t[1]), VL_FIELD("z", &t[2]));
     if (result != VL_OK) return result;
     *world = vl_mat4_multiply(rigid(r, t), *world);
     camera = depthai_camera(list, socket);
@@ -81,12 +80,10 @@ static vlResult read_depthai(const vlCameraFile *file, const json_t *tree, vlCam
     record->frames++;
   }
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
-  vlResult result = vl_camera_side(file, camera, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, camera, "height", &d->height);
-  if (result == VL_OK) result = vl_camera_numbers(file, camera, "intrinsicMatrix", k, 9, 9, NULL);
-  if (result == VL_OK && vl_camera_has(camera, "distortionCoeff"))
-    result = vl_camera_numbers(file, camera, "distortionCoeff", lens, 0, 14, &count);
-  if (result == VL_OK) result = vl_camera_optional(file, camera, "cameraType", &type);
+  vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height),
+                                   VL_FIELD_LIST("intrinsicMatrix", k, 9),
+                                   VL_FIELD_LIST_OPTIONAL("distortionCoeff", lens, 14, &count),
+                                   VL_FIELD_OPTIONAL("cameraType", &type));
   if (result == VL_OK) result = vl_camera_set_k(file, camera, "intrinsicMatrix", k, d);
   if (result == VL_OK) result = depthai_pose(file, list, camera, &world);
   if (result != VL_OK) return result;
@@ -130,13 +127,13 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCame
   }
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *intrinsics, *pose;
-  vlResult result = vl_camera_side(file, camera, "SensorWidth", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, camera, "SensorHeight", &d->height);
+  vlResult result =
+      VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("SensorWidth", &d->width), VL_FIELD_SIDE("SensorHeight", &d->height));
   if (result == VL_OK) result = vl_camera_field(file, camera, "Intrinsics", &intrinsics);
   if (result == VL_OK) result = vl_camera_field(file, camera, "Rt", &pose);
   if (result == VL_OK) result = vl_camera_numbers(file, intrinsics, "ModelParameters", v, 14, 14, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, pose, "Rotation", r, 9, 9, NULL);
-  if (result == VL_OK) result = vl_camera_numbers(file, pose, "Translation", t, 3, 3, NULL);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("Rotation", r, 9), VL_FIELD_LIST("Translation", t, 3));
   if (result != VL_OK) return result;
   const char *model = vl_camera_text(intrinsics, "ModelType");
   if (model && !strstr(model, "BrownConrady"))
@@ -174,12 +171,9 @@ static vlResult read_stream(const vlCameraFile *file, const json_t *stream, vlCa
   uint32_t count = 0;
   const char *model = vl_camera_text(stream, "model");
   vlResult result = vl_camera_sides(file, stream, "width", "height", record);
-  if (result == VL_OK) result = vl_camera_number(file, stream, "fx", &fx);
-  if (result == VL_OK) result = vl_camera_number(file, stream, "fy", &fy);
-  if (result == VL_OK) result = vl_camera_number(file, stream, "ppx", &cx);
-  if (result == VL_OK) result = vl_camera_number(file, stream, "ppy", &cy);
-  if (result == VL_OK && vl_camera_has(stream, "coeffs"))
-    result = vl_camera_numbers(file, stream, "coeffs", k, 0, 5, &count);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, stream, VL_FIELD("fx", &fx), VL_FIELD("fy", &fy), VL_FIELD("ppx", &cx),
+                            VL_FIELD("ppy", &cy), VL_FIELD_LIST_OPTIONAL("coeffs", k, 5, &count));
   if (result != VL_OK) return result;
   vl_camera_set_centred(d, fx, fy, cx, cy);
   vl_camera_set_origin(d);
@@ -228,21 +222,14 @@ static bool is_realsense(const json_t *tree) {
   return false;
 }
 
-static vlResult write_realsense(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
-  vlCamera c;
-  vlFittedLens fit;
-  vlResult result = vl_camera_fit_lens(file, record, 0, VL_LENSES_COMMON, 5, &c, &fit);
-  if (result != VL_OK) return result;
-  bool fisheye = fit.family == VL_LENS_FISHEYE;
-  vl_camera_put(
-      text,
-      "{\n  \"width\": %u, \"height\": %u,\n  \"ppx\": %.17g, \"ppy\": %.17g,\n  \"fx\": %.17g, \"fy\": %.17g,\n"
-      "  \"model\": \"distortion.%s\",\n  \"coeffs\": [",
-      c.width, c.height, c.cx - 0.5, c.cy - 0.5, c.fx, c.fy, fisheye ? "kannala_brandt4" : "brown_conrady");
-  vl_camera_put_numbers(text, fit.k, 5);
-  vl_camera_put(text, "]\n}\n");
-  return VL_OK;
-}
-
 const vlCameraFormat vl_format_realsense = {
-    .name = "realsense", .is_tree = is_realsense, .read = read_realsense, .write = write_realsense};
+    .name = "realsense",
+    .is_tree = is_realsense,
+    .read = read_realsense,
+    .lenses = VL_LENSES_COMMON,
+    .least = 5,
+    .most = 5,
+    .lens_words = {"brown_conrady", "brown_conrady", "kannala_brandt4"},
+    .form =
+        "{\n  \"width\": $width, \"height\": $height,\n  \"ppx\": $cx0, \"ppy\": $cy0,\n"
+        "  \"fx\": $fx, \"fy\": $fy,\n  \"model\": \"distortion.$lens\",\n  \"coeffs\": [$k]\n}\n"};

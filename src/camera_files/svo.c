@@ -4,7 +4,7 @@
  * and its image begins at (-0.5, -0.5); so cx in velo's pixels is cam_cx times the width. */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   static const char *const names[] = {"cam_fx", "cam_fy", "cam_cx", "cam_cy"};
@@ -17,7 +17,7 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
     return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%s\"; there are Pinhole, ATAN",
                               vl_short_text(model).text);
   vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
-  for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_number(file, tree, names[i], &f[i]);
+  if (result == VL_OK) result = vl_camera_read_named(file, tree, names, 4, false, f);
   for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++) result = vl_camera_optional(file, tree, lens[i], &k[i]);
   if (result != VL_OK) return result;
   vl_camera_set_origin(d);
@@ -118,24 +118,21 @@ static void put_matrix(vlCameraText *text, const char *indent, const char *name,
 }
 
 static vlResult write_svo(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
+  static const char *const words[] = {"none", "radial-tangential", "equidistant", "fisheye"};
   vlCamera c;
   vlFittedLens fit;
   vlResult result = vl_camera_fit_lens(file, record, VL_HOLDS_POSE,
                                        VL_LENSES_COMMON | 1 << VL_LENS_FOV | 1 << VL_LENS_UNIFIED, 4, &c, &fit);
   if (result != VL_OK) return result;
-  bool unified = fit.family == VL_LENS_UNIFIED, fov = fit.family == VL_LENS_FOV;
-  const char *lens = fov                             ? "fisheye"
-                     : fit.family == VL_LENS_FISHEYE ? "equidistant"
-                     : fit.count                     ? "radial-tangential"
-                                                     : "none";
+  const bool unified = fit.family == VL_LENS_UNIFIED, fov = fit.family == VL_LENS_FOV;
   const double f[5] = {c.shape[0], c.fx, c.fy, c.cx - 0.5, c.cy - 0.5};
   if (fov) fit.k[0] = c.shape[0];
   vl_camera_put(text, "label: rig\ncameras:\n- camera:\n    label: ");
   vl_camera_put_string(text, record->name[0] ? record->name : "cam0");
-  vl_camera_put(text, "\n    type: %s\n    image_width: %u\n    image_height: %u\n", unified ? "omni" : "pinhole",
-                c.width, c.height);
+  VL_PUT_FORM(text, record, &c, "\n    type: $type\n    image_width: $width\n    image_height: $height\n",
+              VL_WORD("type", unified ? "omni" : "pinhole"));
   put_matrix(text, "    ", "intrinsics", unified ? 5 : 4, 1, unified ? f : f + 1);
-  vl_camera_put(text, "    distortion:\n      type: %s\n", lens);
+  vl_camera_put(text, "    distortion:\n      type: %s\n", unified ? words[fit.count > 0] : words[fit.family]);
   if (fit.count || fov) put_matrix(text, "      ", "parameters", fov ? 1 : (int)fit.count, 1, fit.k);
   put_matrix(text, "  ", "T_B_C", 4, 4, c.world_from_camera);
   return VL_OK;

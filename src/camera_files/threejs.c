@@ -3,7 +3,7 @@
  * numbers by columns. Camera axes: x right, y up, z back. There are no pixels. */
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
@@ -22,8 +22,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCame
   if (result == VL_OK && !flat) result = vl_camera_number(file, object, "fov", &fov);
   if (result == VL_OK && !flat) result = vl_camera_number(file, object, "aspect", &aspect);
   for (int i = 0; i < 4 && flat && result == VL_OK; i++) result = vl_camera_number(file, object, sides[i], &s[i]);
-  if (result == VL_OK) result = vl_camera_optional(file, object, "near", &d->near_plane);
-  if (result == VL_OK) result = vl_camera_optional(file, object, "far", &d->far_plane);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, object, VL_FIELD_OPTIONAL("near", &d->near_plane),
+                            VL_FIELD_OPTIONAL("far", &d->far_plane));
   if (result != VL_OK) return result;
   if (flat) aspect = (s[1] - s[0]) / (s[2] - s[3]);
   if (!(zoom > 0.0 && aspect > 0.0) || (!flat && !(fov > 0.0 && fov < 180.0)))
@@ -62,23 +63,16 @@ static bool is_threejs(const json_t *tree) {
 
 static vlResult write_threejs(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
-  double m[16], columns[16];
   vlResult result = vl_camera_fit_pinhole(file, record, VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_PLANES, &c);
+  if (result == VL_OK) result = vl_camera_refuse_off_centre(file, &c);
   if (result != VL_OK) return result;
-  result = vl_camera_refuse_off_centre(file, &c);
-  if (result != VL_OK) return result;
-  vl_camera_flip_axes(c.world_from_camera, m);
-  for (int i = 0; i < 16; i++) columns[i] = m[4 * (i % 4) + i / 4];
-  vl_camera_put(
-      text,
-      "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n  \"object\": "
-      "{\"type\": \"PerspectiveCamera\", \"fov\": %.17g, \"zoom\": 1, \"aspect\": %.17g,\n    \"near\": %.17g, "
-      "\"far\": %.17g,\n    \"matrix\": [",
-      2.0 / degree * vl_precise_atan(0.5 * c.height / c.fy), c.width / c.fx * c.fy / c.height,
-      c.near_plane > 0.0 ? c.near_plane : 0.01, c.far_plane < 1e30 ? c.far_plane : 10000.0);
-  vl_camera_put_numbers(text, columns, 16);
-  vl_camera_put(text, "]}\n}\n");
-  return VL_OK;
+  const double aspect = c.width / c.fx * c.fy / c.height;
+  const double planes[2] = {c.near_plane > 0.0 ? c.near_plane : 0.01, c.far_plane < 1e30 ? c.far_plane : 10000.0};
+  return VL_PUT_FORM(text, record, &c,
+                     "{\n  \"metadata\": {\"version\": 4.6, \"type\": \"Object\", \"generator\": \"velo\"},\n"
+                     "  \"object\": {\"type\": \"PerspectiveCamera\", \"fov\": $yfov, \"zoom\": 1, \"aspect\": $own,\n"
+                     "    \"near\": $planes@0, \"far\": $planes@1,\n    \"matrix\": [$flippedcolumns]}\n}\n",
+                     VL_VALUES("own", &aspect, 1), VL_VALUES("planes", planes, 2));
 }
 
 const vlCameraFormat vl_format_threejs = {

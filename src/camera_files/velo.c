@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 #include "camera/kinds.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "velo/schema.h"
 
 /* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */
@@ -289,8 +289,8 @@ vlResult vl_camera_read_velo(const vlCameraFile *file, const json_t *tree, vlCam
   Fields fields;
   list_fields(&fields);
   vlResult result = check_names(file, tree, &fields);
-  if (result == VL_OK) result = vl_camera_side(file, tree, "width", &d->width);
-  if (result == VL_OK) result = vl_camera_side(file, tree, "height", &d->height);
+  if (result == VL_OK)
+    result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height));
   if (result == VL_OK) result = word(file, tree, "projection", projections, PROJECTIONS, &projection);
   if (result == VL_OK) result = word(file, tree, "pixel_origin", origins, 2, &origin);
   for (size_t i = 0; i < fields.count && result == VL_OK; i++) result = read_field(file, tree, &fields.items[i], d);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static const char with_distortion[] = "perspectiveProjWithDistortion";
 static const char without_distortion[] = "perspectiveProjWithoutDistortion";
@@ -56,8 +56,8 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   vlCameraDef *d = &record->camera;
   double size[2] = {0.0, 0.0};
   char name[64];
-  vlResult result = vl_camera_child_number(file, camera, "image_width", false, &size[0]);
-  if (result == VL_OK) result = vl_camera_child_number(file, camera, "image_height", false, &size[1]);
+  vlResult result = VL_READ_CHILDREN(file, camera, VL_FIELD_OPTIONAL("image_width", &size[0]),
+                                     VL_FIELD_OPTIONAL("image_height", &size[1]));
   if (result == VL_OK) result = read_model(file, model, d);
   if (result != VL_OK) return result;
   vl_camera_set_origin(d);
@@ -114,14 +114,15 @@ static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *recor
   if (!fits) return vl_camera_no_model(file, &record->camera);
   bool bent = !fisheye && k[0] != 0.0;
   const char *name = record->name[0] && !strpbrk(record->name, "<>&") ? record->name : "Camera";
-  vl_camera_put(text, "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>%s</name>\n", name);
-  vl_camera_put(text, "    <image_width>%u</image_width>\n    <image_height>%u</image_height>\n", c.width, c.height);
-  vl_camera_put(text, "    <model>\n      <type>%s</type>\n",
-                fisheye ? kannala_brandt
-                : bent  ? with_distortion
-                        : without_distortion);
-  vl_camera_put(text, "      <px>%.17g</px>\n      <py>%.17g</py>\n      <u0>%.17g</u0>\n      <v0>%.17g</v0>\n", c.fx,
-                c.fy, c.cx - 0.5, c.cy - 0.5);
+  VL_PUT_FORM(text, record, &c,
+              "<?xml version=\"1.0\"?>\n<root>\n  <camera>\n    <name>$own</name>\n"
+              "    <image_width>$width</image_width>\n    <image_height>$height</image_height>\n"
+              "    <model>\n      <type>$type</type>\n      <px>$fx</px>\n      <py>$fy</py>\n"
+              "      <u0>$cx0</u0>\n      <v0>$cy0</v0>\n",
+              VL_WORD("own", name),
+              VL_WORD("type", fisheye ? kannala_brandt
+                              : bent  ? with_distortion
+                                      : without_distortion));
   if (bent) vl_camera_put(text, "      <kud>%.17g</kud>\n      <kdu>%.17g</kdu>\n", k[0], -k[0]);
   for (int i = 0; i < 5 && fisheye; i++)
     vl_camera_put(text, "      <k%d>%.17g</k%d>\n", i + 1, i < 4 ? k[i] + 0.0 : 0.0, i + 1);

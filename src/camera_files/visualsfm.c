@@ -7,6 +7,7 @@
  * [3/3]: its relative error is 8e-9 at r |u|^2 = 0.05 and 5e-7 at 0.1. */
 #include <string.h>
 
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 
 /* The Pade approximant of g: numerator and denominator of s, s^2, s^3. */
@@ -99,12 +100,9 @@ static vlResult write_visualsfm(const vlCameraFile *file, const vlCameraRecord *
   if (result != VL_OK) return result;
   vl_camera_get_pose(&c, r, t);
   vl_rotation_to_quaternion(r, q);
-  const double *m = c.world_from_camera;
-  vl_camera_put(text, "NVM_V3 FixedK %.17g %.17g %.17g %.17g 0\n\n1\n\"%s\"\t%.17g", c.fx, c.cx, c.fy, c.cy,
-                record->name[0] && !strpbrk(record->name, "\"\n") ? record->name : "image.jpg", c.fx);
-  for (int i = 0; i < 4; i++) vl_camera_put(text, " %.17g", q[i]);
-  vl_camera_put(text, " %.17g %.17g %.17g 0 0\n\n0\n", m[3], m[7], m[11]);
-  return VL_OK;
+  const char *name = record->name[0] && !strpbrk(record->name, "\"\n") ? record->name : "image.jpg";
+  return VL_PUT_FORM(text, record, &c, "NVM_V3 FixedK $fx $cx $fy $cy 0\n\n1\n\"$own\"\t$fx $q:s $centre:s 0 0\n\n0\n",
+                     VL_WORD("own", name), VL_VALUES("q", q, 4));
 }
 
 const vlCameraFormat vl_format_visualsfm = {

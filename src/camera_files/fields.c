@@ -1,0 +1,228 @@
+/* camera_files/fields.c: see fields.h. */
+#include "camera_files/fields.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "math/elementary.h"
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+const char *const vl_camera_matrix_names[4] = {"fx", "fy", "cx", "cy"};
+
+static vlResult read_field(const vlCameraFile *file, const json_t *object, const vlCameraField *row) {
+  if (row->side) return vl_camera_side(file, object, row->key, row->side);
+  if (row->optional && !vl_camera_has(object, row->key)) return VL_OK;
+  if (!row->count) return vl_camera_number(file, object, row->key, row->values);
+  return vl_camera_numbers(file, object, row->key, row->values, row->optional ? 0 : row->count, row->count, row->found);
+}
+
+vlResult vl_camera_read_fields(const vlCameraFile *file, const json_t *object, const vlCameraField *rows) {
+  vlResult result = VL_OK;
+  for (; rows->key && result == VL_OK; rows++) result = read_field(file, object, rows);
+  return result;
+}
+
+vlResult vl_camera_read_children(const vlCameraFile *file, const json_t *element, const vlCameraField *rows) {
+  vlResult result = VL_OK;
+  for (; rows->key && result == VL_OK; rows++)
+    result = vl_camera_child_number(file, element, rows->key, !rows->optional, rows->values);
+  return result;
+}
+
+vlResult vl_camera_read_named(const vlCameraFile *file, const json_t *object, const char *const *names, uint32_t count,
+                              bool optional, double *values) {
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < count && result == VL_OK; i++)
+    result = read_field(file, object, &(vlCameraField){.key = names[i], .values = &values[i], .optional = optional});
+  return result;
+}
+
+const json_t *vl_camera_choose(const vlCameraFile *file, const json_t *list, const char *name_key,
+                               vlCameraRecord *record) {
+  record->frames = (uint32_t)json_array_size(list);
+  for (uint32_t i = 0; i < record->frames; i++) {
+    const json_t *item = json_array_get(list, i);
+    const char *name = name_key ? vl_camera_text(item, name_key) : NULL;
+    if (!vl_camera_is_frame(file, i, name)) continue;
+    if (name) vl_camera_name(record, name);
+    return item;
+  }
+  return NULL;
+}
+
+bool vl_camera_set_sides(vlCameraDef *def, const double size[2]) {
+  for (int i = 0; i < 2; i++)
+    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i])) return false;
+  def->width = (uint32_t)size[0];
+  def->height = (uint32_t)size[1];
+  return true;
+}
+
+vlResult vl_camera_unknown(const vlCameraFile *file, const json_t *object, const char *key, const char *word,
+                           const char *known) {
+  return vl_camera_wrong_in(file, object, key, "%s: unknown %s \"%s\"; %s", file->dialect, key,
+                            vl_short_text(word).text, known);
+}
+
+void vl_camera_set_rigid(vlCameraDef *def, const double world_from_camera[9], const double centre[3]) {
+  double m[16] = {[15] = 1.0};
+  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? world_from_camera[3 * (i / 4) + i % 4] : centre[i / 4];
+  vl_camera_set_matrix(def, m, false);
+}
+
+void vl_camera_set_centre(vlCameraDef *def, const double r[9], const double centre[3]) {
+  double t[3];
+  for (int i = 0; i < 3; i++) t[i] = 0.0 - (r[3 * i] * centre[0] + r[3 * i + 1] * centre[1] + r[3 * i + 2] * centre[2]);
+  vl_camera_set_pose(def, r, t);
+}
+
+void vl_camera_set_flipped(vlCameraDef *def, const double m[16]) {
+  def->has_matrix = true;
+  vl_camera_flip_axes(m, def->world_from_camera);
+}
+
+/* ---- writing ----------------------------------------------------------------------------------------------------- */
+
+/* The values that every form can name, computed from the camera. */
+typedef struct {
+  double sides[2], k[9], r[9], t[3], v[3], flipped[16], flipped_columns[16], view_columns[16], axes[9], centre[3];
+  double offset[2], aspect, ratio, yfov;
+} Values;
+
+static Values values_of(const vlCamera *c) {
+  const double degree = 3.14159265358979323846 / 180.0, *m = c->world_from_camera;
+  Values v = {.sides = {c->width, c->height},
+              .k = {c->fx, c->skew, c->cx - 0.5, 0, c->fy, c->cy - 0.5, 0, 0, 1},
+              .offset = {c->cx - 0.5, c->cy - 0.5},
+              .aspect = c->fy / c->fx,
+              .ratio = (double)c->width / c->height,
+              .yfov = 2.0 / degree * vl_precise_atan(0.5 * c->height / c->fy)};
+  vl_camera_get_pose(c, v.r, v.t);
+  vl_rotation_to_vector(v.r, v.v);
+  vl_camera_flip_axes(m, v.flipped);
+  for (int i = 0; i < 16; i++) {
+    const int other = 4 * (i % 4) + i / 4;
+    v.flipped_columns[i] = v.flipped[other];
+    v.view_columns[i] = c->camera_from_world[other];
+  }
+  for (int i = 0; i < 9; i++) v.axes[i] = m[4 * (i / 3) + i % 3];
+  for (int i = 0; i < 3; i++) v.centre[i] = m[4 * i + 3];
+  return v;
+}
+
+static void put_list(vlCameraText *text, const double *values, uint32_t count, char layout) {
+  const bool bracketed = layout >= '1' && layout <= '9';
+  const uint32_t step = bracketed ? (uint32_t)(layout - '0') : 1;
+  const char *mark = layout == 'q' ? "\"" : "";
+  for (uint32_t i = 0; i < count; i++) {
+    const bool first = bracketed && i % step == 0, last = bracketed && (i + 1) % step == 0;
+    vl_camera_put(text, "%s%s%s%.17g%s%s",
+                  !i              ? ""
+                  : layout == 's' ? " "
+                                  : ", ",
+                  first ? "[" : "", mark, values[i] + 0.0, mark, last ? "]" : "");
+  }
+}
+
+/* A key of a form: $key, $key@index, each with :layout or without. */
+typedef struct {
+  const char *name;
+  size_t length;
+  int index; /* -1: the whole list */
+  char layout;
+} Key;
+
+/* Returns the end of the key whose name begins at `at`. */
+static const char *parse_key(const char *at, Key *key) {
+  *key = (Key){.name = at, .index = -1};
+  while (isalnum((unsigned char)*at)) at++;
+  key->length = (size_t)(at - key->name);
+  if (*at == '@') {
+    char *end;
+    key->index = (int)strtol(at + 1, &end, 10);
+    at = end;
+  }
+  if (*at != ':' || !at[1] || !strchr("sq134", at[1])) return at;
+  key->layout = at[1];
+  return at + 2;
+}
+
+static const vlCameraValue *find_value(const vlCameraValue *list, const Key *key) {
+  for (; list && list->key; list++)
+    if (strlen(list->key) == key->length && memcmp(list->key, key->name, key->length) == 0) return list;
+  return NULL;
+}
+
+static void put_value(vlCameraText *text, const vlCameraRecord *record, const vlCameraValue *value, const Key *key) {
+  if (value->word)
+    vl_camera_put(text, "%s", value->word);
+  else if (value->values && key->index >= 0)
+    put_list(text, value->values + key->index, 1, key->layout);
+  else if (value->values)
+    put_list(text, value->values, value->count, key->layout);
+  else
+    vl_camera_put_string(text, record->name[0] ? record->name : "camera");
+}
+
+vlResult vl_camera_put_form(vlCameraText *text, const vlCameraRecord *record, const vlCamera *c,
+                            const vlCameraValue *own, const char *form) {
+  const Values v = values_of(c);
+  const vlCameraValue all[] = {VL_VALUES("width", &v.sides[0], 1),
+                               VL_VALUES("height", &v.sides[1], 1),
+                               VL_VALUES("fx", &c->fx, 1),
+                               VL_VALUES("fy", &c->fy, 1),
+                               VL_VALUES("skew", &c->skew, 1),
+                               VL_VALUES("cx", &c->cx, 1),
+                               VL_VALUES("cy", &c->cy, 1),
+                               VL_VALUES("cx0", &v.offset[0], 1),
+                               VL_VALUES("cy0", &v.offset[1], 1),
+                               VL_VALUES("near", &c->near_plane, 1),
+                               VL_VALUES("far", &c->far_plane, 1),
+                               VL_VALUES("aspect", &v.aspect, 1),
+                               VL_VALUES("ratio", &v.ratio, 1),
+                               VL_VALUES("yfov", &v.yfov, 1),
+                               VL_VALUES("K", v.k, 9),
+                               VL_VALUES("R", v.r, 9),
+                               VL_VALUES("t", v.t, 3),
+                               VL_VALUES("V", v.v, 3),
+                               VL_VALUES("view", c->camera_from_world, 16),
+                               VL_VALUES("viewcolumns", v.view_columns, 16),
+                               VL_VALUES("pose", c->world_from_camera, 16),
+                               VL_VALUES("flipped", v.flipped, 16),
+                               VL_VALUES("flippedcolumns", v.flipped_columns, 16),
+                               VL_VALUES("axes", v.axes, 9),
+                               VL_VALUES("centre", v.centre, 3),
+                               {.key = "name"},
+                               {.key = NULL}};
+  while (*form) {
+    const size_t plain = strcspn(form, "$");
+    vl_camera_put_bytes(text, form, plain);
+    form += plain;
+    if (!*form) break;
+    Key key;
+    form = parse_key(form + 1, &key);
+    const vlCameraValue *value = find_value(own, &key);
+    if (!value) value = find_value(all, &key);
+    if (value) put_value(text, record, value, &key);
+  }
+  return VL_OK;
+}
+
+vlResult vl_camera_write_form(const vlCameraFile *file, const vlCameraFormat *format, const vlCameraRecord *record,
+                              vlCameraText *text) {
+  vlCamera c;
+  vlFittedLens lens;
+  vlResult result = vl_camera_fit_lens(file, record, format->holds, format->lenses, format->most, &c, &lens);
+  if (result == VL_OK && format->centred) result = vl_camera_refuse_off_centre(file, &c);
+  if (result == VL_OK && format->square) result = vl_camera_refuse(file, "fy", c.fx != c.fy);
+  if (result != VL_OK) return result;
+  if (lens.family == VL_LENS_FOV) lens.k[0] = c.shape[0];
+  vlCameraRecord named = *record;
+  if (!named.name[0] && format->unnamed) vl_camera_name(&named, format->unnamed);
+  const uint32_t count = lens.count > format->least ? lens.count : format->least;
+  const char *word = format->lens_words[lens.family];
+  return VL_PUT_FORM(text, &named, &c, format->form, VL_VALUES("k", lens.k, count), VL_WORD("lens", word));
+}

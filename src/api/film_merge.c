@@ -2,7 +2,6 @@
  * order of their number of samples, the largest first. A file is skipped if an added file has all its samples. It is an
  * error if it shares only some of its samples with an added file. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,7 +1,6 @@
 /* api/load.c: vl_scene_load: chooses the importer by the name of the scene file, and reads the camera that velo
  * wrote into a glTF file. */
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/cookie.h"
@@ -19,7 +18,7 @@ static const struct {
   const char *suffix;
   Import *import;
 } formats[] = {VL_SCENE_FORMATS(FORMAT)};
-enum { FORMATS = sizeof formats / sizeof *formats };
+enum { FORMATS = VL_LENGTH(formats) };
 
 /* Reads the complete camera from the extras, where velo's exporter writes it. glTF's own camera is only a pinhole. */
 static vlResult load_whole_camera(vlScene *scene, const char *path, const vlLoadDef *load, vlError *error) {

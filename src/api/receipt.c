@@ -2,13 +2,13 @@
 #include "velo/receipt.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "api/receipt.h"
 #include "base/cookie.h"
 #include "base/digest.h"
 #include "base/error.h"
 #include "base/json.h"
+#include "base/text.h"
 #include "camera/aperture.h"
 #include "camera/parts.h"
 #include "camera_files/files.h"
@@ -102,7 +102,7 @@ static json_t *camera_tree(vlContext *context, const vlCameraDef *camera) {
   VL_ARRAY_FREE(context, &text.text);
   static const char *const counts[] = {"velo_camera", "width", "height", "blades"};
   bool good = tree != NULL;
-  for (size_t i = 0; i < sizeof counts / sizeof *counts && good; i++) {
+  for (size_t i = 0; i < VL_LENGTH(counts) && good; i++) {
     const json_t *value = json_object_get(tree, counts[i]);
     if (value) good = vl_receipt_put(tree, counts[i], json_integer((json_int_t)json_real_value(value)));
   }
@@ -232,7 +232,7 @@ static bool put_command_samples(json_t *command, uint32_t samples) {
   snprintf(text, sizeof text, "%u", samples);
   json_array_foreach(command, index, word) {
     const char *string = json_string_value(word);
-    if (string && strcmp(string, "--spp") == 0 && index + 1 < json_array_size(command))
+    if (vl_text_is(string, "--spp") && index + 1 < json_array_size(command))
       return json_array_set_new(command, index + 1, json_string(text)) == 0;
   }
   return true;

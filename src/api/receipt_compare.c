@@ -1,9 +1,9 @@
 /* api/receipt_compare.c: describes the differences of two receipts in words. */
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "api/receipt.h"
+#include "base/text.h"
 
 typedef struct Comparison {
   vlReceiptFn *fn;
@@ -61,7 +61,7 @@ static void differ_value(Comparison *c, const char *thing, const char *name, con
   char before[120], after[120];
   const char *was = words_of(then, before, sizeof before), *is = words_of(now, after, sizeof after);
   const char *start = thing ? thing : "", *between = thing ? " differs: " : "";
-  if (strcmp(was, is) == 0)
+  if (vl_text_is(was, is))
     differ(c, "%s%s%.60s is another", start, between, name);
   else
     differ(c, "%s%s%.60s is %s, was %s", start, between, name, is, was);
@@ -69,7 +69,7 @@ static void differ_value(Comparison *c, const char *thing, const char *name, con
 
 /* The members of "render" that say when a block has enough samples, not which samples it gets. */
 static bool is_extent(const char *key) {
-  return strcmp(key, "spp") == 0 || strcmp(key, "adaptive") == 0;
+  return vl_text_is(key, "spp") || vl_text_is(key, "adaptive");
 }
 
 /* Compares the members of two objects, for which `extent` is null or equals is_extent(member). thing: null for "NAME is
@@ -126,7 +126,7 @@ static void compare_velo(Comparison *c, const vlReceipt *then, const vlReceipt *
   } members[] = {{VL_RECEIPT_SEQUENCE, "sequence", "velo's sample sequence"},
                  {VL_RECEIPT_VERSION, "version", "velo's version"},
                  {VL_RECEIPT_VERSION, "commit", "velo's commit"}};
-  for (size_t i = 0; i < sizeof members / sizeof *members; i++) {
+  for (size_t i = 0; i < VL_LENGTH(members); i++) {
     const json_t *before = json_object_get(old, members[i].key), *after = json_object_get(new, members[i].key);
     if (parts & members[i].part && (before || after) && !json_equal(before, after))
       differ_value(c, NULL, members[i].name, before, after);

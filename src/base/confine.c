@@ -6,11 +6,11 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/text.h"
 
 #if defined(__linux__)
 
@@ -87,8 +87,8 @@ static void allow_system(const Rules *rules) {
                                       "/sys/fs/cgroup/memory.max",
                                       "/dev/null",
                                       "/dev/urandom"};
-  for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
-    allow(rules, paths[i], FS_READ | (strcmp(paths[i], "/dev/null") == 0 ? FS_WRITE_FILE : 0));
+  for (size_t i = 0; i < VL_LENGTH(paths); i++)
+    allow(rules, paths[i], FS_READ | (vl_text_is(paths[i], "/dev/null") ? FS_WRITE_FILE : 0));
   const char *libraries = getenv("LD_LIBRARY_PATH");
   while (libraries && *libraries) {
     char folder[4096];
@@ -167,7 +167,7 @@ static bool forbid_programs(void) {
       REFUSE_CALL(IO_URING_SETUP),
       RETURN(SECCOMP_RET_ALLOW),
   };
-  return install(program, sizeof program / sizeof *program);
+  return install(program, VL_LENGTH(program));
 }
 
 /* local: sockets of this machine stay allowed. */
@@ -181,7 +181,7 @@ static bool forbid_sockets(bool local) {
       RETURN(SECCOMP_RET_ALLOW),
       REFUSE,
   };
-  return install(program, sizeof program / sizeof *program);
+  return install(program, VL_LENGTH(program));
 }
 
 #else

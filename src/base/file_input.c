@@ -3,9 +3,9 @@
 #include "base/file_input.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "base/array.h"
+#include "base/text.h"
 
 static int compare(const vlFileStamp *a, const vlFileStamp *b) {
   if (a->device != b->device) return a->device < b->device ? -1 : 1;
@@ -35,7 +35,7 @@ static bool insert(vlContext *context, vlFileInputs *inputs, const char *path, c
     vlFileInput *known = &inputs->list.items[at];
     known->stamp = *stamp;
     known->other |= other;
-    if (strcmp(known->path, path) == 0) return true;
+    if (vl_text_is(known->path, path)) return true;
     char *newer = vl_strdup(context, path); /* the earlier name may mean another file by now */
     if (!newer) return false;
     vl_free(context, known->path);

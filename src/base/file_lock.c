@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include "base/digest.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 
 #define PREFIX ".velo-"
 #define SUFFIX ".lock"
@@ -21,7 +21,7 @@ enum { DIGITS = 16, TRIES = 10, MILLISECONDS = 50, MOST_CHANGES = 1000 };
 bool vl_is_lock_name(const char *name) {
   const size_t prefix = sizeof PREFIX - 1;
   return strlen(name) == prefix + DIGITS + sizeof SUFFIX - 1 && strncmp(name, PREFIX, prefix) == 0 &&
-         strspn(name + prefix, "0123456789abcdef") == DIGITS && strcmp(name + prefix + DIGITS, SUFFIX) == 0;
+         strspn(name + prefix, "0123456789abcdef") == DIGITS && vl_text_is(name + prefix + DIGITS, SUFFIX);
 }
 
 /* The name is a digest, so that it fits where the file's own name is as long as names may be. */

@@ -1,7 +1,6 @@
 /* base/file_output.c: whether a file can be written, and which file a path means. */
 #include <errno.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +8,7 @@
 #include "base/file.h"
 #include "base/file_input.h"
 #include "base/file_stream.h"
+#include "base/text.h"
 
 enum { MOST_LINKS = 40, LONGEST_NAME = 255 };
 
@@ -71,7 +71,7 @@ vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind
   char input[4096];
   if (!path) return vl_fail(error, VL_ERROR_ARGUMENT, "check of an output: path is null");
   if (strlen(path) >= 4096) return vl_fail(error, VL_ERROR_IO, "cannot write: path too long");
-  if (strcmp(path, VL_STDOUT) == 0) return VL_OK;
+  if (vl_text_is(path, VL_STDOUT)) return VL_OK;
   if (stat(path, &info) != 0) {
     if (errno == ELOOP || errno == ENAMETOOLONG) return fail(path, errno, error);
     return check_folder(path, error);
@@ -81,7 +81,7 @@ vlResult vl_check_output(vlContext *context, const char *path, vlOutputKind kind
   if (access(path, W_OK) != 0) return fail(path, errno, error);
   if (!S_ISREG(info.st_mode)) return VL_OK;
   if (!vl_file_is_input(context, path, kind, input, sizeof input)) return check_folder(path, error);
-  if (strcmp(input, path) == 0)
+  if (vl_text_is(input, path))
     return vl_fail(error, VL_ERROR_ARGUMENT, "%s is an input of this command; it is not overwritten", path);
   return vl_fail(error, VL_ERROR_ARGUMENT, "%s is the file %s, an input of this command; it is not overwritten", path,
                  input);

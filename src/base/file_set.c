@@ -2,7 +2,6 @@
 #include "base/file_set.h"
 
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,7 +44,7 @@ static bool has_bytes(const char *path, const void *data, size_t size) {
 
 static bool is_made(const vlFileSet *set, const char *path) {
   for (size_t i = 0; i < set->made.count; i++)
-    if (strcmp(set->made.items[i], path) == 0) return true;
+    if (vl_text_is(set->made.items[i], path)) return true;
   return false;
 }
 

@@ -5,7 +5,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -14,6 +13,7 @@
 
 #include "base/context.h"
 #include "base/file.h"
+#include "base/text.h"
 
 /* A pipe that poll() calls writable takes PIPE (POSIX: PIPE_BUF, at least 512) bytes without blocking. */
 enum { PIECE = 4096, WAIT_MS = 100 };
@@ -35,7 +35,7 @@ static bool wait_on(Wait *wait, bool moved) {
 
 bool vl_path_is_stream(const char *path) {
   struct stat info;
-  if (strcmp(path, VL_STDOUT) == 0) return true;
+  if (vl_text_is(path, VL_STDOUT)) return true;
   return stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
@@ -60,7 +60,7 @@ static int connect_socket(const char *path) {
 
 static int open_once(const char *path) {
   struct stat info;
-  if (strcmp(path, VL_STDOUT) == 0) return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (vl_text_is(path, VL_STDOUT)) return fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
   if (stat(path, &info) == 0 && S_ISSOCK(info.st_mode)) return connect_socket(path);
   return open(path, O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 }

@@ -3,8 +3,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,6 +11,7 @@
 #include "base/file.h"
 #include "base/file_lock.h"
 #include "base/file_stream.h"
+#include "base/text.h"
 
 /* Temporary files are named by the process id alone, so that targets with the longest names can be written. The
  * writer holds a lock on its temporary file: one without a lock belongs to a process that has ended. */
@@ -76,8 +75,7 @@ static bool open_temporary(vlFileWriter *writer) {
 static bool is_temporary(const char *name) {
   size_t length = strlen(name), prefix = sizeof PREFIX - 1, suffix = sizeof SUFFIX - 1;
   if (length <= prefix + suffix || strncmp(name, PREFIX, prefix) != 0) return false;
-  return strcmp(name + length - suffix, SUFFIX) == 0 &&
-         strspn(name + prefix, "0123456789-") == length - prefix - suffix;
+  return vl_text_is(name + length - suffix, SUFFIX) && strspn(name + prefix, "0123456789-") == length - prefix - suffix;
 }
 
 void vl_remove_leftovers(const char *path) {

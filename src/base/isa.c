@@ -1,9 +1,9 @@
 /* base/isa.c: detects the instruction sets of the processor by single features (clang 14 does not know the level
  * names). */
 #include "base/isa.h"
+#include "base/text.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #if defined(__x86_64__)
 static const vlIsa lowest = VL_ISA_V2;
@@ -33,8 +33,8 @@ vlResult vl_isa_choose(vlIsa wish, vlIsa *isa) {
   vlIsa best = vl_isa_best();
   const char *text = wish == VL_ISA_AUTO ? getenv("VELO_ISA") : NULL;
   if (text && *text) {
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-      if (strcmp(text, names[i].name) == 0) wish = names[i].isa;
+    for (size_t i = 0; i < VL_LENGTH(names); i++)
+      if (vl_text_is(text, names[i].name)) wish = names[i].isa;
     if (wish == VL_ISA_AUTO) return VL_ERROR_ARGUMENT;
   } else if (wish == VL_ISA_AUTO) {
     wish = best;

@@ -1,11 +1,11 @@
 /* base/sandbox.c: see sandbox.h. A path is followed by component, as the system does it, since realpath tells a missing
  * folder outside from one that is there ("outside/folder/../../inside/file"). */
 #include "base/sandbox.h"
+#include "base/text.h"
 
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h> /* realpath */
-#include <string.h>
 #include <unistd.h>
 
 enum { MOST_LINKS = 40 };
@@ -119,9 +119,9 @@ static bool step(vlSandbox *sandbox, Walk *walk) {
   memcpy(name, walk->rest + skip, length);
   name[length] = 0;
   memmove(walk->rest, walk->rest + skip + length, strlen(walk->rest + skip + length) + 1);
-  if (!length || strcmp(name, ".") == 0) return true;
+  if (!length || vl_text_is(name, ".")) return true;
   if (!is_passable(sandbox, walk->at) && !is_beneath(walk->start, walk->at)) return false;
-  if (strcmp(name, "..") == 0) {
+  if (vl_text_is(name, "..")) {
     go_up(walk->at);
     return true;
   }
@@ -156,7 +156,7 @@ void vl_sandbox_pass(vlSandbox *sandbox, const char *path) {
   if (n < 0 || (size_t)n >= sizeof folder || !realpath(folder, real)) return;
   pthread_mutex_lock(&sandbox->mutex);
   bool known = false;
-  for (size_t i = 0; i < sandbox->passed_count && !known; i++) known = strcmp(sandbox->passed[i], real) == 0;
+  for (size_t i = 0; i < sandbox->passed_count && !known; i++) known = vl_text_is(sandbox->passed[i], real);
   char **grown = known ? NULL : take(sandbox, (sandbox->passed_count + 1) * sizeof *grown);
   if (grown) {
     if (sandbox->passed) memcpy(grown, sandbox->passed, sandbox->passed_count * sizeof *grown);

@@ -2,7 +2,12 @@
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 
+#include <string.h>
+
 #include "velo/base.h"
+
+/* The number of elements of an array. */
+#define VL_LENGTH(array) (sizeof(array) / sizeof *(array))
 
 /* The accepted name nearest to `name` by edit distance (case ignored), or null if none is near (more than a third of
  * the letters differ). */
@@ -31,6 +36,10 @@ void vl_make_printable(char *message);
 bool vl_is_utf8(const char *text);
 /* Length of one of jansson's messages without its end (" near '...'"), which quotes the file. */
 size_t vl_json_problem_length(const char *message);
+/* Whether the text is this word; false if it is null. */
+static inline bool vl_text_is(const char *text, const char *word) {
+  return text && strcmp(text, word) == 0;
+}
 bool vl_ends_with(const char *text, const char *suffix); /* case ignored */
 /* result = folder of the file base_file + name; name alone if it is absolute. False: it does not fit. */
 bool vl_path_join(const char *base_file, const char *name, char *result, size_t size);

@@ -2,7 +2,6 @@
 #include "camera/aperture.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/context.h"
 #include "base/digest.h"
@@ -210,7 +209,7 @@ vlResult vl_aperture_create_named(vlContext *context, const char *name, vlApertu
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: context, name or aperture is null");
   *aperture = NULL;
   int kind = 0;
-  while (kind < 4 && strcmp(name, names[kind]) != 0) kind++;
+  while (kind < 4 && !vl_text_is(name, names[kind])) kind++;
   if (kind == 4) {
     const char *near = vl_nearest_name(name, names, 4);
     return vl_fail(error, VL_ERROR_ARGUMENT, "aperture: unknown shape \"%s\"%s%s%s", vl_argument_text(name).text,

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/kinds.h"
 #include "camera/parts.h"
 #include "math/elementary.h"
@@ -67,7 +68,7 @@ static vlResult check_all(const vlCameraDef *d, vlError *error) {
       {"screen_min_y", d->screen_min_y, false},
       {"screen_max_y", d->screen_max_y, false},
   };
-  for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+  for (size_t i = 0; i < VL_LENGTH(values); i++) {
     vlResult result = check(values[i].name, values[i].value, values[i].positive, error);
     if (result != VL_OK) return result;
   }
@@ -210,7 +211,7 @@ static vlResult gather_orthographic(const vlCameraDef *d, bool screen, Gathered 
                  {"view distance d", d->view_distance},
                  {"focal_mm", d->focal_mm},
                  {"sensor_width_mm", d->sensor_width_mm}};
-  for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
+  for (size_t i = 0; i < VL_LENGTH(foreign); i++)
     if (!vl_is_unset(foreign[i].value))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s %g has no meaning for an orthographic camera",
                      foreign[i].name, foreign[i].value);

@@ -1,6 +1,7 @@
 /* camera/kinds.c: the rows of the projections. */
 #include "camera/kinds.h"
 
+#include "base/text.h"
 #include "camera/parts.h"
 
 static const double pi = 3.141592653589793;
@@ -108,7 +109,7 @@ VL_PROJECTION_ROW(OWN, own, .name = "own",
 static const vlProjectionRow *const rows[] = {VL_PROJECTION_KINDS(ROW) ROW(OWN, own)};
 
 const vlProjectionRow *vl_projection_row(vlProjection kind) {
-  return (uint32_t)kind < sizeof rows / sizeof *rows ? rows[kind] : NULL;
+  return (uint32_t)kind < VL_LENGTH(rows) ? rows[kind] : NULL;
 }
 
 const char *vl_projection_name(vlProjection projection) {

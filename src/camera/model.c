@@ -1,6 +1,5 @@
 /* camera/model.c: checks the parameters of a projection and of a lens distortion, and converts them to one form. */
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -156,7 +155,7 @@ static const Colmap colmap[] = {
     {"RADIAL_FISHEYE", 5, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_RADIAL, true},
     {"THIN_PRISM_FISHEYE", 12, VL_PROJECTION_EQUIDISTANT, VL_DISTORTION_THIN_PRISM, false},
 };
-enum { COLMAP_MODELS = sizeof colmap / sizeof colmap[0] };
+enum { COLMAP_MODELS = VL_LENGTH(colmap) };
 
 vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double *parameters, uint32_t count,
                               vlError *error) {
@@ -167,7 +166,7 @@ vlResult vl_camera_def_colmap(vlCameraDef *def, const char *model, const double 
   const char *names[COLMAP_MODELS];
   for (int i = 0; i < COLMAP_MODELS; i++) {
     names[i] = colmap[i].name;
-    if (strcmp(model, names[i]) == 0) found = &colmap[i];
+    if (vl_text_is(model, names[i])) found = &colmap[i];
   }
   if (!found) {
     char known[300];

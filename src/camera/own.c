@@ -2,7 +2,6 @@
 #include "camera/own.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/machine.h"
@@ -11,7 +10,7 @@
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
   const size_t size = VL_PAD(n) * sizeof(double);
   double *const zero[] = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz};
-  for (size_t i = 0; i < sizeof zero / sizeof *zero; i++) memset(zero[i], 0, size);
+  for (size_t i = 0; i < VL_LENGTH(zero); i++) memset(zero[i], 0, size);
   for (uint32_t i = 0; i < VL_PAD(n); i++) r->weight[i] = 1.0;
   const vlOwnFilmPoints points = {n, c->own_size[0], c->own_size[1], r->x, r->y, r->lens_u, r->lens_v, r->time};
   const vlOwnRays rays = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->weight};

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
 #include "math/elementary.h"
@@ -26,7 +27,7 @@ static vlResult check(const vlCameraDef *def, vlError *error) {
                   {"ratio", d->ratio},
                   {"iso", d->iso},
                   {"seconds", d->seconds}};
-  for (size_t i = 0; i < sizeof positive / sizeof *positive; i++)
+  for (size_t i = 0; i < VL_LENGTH(positive); i++)
     if (given(positive[i].value) && (!(positive[i].value > 0.0) || isinf(positive[i].value)))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g; it must be above zero", positive[i].name,
                      positive[i].value);
@@ -35,7 +36,7 @@ static vlResult check(const vlCameraDef *def, vlError *error) {
     double value;
   } angles[] = {
       {"tilt_x", d->tilt_x}, {"tilt_y", d->tilt_y}, {"lens_tilt_x", d->lens_tilt_x}, {"lens_tilt_y", d->lens_tilt_y}};
-  for (size_t i = 0; i < sizeof angles / sizeof *angles; i++)
+  for (size_t i = 0; i < VL_LENGTH(angles); i++)
     if (!(fabs(angles[i].value) < right))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g radians; it must be less than a right angle",
                      angles[i].name, angles[i].value);
@@ -194,7 +195,7 @@ static vlResult optics(const vlCameraDef *def, vlCamera *camera, vlError *error)
                  {"ratio", d->ratio != 1.0},
                  {"an aperture image", d->aperture != NULL},
                  {"a tilt", d->tilt_x != 0.0 || d->tilt_y != 0.0 || d->lens_tilt_x != 0.0 || d->lens_tilt_y != 0.0}};
-  for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++)
+  for (size_t i = 0; i < VL_LENGTH(foreign); i++)
     if (foreign[i].there)
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is given; a lens of many elements has its own, or none",
                      foreign[i].name);

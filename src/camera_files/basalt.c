@@ -1,8 +1,8 @@
 /* camera_files/basalt.c: Basalt's calibration JSON. value0 holds T_imu_cam (IMU from camera: px py pz, qx qy qz qw),
  * intrinsics and resolution. Camera axes: x right, y down, z forward. The world's space is that of the IMU. The
  * first pixel's centre is (0, 0). */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 typedef struct {
@@ -19,7 +19,7 @@ static const Model models[] = {
     {"ucm", VL_LENS_EUCM, {"alpha", NULL}, {NULL}}, /* beta is 1 */
     {"fov", VL_LENS_FOV, {"w", NULL}, {NULL}},
     {"pinhole-radtan8", VL_LENS_OPENCV, {NULL}, {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
-enum { MODELS = sizeof models / sizeof *models };
+enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
   static const char *const names[] = {"fx", "fy", "cx", "cy"};
@@ -31,7 +31,7 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
   const char *name = json_string_value(type);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
-    if (name && strcmp(name, models[i].name) == 0) model = &models[i];
+    if (vl_text_is(name, models[i].name)) model = &models[i];
   if (!model)
     return vl_camera_wrong_in(file, camera, "camera_type",
                               "basalt: unknown camera_type \"%s\"; there are pinhole, pinhole-radtan8, kb4, ds, "

@@ -3,8 +3,8 @@
  * matrix_world, RenderSettings (resolution_x, resolution_y, pixel_aspect_x, pixel_aspect_y). Axes x right, y up, z
  * back. shift is in units of the side that the sensor is fitted to: +0.1 moves the principal point left, and down. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
@@ -12,11 +12,11 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   double lens = 50.0, sensor_width = 36.0, sensor_height = 24.0, shift_x = 0.0, shift_y = 0.0, ortho = 6.0;
   double aspect_x = 1.0, aspect_y = 1.0, m[16];
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
-  bool flat = type && strcmp(type, "ORTHO") == 0;
-  if (type && !flat && strcmp(type, "PERSP") != 0)
+  bool flat = vl_text_is(type, "ORTHO");
+  if (type && !flat && !vl_text_is(type, "PERSP"))
     return vl_camera_wrong_in(file, tree, "type", "blender: unknown type \"%s\"; there are PERSP, ORTHO",
                               vl_short_text(type).text);
-  if (fit && strcmp(fit, "AUTO") != 0 && strcmp(fit, "HORIZONTAL") != 0 && strcmp(fit, "VERTICAL") != 0)
+  if (fit && !vl_text_is(fit, "AUTO") && !vl_text_is(fit, "HORIZONTAL") && !vl_text_is(fit, "VERTICAL"))
     return vl_camera_wrong_in(file, tree, "sensor_fit",
                               "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
                               vl_short_text(fit).text);
@@ -30,15 +30,15 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   } fields[] = {{"sensor_width", &sensor_width}, {"sensor_height", &sensor_height}, {"shift_x", &shift_x},
                 {"shift_y", &shift_y},           {"pixel_aspect_x", &aspect_x},     {"pixel_aspect_y", &aspect_y},
                 {"clip_start", &d->near_plane},  {"clip_end", &d->far_plane}};
-  for (size_t i = 0; i < sizeof fields / sizeof *fields && result == VL_OK; i++)
+  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
     result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL(fields[i].key, fields[i].value),
                             VL_FIELD_LIST("matrix_world", m, 16));
   if (result != VL_OK) return result;
   if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 && aspect_x > 0.0 && aspect_y > 0.0))
     return vl_camera_wrong(file, "blender: lens, sensor, scale and pixel aspect must be above zero");
   double ratio = aspect_y / aspect_x, w = d->width, h = d->height;
-  bool vertical = fit && strcmp(fit, "VERTICAL") == 0;
-  bool across = fit && strcmp(fit, "AUTO") != 0 ? !vertical : w >= ratio * h;
+  bool vertical = vl_text_is(fit, "VERTICAL");
+  bool across = fit && !vl_text_is(fit, "AUTO") ? !vertical : w >= ratio * h;
   double side = across ? w : ratio * h; /* the side that the sensor is fitted to, in pixel widths */
   d->fx = flat ? side / ortho : lens / (vertical ? sensor_height : sensor_width) * side;
   d->fy = d->fx / ratio;

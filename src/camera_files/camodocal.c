@@ -3,7 +3,6 @@
  * A configuration's body_T_cam0 (or extrinsicRotation, extrinsicTranslation) is body (IMU) from camera, and the
  * world's space is that of the body. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -21,7 +20,7 @@ static const Model models[] = {
     {"MEI", VL_LENS_UNIFIED, {"gamma1", "gamma2", "u0", "v0"}, {"k1", "k2", "p1", "p2"}},
     {"KANNALA_BRANDT", VL_LENS_FISHEYE, {"mu", "mv", "u0", "v0"}, {"k2", "k3", "k4", "k5"}},
     {"PINHOLE_FULL", VL_LENS_OPENCV, {"fx", "fy", "cx", "cy"}, {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
-enum { MODELS = sizeof models / sizeof *models };
+enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_model(const vlCameraFile *file, const json_t *tree, const Model *model, vlCameraDef *d) {
   const json_t *plane, *lens = NULL, *mirror = NULL;
@@ -54,12 +53,12 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCame
   vlResult result = vl_camera_field(file, tree, "model_type", &field);
   if (result != VL_OK) return result;
   const char *name = json_string_value(field);
-  if (name && (strcmp(name, "SCARAMUZZA") == 0 || strcmp(name, "scaramuzza") == 0))
+  if (name && (vl_text_is(name, "SCARAMUZZA") || vl_text_is(name, "scaramuzza")))
     return vl_camera_wrong_in(file, tree, "model_type",
                               "camodocal: SCARAMUZZA's polynomial is no projection of velo; calibrate as MEI or "
                               "KANNALA_BRANDT");
   for (int i = 0; i < MODELS; i++) {
-    if (!name || strcmp(name, models[i].name) != 0) continue;
+    if (!vl_text_is(name, models[i].name)) continue;
     result = vl_camera_sides(file, tree, "image_width", "image_height", record);
     if (result == VL_OK) result = read_model(file, tree, &models[i], &record->camera);
     vl_camera_set_origin(&record->camera);

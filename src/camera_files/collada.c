@@ -3,8 +3,8 @@
  * column vectors; the axes of the world stay those of the file (<up_axis>). Angles are in degrees. There are no pixels:
  * the image's size comes from the aspect ratio; xmag and ymag are half the image's sides, as in glTF. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -14,7 +14,7 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static bool has_tag(const json_t *element, const char *tag) {
   const char *own = vl_camera_text(element, "<");
-  return own && strcmp(own, tag) == 0;
+  return vl_text_is(own, tag);
 }
 
 /* <lookat>: eye, the point that is looked at, up. */
@@ -107,7 +107,7 @@ static const json_t *find_camera(const json_t *tree, const char *url) {
   size_t i;
   json_array_foreach(json_object_get(library, "/"), i, camera) {
     const char *id = vl_camera_text(camera, "id");
-    if (has_tag(camera, "camera") && id && url && *url == '#' && strcmp(id, url + 1) == 0) return camera;
+    if (has_tag(camera, "camera") && id && url && *url == '#' && vl_text_is(id, url + 1)) return camera;
   }
   return NULL;
 }

@@ -2,8 +2,6 @@
  * numbers as the text form. The reader converts them to the text form with 17 digits, which keeps all bits. */
 #include "camera_files/colmap.h"
 
-#include <string.h>
-
 #include "base/file.h"
 #include "base/text.h"
 
@@ -22,7 +20,7 @@ static const struct {
               {"SIMPLE_RADIAL_FISHEYE", 4},
               {"RADIAL_FISHEYE", 5},
               {"THIN_PRISM_FISHEYE", 12}};
-enum { MODELS = sizeof models / sizeof *models };
+enum { MODELS = VL_LENGTH(models) };
 
 typedef struct {
   const unsigned char *at, *end;
@@ -132,7 +130,7 @@ static void put_real(vlCameraText *text, double value) {
 
 void vl_colmap_put_bin(vlCameraText *cameras, vlCameraText *images, const vlColmapRecord *record) {
   uint32_t model = 0;
-  while (model < MODELS && strcmp(models[model].name, record->model) != 0) model++;
+  while (model < MODELS && !vl_text_is(models[model].name, record->model)) model++;
   put_whole(cameras, 1, 8);
   put_whole(cameras, 1, 4);
   put_whole(cameras, model, 4);

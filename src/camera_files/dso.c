@@ -3,8 +3,8 @@
  * no pose. The first pixel's centre is (0, 0). If cx and cy are below 1, the four numbers are shares of the image's
  * sides, which begins at (-0.5, -0.5). */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/lines.h"
 
 static const struct {
@@ -89,7 +89,7 @@ static bool is_dso(const char *text, size_t size) {
   if (words[1] != 2) return false;
   if (numbers[0] == 5 && numbers[1] == 2) return true;
   return vl_camera_next_line(&lines) &&
-         (strcmp(lines.text, "crop") == 0 || strcmp(lines.text, "full") == 0 || strcmp(lines.text, "none") == 0);
+         (vl_text_is(lines.text, "crop") || vl_text_is(lines.text, "full") || vl_text_is(lines.text, "none"));
 }
 
 const vlCameraFormat vl_format_dso = {.name = "dso",

@@ -1,19 +1,19 @@
 /* camera_files/euroc.c: sensor.yaml of the EuRoC datasets (ASL's format). Camera axes: x right, y down, z forward.
  * T_BS is body (IMU) from camera, and the world's space is that of the body. The first pixel's centre is (0, 0). */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   double k[5];
   uint32_t n = 0;
   const char *model = vl_camera_text(tree, "distortion_model");
-  if (!vl_camera_has(tree, "distortion_model") || (model && strcmp(model, "none") == 0)) return VL_OK;
+  if (!vl_camera_has(tree, "distortion_model") || vl_text_is(model, "none")) return VL_OK;
   vlResult result = vl_camera_numbers(file, tree, "distortion_coefficients", k, 4, 5, &n);
   if (result != VL_OK) return result;
-  if (model && (strcmp(model, "radial-tangential") == 0 || strcmp(model, "radtan") == 0)) {
+  if (model && (vl_text_is(model, "radial-tangential") || vl_text_is(model, "radtan"))) {
     vl_camera_set_opencv(d, k, n);
-  } else if (model && strcmp(model, "equidistant") == 0 && n == 4) {
+  } else if (vl_text_is(model, "equidistant") && n == 4) {
     vl_camera_set_fisheye(d, k);
   } else {
     return vl_camera_wrong_in(file, tree, "distortion_model",
@@ -28,10 +28,10 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree, vlCamer
   vlCameraDef *d = &record->camera;
   double k[4], m[16];
   const char *model = vl_camera_text(tree, "camera_model"), *sensor = vl_camera_text(tree, "sensor_type");
-  if (sensor && strcmp(sensor, "camera") != 0)
+  if (sensor && !vl_text_is(sensor, "camera"))
     return vl_camera_wrong_in(file, tree, "sensor_type", "euroc: the sensor is \"%s\", no camera",
                               vl_short_text(sensor).text);
-  if (model && strcmp(model, "pinhole") != 0)
+  if (model && !vl_text_is(model, "pinhole"))
     return vl_camera_wrong_in(file, tree, "camera_model", "euroc: unknown camera_model \"%s\"; there is pinhole",
                               vl_short_text(model).text);
   vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", k, 4), VL_FIELD_LIST("T_BS", m, 16));

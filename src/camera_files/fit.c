@@ -1,13 +1,13 @@
 /* camera_files/fit.c: refuses by name what a dialect cannot express. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 #include "math/transform.h"
 
 bool vl_camera_drops(const vlCameraFile *file, const char *field) {
   for (uint32_t i = 0; i < file->def->drop_count; i++)
-    if (strcmp(file->def->drop[i], field) == 0) return true;
+    if (vl_text_is(file->def->drop[i], field)) return true;
   return false;
 }
 
@@ -74,7 +74,7 @@ vlResult vl_camera_fit(const vlCameraFile *file, const vlCameraRecord *record, u
       {"motion", camera->moves},
       {"stereo", d->stereo.mode != VL_STEREO_NONE && d->stereo_eye == VL_EYE_BOTH},
   };
-  for (size_t i = 0; i < sizeof fields / sizeof fields[0] && result == VL_OK; i++)
+  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
     result = vl_camera_refuse(file, fields[i].field, fields[i].present);
   if (result != VL_OK) return result;
   bool strict = posed && !(holds & VL_HOLDS_SCALE);

@@ -1,5 +1,6 @@
 /* camera_files/formats.c: the table of camera file formats (dialects). Each dialect's own file defines its row. */
 #include "camera_files/formats.h"
+#include "base/text.h"
 
 const vlCameraFormat *const vl_camera_formats[VL_CAMERA_DIALECT_COUNT] = {
     [VL_CAMERA_DIALECT_VELO] = &vl_format_velo,
@@ -98,7 +99,7 @@ static const vlCameraDialect order[] = {VL_CAMERA_DIALECT_REALITYCAPTURE,
                                         VL_CAMERA_DIALECT_OPENCV};
 
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree) {
-  for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+  for (size_t i = 0; i < VL_LENGTH(order); i++) {
     const vlCameraFormat *format = vl_camera_formats[order[i]];
     if (format->is_tree && format->is_tree(tree)) return order[i];
   }

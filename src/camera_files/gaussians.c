@@ -1,7 +1,6 @@
 /* camera_files/gaussians.c: cameras.json of 3D Gaussian splatting: a list of cameras with position (the camera's
  * centre) and rotation (world from camera). Camera axes: x right, y down, z forward. The principal point is the
  * image's middle. */
-#include <string.h>
 
 #include "camera_files/fields.h"
 

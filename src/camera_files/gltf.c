@@ -3,8 +3,8 @@
  * (orthographic). glTF has neither a size in pixels nor a principal point. The full camera is stored in the camera's
  * `extras`, as velo's own JSON, from which velo reads it back. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -149,8 +149,8 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
                             vlCameraRecord *record) {
   vlCameraDef *d = &record->camera;
   const char *type = vl_camera_text(camera, "type");
-  bool flat = type && strcmp(type, "orthographic") == 0;
-  if (!type || (!flat && strcmp(type, "perspective") != 0))
+  bool flat = vl_text_is(type, "orthographic");
+  if (!type || (!flat && !vl_text_is(type, "perspective")))
     return vl_camera_wrong(file, "gltf: unknown camera type \"%s\"; there are perspective, orthographic",
                            vl_short_text(type).text);
   const json_t *lens, *extras = json_object_get(json_object_get(camera, "extras"), "velo");

@@ -1,7 +1,6 @@
 /* camera_files/image_size.c: the image size for files that have none. It is the size that the caller gives, or that
  * of an image beside the file, read from the first bytes of a PNG or JPEG. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -60,7 +59,7 @@ vlResult vl_camera_size_beside(const vlCameraFile *file, const char *const *imag
     return VL_OK;
   }
   for (; images && *images; images++)
-    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+    for (size_t i = 0; i < VL_LENGTH(suffixes); i++) {
       char name[1024], path[4096];
       uint32_t size[2];
       int length = snprintf(name, sizeof name, "%s%s", *images, suffixes[i]);

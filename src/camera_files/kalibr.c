@@ -3,7 +3,6 @@
  * pixel's centre is (0, 0). */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -18,7 +17,7 @@ static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
                                {"omni", VL_PROJECTION_UNIFIED, 1},
                                {"eucm", VL_PROJECTION_EUCM, 2},
                                {"ds", VL_PROJECTION_DOUBLE_SPHERE, 2}};
-enum { MODELS = sizeof models / sizeof *models };
+enum { MODELS = VL_LENGTH(models) };
 
 static vlResult unknown_word(const vlCameraFile *file, const json_t *cam, const char *key, const char *text,
                              const char *known) {
@@ -34,11 +33,11 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   if (result != VL_OK) return result;
   const char *lens = json_string_value(field);
   bool plain = d->projection == VL_PROJECTION_PERSPECTIVE;
-  if (lens && strcmp(lens, "none") == 0) return VL_OK;
+  if (vl_text_is(lens, "none")) return VL_OK;
   result = vl_camera_numbers(file, cam, "distortion_coeffs", k, 0, 4, &n);
   if (result != VL_OK) return result;
-  bool radtan = lens && strcmp(lens, "radtan") == 0, equi = lens && strcmp(lens, "equidistant") == 0;
-  bool fov = lens && strcmp(lens, "fov") == 0;
+  bool radtan = vl_text_is(lens, "radtan"), equi = vl_text_is(lens, "equidistant");
+  bool fov = vl_text_is(lens, "fov");
   if (!radtan && !equi && !fov)
     return unknown_word(file, cam, "distortion_model", lens, "radtan, equidistant, fov, none");
   if (!plain && !radtan)
@@ -68,7 +67,7 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   const char *name = json_string_value(field);
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
-    if (name && strcmp(name, models[i].name) == 0) model = &models[i];
+    if (vl_text_is(name, models[i].name)) model = &models[i];
   if (!model) return unknown_word(file, cam, "camera_model", name, "pinhole, omni, eucm, ds");
   d->projection = model->projection;
   result = vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);

@@ -3,7 +3,6 @@
  * focal length). The principal point is the image's middle. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "camera_files/files.h"

@@ -3,7 +3,6 @@
  * clip_y (direction of the image's top); clip_z (values of the near and far plane). Written for a view space x
  * right, y up, z back. Read for any view space, since the matrix itself determines the view direction. */
 #include <math.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -21,7 +20,7 @@ typedef struct {
 static const Api apis[] = {{"opengl", VL_CAMERA_DIALECT_OPENGL, false, -1.0, false, false},
                            {"vulkan", VL_CAMERA_DIALECT_VULKAN, true, 0.0, false, false},
                            {"d3d", VL_CAMERA_DIALECT_D3D, false, 0.0, true, true}};
-enum { API_COUNT = sizeof apis / sizeof *apis };
+enum { API_COUNT = VL_LENGTH(apis) };
 
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
@@ -32,8 +31,8 @@ static vlResult choice(const vlCameraFile *file, const json_t *tree, const char 
   vlResult result = vl_camera_field(file, tree, key, &field);
   const char *word = json_string_value(field);
   if (result != VL_OK) return result;
-  *value = word && strcmp(word, yes) == 0;
-  if (*value || (word && strcmp(word, no) == 0)) return VL_OK;
+  *value = vl_text_is(word, yes);
+  if (*value || vl_text_is(word, no)) return VL_OK;
   return vl_camera_wrong(file, "%s: \"%s\" must be \"%s\" or \"%s\"", file->dialect, key, yes, no);
 }
 
@@ -135,7 +134,7 @@ static vlResult read_matrices(const vlCameraFile *file, const json_t *tree, vlCa
   const char *word = json_string_value(field);
   const Api *api = NULL;
   for (int i = 0; i < API_COUNT && word; i++)
-    if (strcmp(apis[i].name, word) == 0) api = &apis[i];
+    if (vl_text_is(apis[i].name, word)) api = &apis[i];
   if (!api) {
     char known[300];
     vl_tell_names(known, sizeof known, word ? word : "", names, API_COUNT);
@@ -216,7 +215,7 @@ static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *r
   const Api *api = &apis[0];
   vlCamera c;
   for (int i = 0; i < API_COUNT; i++)
-    if (strcmp(apis[i].name, file->dialect) == 0) api = &apis[i];
+    if (vl_text_is(apis[i].name, file->dialect)) api = &apis[i];
   uint32_t holds = VL_HOLDS_POSE | VL_HOLDS_SCALE | VL_HOLDS_SKEW | VL_HOLDS_PLANES;
   vlResult result = vl_camera_fit(file, record, holds, &c);
   if (result != VL_OK) return result;
@@ -248,15 +247,15 @@ static vlResult write_matrices(const vlCameraFile *file, const vlCameraRecord *r
 /* A file with an unknown API is passed to OpenGL's reader, whose error lists the known APIs. */
 static bool is_opengl(const json_t *tree) {
   const char *api = vl_camera_text(tree, "graphics_api");
-  return api && strcmp(api, "vulkan") != 0 && strcmp(api, "d3d") != 0;
+  return api && !vl_text_is(api, "vulkan") && !vl_text_is(api, "d3d");
 }
 static bool is_vulkan(const json_t *tree) {
   const char *api = vl_camera_text(tree, "graphics_api");
-  return api && strcmp(api, "vulkan") == 0;
+  return vl_text_is(api, "vulkan");
 }
 static bool is_d3d(const json_t *tree) {
   const char *api = vl_camera_text(tree, "graphics_api");
-  return api && strcmp(api, "d3d") == 0;
+  return vl_text_is(api, "d3d");
 }
 
 const vlCameraFormat vl_format_opengl = {

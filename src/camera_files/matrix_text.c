@@ -5,7 +5,6 @@
  * Strecha). Axes: x right, y down, z forward; the first pixel's centre is (0, 0). There is no image size. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -111,7 +110,7 @@ static bool find_intrinsics(const vlCameraFile *file, double k[9]) {
                                       "K.txt",
                                       "../cam_K.txt",
                                       "cam_K.txt"};
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+  for (size_t i = 0; i < VL_LENGTH(names); i++) {
     char path[4096], *text;
     size_t size;
     if (!vl_path_join(file->path, names[i], path, sizeof path)) continue;
@@ -128,7 +127,7 @@ static vlResult find_size(const vlCameraFile *file, vlCameraRecord *record) {
   static const char *const formats[] = {"../color/%.*s",  "../rgb/%.*s", "../images/%.*s",
                                         "../image/%.*s",  "%.*s.color",  "%.*s",
                                         "../color/0%.0s", "color/0%.0s", "../color/000000%.0s"};
-  enum { COUNT = sizeof formats / sizeof *formats };
+  enum { COUNT = VL_LENGTH(formats) };
   char images[COUNT][300];
   const char *list[COUNT + 1], *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path;
   size_t length = strcspn(name, ".");

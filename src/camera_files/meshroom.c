@@ -4,8 +4,8 @@
  * sensor (before 1.2.2: in pixels). */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 /* Converts a JSON number, or a text that contains a number. */
@@ -74,7 +74,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *intrinsic, vlC
                               vl_short_text(base).text);
   for (int i = 0; i < 7; i++)
     for (int j = 0; j < 3 && models[i].names[j]; j++)
-      if (name && strcmp(name, models[i].names[j]) == 0) model = i;
+      if (vl_text_is(name, models[i].names[j])) model = i;
   if (model < 0)
     return vl_camera_wrong_in(file, intrinsic, key,
                               "meshroom: unknown %s \"%s\"; there are none, radialk1, radialk3, radialk3pt, brown, "
@@ -170,7 +170,7 @@ static vlResult read_meshroom(const vlCameraFile *file, const json_t *tree, vlCa
     const char *path = vl_camera_text(view, "path"), *slash = path ? strrchr(path, '/') : NULL;
     if (posed && !with_id(poses, "poseId", json_object_get(view, "poseId"))) continue;
     bool wanted = vl_camera_is_frame(file, record->frames, path) ||
-                  (slash && !file->ordinal && file->def->frame && strcmp(slash + 1, file->def->frame) == 0);
+                  (slash && !file->ordinal && file->def->frame && vl_text_is(slash + 1, file->def->frame));
     if (!chosen && wanted) chosen = view;
     record->frames++;
   }

@@ -4,8 +4,8 @@
  * count from the image's middle. With x', y' the distorted point: u = w/2 + cx + x' (f + b1) + y' b2, v = h/2 + cy +
  * y' f. Metashape's p1 and p2 are OpenCV's p2 and p1; k4 is r^8. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 /* Reads the numbers of <calibration>. Files of version 1.1 and before have fx, fy, and cx, cy from the image's corner.
@@ -55,12 +55,12 @@ static vlResult read_attribute(const vlCameraFile *file, const json_t *element, 
 }
 
 static vlResult set_type(const vlCameraFile *file, const json_t *element, const char *type, vlCameraDef *d) {
-  if (!type || strcmp(type, "frame") == 0) return VL_OK;
-  if (strcmp(type, "fisheye") == 0 || strcmp(type, "equidistant_fisheye") == 0) {
+  if (!type || vl_text_is(type, "frame")) return VL_OK;
+  if (vl_text_is(type, "fisheye") || vl_text_is(type, "equidistant_fisheye")) {
     d->projection = VL_PROJECTION_EQUIDISTANT;
-  } else if (strcmp(type, "equisolid_fisheye") == 0) {
+  } else if (vl_text_is(type, "equisolid_fisheye")) {
     d->projection = VL_PROJECTION_EQUISOLID;
-  } else if (strcmp(type, "spherical") == 0) {
+  } else if (vl_text_is(type, "spherical")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
     return vl_camera_wrong_element(file, element,
@@ -77,9 +77,9 @@ static vlResult read_sensor(const vlCameraFile *file, const json_t *sensor, vlCa
   vlCameraDef *d = &record->camera;
   size_t i;
   json_array_foreach(json_object_get(sensor, "/"), i, child) {
-    if (strcmp(vl_camera_text(child, "<"), "calibration") != 0) continue;
+    if (!vl_text_is(vl_camera_text(child, "<"), "calibration")) continue;
     const char *class = vl_camera_text(child, "class");
-    if (!calibration || (class && strcmp(class, "adjusted") == 0)) calibration = child;
+    if (!calibration || vl_text_is(class, "adjusted")) calibration = child;
   }
   if (calibration && vl_camera_child(calibration, "resolution")) size = vl_camera_child(calibration, "resolution");
   const char *type = vl_camera_text(calibration, "type");
@@ -104,7 +104,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *chunk, const
   vl_camera_name(record, vl_camera_text(camera, "label"));
   json_array_foreach(json_object_get(vl_camera_child(chunk, "sensors"), "/"), i, sensor) {
     const char *own = vl_camera_text(sensor, "id");
-    if (id && own && strcmp(id, own) == 0) return read_sensor(file, sensor, record);
+    if (id && own && vl_text_is(id, own)) return read_sensor(file, sensor, record);
   }
   return vl_camera_wrong_element(file, camera, "there is no sensor \"%s\"", vl_short_text(id).text);
 }
@@ -121,8 +121,8 @@ static void search(Search *s, const json_t *list, int depth) {
   size_t i;
   json_array_foreach(json_object_get(list, "/"), i, camera) {
     const char *tag = vl_camera_text(camera, "<");
-    if (strcmp(tag, "group") == 0 && depth > 0) search(s, camera, depth - 1);
-    if (strcmp(tag, "camera") != 0 || !vl_camera_child(camera, "transform")) continue;
+    if (vl_text_is(tag, "group") && depth > 0) search(s, camera, depth - 1);
+    if (!vl_text_is(tag, "camera") || !vl_camera_child(camera, "transform")) continue;
     if (!s->chosen && vl_camera_is_frame(s->file, s->count, vl_camera_text(camera, "label"))) s->chosen = camera;
     s->count++;
   }
@@ -156,13 +156,13 @@ static vlResult read_document(const vlCameraFile *file, const json_t *root, vlCa
 }
 
 static vlResult read_metashape(const vlCameraFile *file, const json_t *root, vlCameraRecord *record) {
-  bool calibration = strcmp(vl_camera_text(root, "<"), "calibration") == 0;
+  bool calibration = vl_text_is(vl_camera_text(root, "<"), "calibration");
   return calibration ? read_calibration(file, root, record) : read_document(file, root, record);
 }
 
 static bool is_metashape(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
-  return tag && (strcmp(tag, "calibration") == 0 || (strcmp(tag, "document") == 0 && vl_camera_child(tree, "chunk")));
+  return tag && (vl_text_is(tag, "calibration") || (vl_text_is(tag, "document") && vl_camera_child(tree, "chunk")));
 }
 
 static vlResult write_metashape(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {

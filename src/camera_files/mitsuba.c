@@ -5,7 +5,6 @@
  * toWorld. */
 #include <ctype.h>
 #include <math.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -47,7 +46,7 @@ static vlResult attribute(const Scene *scene, const json_t *element, const char 
   if (!*text || **text != '$') return VL_OK;
   json_array_foreach(json_object_get(scene->root, "/"), i, item) {
     const char *name = vl_camera_text(item, "name");
-    if (strcmp(tag_of(item), "default") != 0 || !name || strcmp(name, *text + 1) != 0) continue;
+    if (!vl_text_is(tag_of(item), "default") || !vl_text_is(name, *text + 1)) continue;
     *text = vl_camera_text(item, "value");
     if (*text) return VL_OK;
     break;
@@ -147,19 +146,19 @@ static vlResult operation(const Scene *scene, const json_t *op, vlMat4 *m) {
   vlResult result = VL_OK;
   *m = vl_mat4_identity();
   if (same(tag, "lookat")) return look_at(scene, op, m);
-  if (strcmp(tag, "translate") == 0) {
+  if (vl_text_is(tag, "translate")) {
     result = triple(scene, op, 0.0, v);
     if (result == VL_OK) *m = vl_mat4_translate(v[0], v[1], v[2]);
-  } else if (strcmp(tag, "scale") == 0) {
+  } else if (vl_text_is(tag, "scale")) {
     result = triple(scene, op, 1.0, v);
     if (result == VL_OK) *m = vl_mat4_scale(v[0], v[1], v[2]);
-  } else if (strcmp(tag, "rotate") == 0) {
+  } else if (vl_text_is(tag, "rotate")) {
     result = triple(scene, op, 0.0, v);
     if (result == VL_OK) result = numbers(scene, op, "angle", 1, &v[3], NULL);
     if (result == VL_OK && v[0] == 0.0 && v[1] == 0.0 && v[2] == 0.0)
       return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: <rotate> has no axis");
     if (result == VL_OK) *m = vl_mat4_rotate(v[3] * degree, v[0], v[1], v[2]);
-  } else if (strcmp(tag, "matrix") == 0) {
+  } else if (vl_text_is(tag, "matrix")) {
     result = numbers(scene, op, "value", 16, v, NULL);
     if (result == VL_OK) *m = vl_mat4_load(v);
   } else {
@@ -190,7 +189,7 @@ static vlResult read_film(const Scene *scene, const json_t *sensor, double size[
   size_t i;
   size[0] = 768.0;
   size[1] = 576.0; /* Mitsuba's default */
-  json_array_foreach(json_object_get(sensor, "/"), i, item) if (strcmp(tag_of(item), "film") == 0) film = item;
+  json_array_foreach(json_object_get(sensor, "/"), i, item) if (vl_text_is(tag_of(item), "film")) film = item;
   vlResult result = number(scene, film, "width", &size[0]);
   if (result == VL_OK) result = number(scene, film, "height", &size[1]);
   crop[0] = crop[1] = 0.0;
@@ -223,7 +222,7 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   if (vl_is_unset(fov)) { /* 35 mm equivalent, by the film's diagonal */
     char *end = NULL;
     double mm = focal ? vl_camera_parse(focal, &end) : 50.0;
-    if (!(mm > 0.0) || isinf(mm) || (focal && (end == focal || (*end && strcmp(end, "mm") != 0))))
+    if (!(mm > 0.0) || isinf(mm) || (focal && (end == focal || (*end && !vl_text_is(end, "mm")))))
       return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: focal_length \"%s\" must be like \"50mm\"",
                                 vl_short_text(focal).text);
     *f = mm * diagonal / sqrt(36.0 * 36.0 + 24.0 * 24.0);
@@ -232,7 +231,7 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
   if (!(fov > 0.0 && fov < 180.0))
     return vl_camera_wrong_at(scene->file, line, 0, "mitsuba: fov is %g degrees; it must lie between 0 and 180", fov);
   for (int i = 0; i < 5; i++)
-    if (strcmp(axis, names[i]) == 0) {
+    if (vl_text_is(axis, names[i])) {
       *f = 0.5 * sides[i] / vl_precise_tan(0.5 * fov * degree);
       return VL_OK;
     }
@@ -248,7 +247,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   vlResult result = attribute(scene, sensor, "type", &type);
   if (result != VL_OK) return result;
   int kind = 0;
-  while (kind < 3 && !(type && strcmp(type, types[kind]) == 0)) kind++;
+  while (kind < 3 && !(vl_text_is(type, types[kind]))) kind++;
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
@@ -300,12 +299,12 @@ static vlResult read_mitsuba(const vlCameraFile *file, const char *text, size_t 
   Scene scene = {file, tree};
   const json_t *item, *chosen = NULL;
   size_t i;
-  bool root = strcmp(tag_of(tree), "sensor") == 0, includes = false;
+  bool root = vl_text_is(tag_of(tree), "sensor"), includes = false;
   record->frames = root;
   if (root) chosen = tree;
   json_array_foreach(json_object_get(tree, "/"), i, item) {
-    includes = includes || strcmp(tag_of(item), "include") == 0;
-    if (root || strcmp(tag_of(item), "sensor") != 0) continue;
+    includes = includes || vl_text_is(tag_of(item), "include");
+    if (root || !vl_text_is(tag_of(item), "sensor")) continue;
     if (!chosen && vl_camera_is_frame(file, record->frames, vl_camera_text(item, "id"))) chosen = item;
     record->frames++;
   }
@@ -395,7 +394,7 @@ static vlResult write_mitsuba(const vlCameraFile *file, const vlCameraRecord *re
 static bool is_mitsuba(const char *text, size_t size) {
   char tag[64];
   (void)size;
-  return vl_camera_xml_root(text, tag) && (strcmp(tag, "scene") == 0 || strcmp(tag, "sensor") == 0);
+  return vl_camera_xml_root(text, tag) && (vl_text_is(tag, "scene") || vl_text_is(tag, "sensor"));
 }
 
 const vlCameraFormat vl_format_mitsuba = {

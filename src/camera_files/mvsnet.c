@@ -1,12 +1,12 @@
 /* camera_files/mvsnet.c: MVSNet's cam.txt (DTU, BlendedMVS): the words extrinsic and intrinsic, each before a matrix.
  * x right, y down, z forward; camera from world; the first pixel's centre is (0, 0). The depth range is ignored. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/lines.h"
 
 static vlResult read_matrix(const vlCameraFile *file, vlCameraLines *lines, const char *word, uint32_t n, double *m) {
-  if (!vl_camera_next_line(lines) || strcmp(lines->text, word) != 0)
+  if (!vl_camera_next_line(lines) || !vl_text_is(lines->text, word))
     return vl_camera_wrong(file, "mvsnet: \"%s\" is missing", word);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t count;
@@ -42,7 +42,7 @@ static vlResult read_mvsnet(const vlCameraFile *file, const char *text, size_t s
 
 static bool is_mvsnet(const char *text, size_t size) {
   vlCameraLines lines = {.at = text, .end = text + size};
-  return vl_camera_next_line(&lines) && strcmp(lines.text, "extrinsic") == 0;
+  return vl_camera_next_line(&lines) && vl_text_is(lines.text, "extrinsic");
 }
 
 static vlResult write_mvsnet(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {

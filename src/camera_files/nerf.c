@@ -1,11 +1,11 @@
 /* camera_files/nerf.c: NeRF's transforms.json. Camera axes x right, y up, z back; world from camera; pixels count from
  * the image's corner, as in velo. */
 #include <math.h>
-#include <string.h>
 
 #include "camera_files/fields.h"
 #include "camera_files/trajectory.h"
 
+#include "base/text.h"
 #include "math/elementary.h"
 
 /* Returns the object that holds a key. The value in a frame overrides the value of the file. */
@@ -21,10 +21,10 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
     result = vl_camera_optional(file, holder(frame, tree, names[i]), names[i], &k[i]);
   if (result != VL_OK) return result;
   const char *model = vl_camera_text(holder(frame, tree, "camera_model"), "camera_model");
-  bool fisheye = model && (strcmp(model, "OPENCV_FISHEYE") == 0 || strcmp(model, "RADIAL_FISHEYE") == 0);
+  bool fisheye = model && (vl_text_is(model, "OPENCV_FISHEYE") || vl_text_is(model, "RADIAL_FISHEYE"));
   fisheye = fisheye || json_is_true(json_object_get(tree, "is_fisheye"));
-  if (model && !fisheye && strcmp(model, "OPENCV") != 0 && strcmp(model, "PINHOLE") != 0 &&
-      strcmp(model, "SIMPLE_PINHOLE") != 0 && strcmp(model, "RADIAL") != 0 && strcmp(model, "SIMPLE_RADIAL") != 0)
+  if (model && !fisheye && !vl_text_is(model, "OPENCV") && !vl_text_is(model, "PINHOLE") &&
+      !vl_text_is(model, "SIMPLE_PINHOLE") && !vl_text_is(model, "RADIAL") && !vl_text_is(model, "SIMPLE_RADIAL"))
     return vl_camera_wrong_in(file, holder(frame, tree, "camera_model"), "camera_model",
                               "nerf: unknown camera_model \"%s\"; there are PINHOLE, SIMPLE_PINHOLE, SIMPLE_RADIAL, "
                               "RADIAL, OPENCV, OPENCV_FISHEYE",

@@ -1,8 +1,8 @@
 /* camera_files/nerfstudio.c: nerfstudio's camera_path.json: the cameras of a film, each with camera_to_world (16
  * numbers by rows) and the vertical fov in degrees. Camera axes: x right, y up, z back. The principal point is the
  * image's middle. */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
 
@@ -10,10 +10,10 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static vlResult read_type(const vlCameraFile *file, const json_t *tree, vlCameraDef *d) {
   const char *type = vl_camera_text(tree, "camera_type");
-  if (!type || strcmp(type, "perspective") == 0) return VL_OK;
-  if (strcmp(type, "fisheye") == 0)
+  if (!type || vl_text_is(type, "perspective")) return VL_OK;
+  if (vl_text_is(type, "fisheye"))
     d->projection = VL_PROJECTION_EQUIDISTANT;
-  else if (strcmp(type, "equirectangular") == 0)
+  else if (vl_text_is(type, "equirectangular"))
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   else
     return vl_camera_wrong_in(file, tree, "camera_type",

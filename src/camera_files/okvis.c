@@ -1,7 +1,7 @@
 /* camera_files/okvis.c: the cameras of OKVIS's configuration files. Camera axes: x right, y down, z forward. T_SC is
  * sensor (IMU) from camera, and the world's space is that of the sensor. The first pixel's centre is (0, 0). */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
@@ -11,11 +11,11 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
   vlResult result = vl_camera_field(file, camera, "distortion_type", &type);
   if (result != VL_OK) return result;
   const char *name = json_string_value(type);
-  if (name && strcmp(name, "none") == 0) return VL_OK;
+  if (vl_text_is(name, "none")) return VL_OK;
   result = vl_camera_numbers(file, camera, "distortion_coefficients", k, 4, 8, &n);
   if (result != VL_OK) return result;
-  bool plain = name && strcmp(name, "radialtangential") == 0, full = name && strcmp(name, "radialtangential8") == 0;
-  bool fisheye = name && strcmp(name, "equidistant") == 0;
+  bool plain = vl_text_is(name, "radialtangential"), full = vl_text_is(name, "radialtangential8");
+  bool fisheye = vl_text_is(name, "equidistant");
   if ((plain || fisheye) && n == 4) {
     fisheye ? vl_camera_set_fisheye(d, k) : vl_camera_set_opencv(d, k, n);
   } else if (full && n == 8) {

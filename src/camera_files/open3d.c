@@ -1,9 +1,8 @@
 /* camera_files/open3d.c: Open3D's JSON: PinholeCameraIntrinsic, PinholeCameraParameters, PinholeCameraTrajectory.
  * Camera axes: x right, y down, z forward. extrinsic is camera from world. Matrices are stored by columns. The first
  * pixel's centre is (0, 0). */
-#include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic, vlCameraRecord *record) {
@@ -36,7 +35,7 @@ static vlResult read_parameters(const vlCameraFile *file, const json_t *paramete
 static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const char *name = vl_camera_text(tree, "class_name");
   const json_t *list = json_object_get(tree, "parameters");
-  if (name && strcmp(name, "ViewTrajectory") == 0)
+  if (vl_text_is(name, "ViewTrajectory"))
     return vl_camera_wrong_in(file, tree, "class_name",
                               "open3d: a ViewTrajectory depends on the viewer's window and model; save the camera with "
                               "P (PinholeCameraParameters)");
@@ -57,7 +56,7 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCame
 static bool is_open3d(const json_t *tree) {
   const char *name = vl_camera_text(tree, "class_name");
   const json_t *k = json_object_get(tree, "intrinsic_matrix");
-  if (name) return strncmp(name, "PinholeCamera", 13) == 0 || strcmp(name, "ViewTrajectory") == 0;
+  if (name) return strncmp(name, "PinholeCamera", 13) == 0 || vl_text_is(name, "ViewTrajectory");
   bool flat = json_array_size(k) == 9 && json_number_value(json_array_get(k, 2)) == 0.0;
   return flat || (vl_camera_has(tree, "extrinsic") && vl_camera_has_in(tree, "intrinsic", "intrinsic_matrix"));
 }

@@ -1,11 +1,9 @@
 /* camera_files/opencv.c: OpenCV's camera files, of one camera or of a stereo pair. x right, y down, z
  * forward; camera from world; the first pixel's centre is (0, 0): velo's cx and cy are larger by 0.5. */
-#include <math.h>
-#include <string.h>
 
+#include "camera_files/opencv.h"
 #include "base/text.h"
 #include "camera_files/fields.h"
-#include "camera_files/opencv.h"
 
 /* The names of lens models in both dialects; without a name the number of coefficients decides. */
 vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *coefficients, vlCameraDef *d) {
@@ -16,15 +14,15 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const
   if (json_object_get(tree, "distortion_model") && !model)
     return vl_camera_wrong_in(file, tree, "distortion_model", "%s: \"distortion_model\" must be a word", file->dialect);
   bool fisheye = json_number_value(json_object_get(tree, "fisheye_model")) != 0.0;
-  size_t found = 0, count = sizeof names / sizeof *names;
-  while (model && model[0] && found < count && strcmp(model, names[found]) != 0) found++;
+  size_t found = 0, count = VL_LENGTH(names);
+  while (model && model[0] && found < count && !vl_text_is(model, names[found])) found++;
   if (found == count) {
     char known[300];
     vl_tell_names(known, sizeof known, model, names, count);
     return vl_camera_wrong_in(file, tree, "distortion_model", "%s: unknown distortion_model \"%s\"%s", file->dialect,
                               vl_short_text(model).text, known);
   }
-  fisheye = fisheye || (model && (strcmp(model, "fisheye") == 0 || strcmp(model, "equidistant") == 0));
+  fisheye = fisheye || (model && (vl_text_is(model, "fisheye") || vl_text_is(model, "equidistant")));
   double *k = d->distortion_coefficients;
   uint32_t n = 0;
   vlResult result = vl_camera_numbers(file, tree, coefficients, k, 0, 14, &n);
@@ -41,7 +39,7 @@ vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const
     if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14)
       return vl_camera_wrong_in(file, tree, coefficients, "%s: \"%s\" holds %u numbers; there are 0, 4, 5, 8, 12 or 14",
                                 file->dialect, coefficients, n);
-    if (model && strcmp(model, "none") == 0 && !zero)
+    if (vl_text_is(model, "none") && !zero)
       return vl_camera_wrong_in(file, tree, coefficients, "%s: distortion_model is \"none\", but \"%s\" is not zero",
                                 file->dialect, coefficients);
     d->distortion = n ? VL_DISTORTION_OPENCV : VL_DISTORTION_NONE;
@@ -117,8 +115,8 @@ static const char *const stereo_names[][4] = {
     {"K_left", "D_left", "K_right", "D_right"},
     {"left_camera_matrix", "left_distortion_coefficients", "right_camera_matrix", "right_distortion_coefficients"},
     {"camera_matrix_left", "distortion_coefficients_left", "camera_matrix_right", "distortion_coefficients_right"}};
-enum { STEREO_NAMES = sizeof stereo_names / sizeof *stereo_names };
-#define NAME_IN(tree, names) name_in(tree, names, sizeof(names) / sizeof *(names))
+enum { STEREO_NAMES = VL_LENGTH(stereo_names) };
+#define NAME_IN(tree, names) name_in(tree, names, VL_LENGTH(names))
 
 /* Returns the first name that is a key of the tree, or the first name if none is. */
 static const char *name_in(const json_t *tree, const char *const *names, size_t count) {

@@ -1,8 +1,8 @@
 /* camera_files/openmvg.c: OpenMVG's sfm_data.json. Camera axes: x right, y down, z forward; rotation is camera from
  * world, center the camera's centre. The principal point counts from the image's corner. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 /* The number at key, -1 where there is none. The tree's numbers are doubles. */
@@ -57,8 +57,8 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *item, const ch
                 {"pinhole_brown_t2", "disto_t2", 5},
                 {"fisheye", "fisheye", 4}};
   double k[5] = {0};
-  for (size_t i = 0; i < sizeof models / sizeof *models; i++) {
-    if (strcmp(models[i].name, name) != 0) continue;
+  for (size_t i = 0; i < VL_LENGTH(models); i++) {
+    if (!vl_text_is(models[i].name, name)) continue;
     if (!models[i].field) return VL_OK;
     vlResult result = vl_camera_numbers(file, data_of(item, models[i].field), models[i].field, k, models[i].count,
                                         models[i].count, NULL);
@@ -84,7 +84,7 @@ static vlResult read_intrinsic(const vlCameraFile *file, const json_t *list, con
   if (!name) return vl_camera_wrong_in(file, item, NULL, "openmvg: an intrinsic without \"polymorphic_name\"");
   vlResult result = vl_camera_sides(file, data_of(item, "width"), "width", "height", record);
   if (result != VL_OK) return result;
-  if (strcmp(name, "spherical") == 0) {
+  if (vl_text_is(name, "spherical")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
     return VL_OK;
   }
@@ -154,10 +154,11 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
   vl_camera_get_pose(&c, r, t);
   for (int i = 0; i < 3; i++) centre[i] = -(r[i] * t[0] + r[3 + i] * t[1] + r[6 + i] * t[2]);
   const bool fisheye = fit.family == VL_LENS_FISHEYE, bent = fit.family == VL_LENS_OPENCV;
-  vl_camera_put_form(text, record, &c, NULL,
-              "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
-              "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
-              "\"\", \"filename\": ");
+  vl_camera_put_form(
+      text, record, &c, NULL,
+      "{\n  \"sfm_data_version\": \"0.3\",\n  \"root_path\": \"\",\n  \"views\": [{\"key\": 0, \"value\": "
+      "{\"polymorphic_id\": 1073741824, \"ptr_wrapper\": {\"id\": 2147483649, \"data\": {\"local_path\": "
+      "\"\", \"filename\": ");
   vl_camera_put_string(text, record->name);
   return VL_PUT_FORM(
       text, record, &c,

@@ -2,8 +2,8 @@
  * camera_models.json (cameras by name), which OpenDroneMap also writes. Camera axes: x right, y down, z forward. A
  * shot's rotation (axis and angle) and translation are camera from world. Lengths in the image are fractions of its
  * larger side, measured from its middle: velo's cx is width / 2 + c_x max(width, height). */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static vlResult coefficients(const vlCameraFile *file, const json_t *camera, const char *const *names, double *k,
@@ -20,18 +20,18 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, const 
   static const char *const brown[] = {"k1", "k2", "p1", "p2", "k3"}, *const fisheye[] = {"k1", "k2", "k3", "k4"};
   double k[5];
   vlResult result = VL_OK;
-  if (strcmp(type, "brown") == 0) {
+  if (vl_text_is(type, "brown")) {
     result = coefficients(file, camera, brown, k, 5);
     vl_camera_set_opencv(d, k, 5);
-  } else if (strcmp(type, "perspective") == 0 || strcmp(type, "radial") == 0 || strcmp(type, "simple_radial") == 0) {
+  } else if (vl_text_is(type, "perspective") || vl_text_is(type, "radial") || vl_text_is(type, "simple_radial")) {
     result = coefficients(file, camera, brown, k, 2);
     k[2] = k[3] = 0.0;
     vl_camera_set_opencv(d, k, 4);
-  } else if (strcmp(type, "fisheye") == 0 || strcmp(type, "fisheye_opencv") == 0) {
+  } else if (vl_text_is(type, "fisheye") || vl_text_is(type, "fisheye_opencv")) {
     result = coefficients(file, camera, fisheye, k, 4);
     if (type[7] == 0) k[2] = k[3] = 0.0;
     vl_camera_set_fisheye(d, k);
-  } else if (strcmp(type, "spherical") == 0 || strcmp(type, "equirectangular") == 0) {
+  } else if (vl_text_is(type, "spherical") || vl_text_is(type, "equirectangular")) {
     d->projection = VL_PROJECTION_EQUIRECTANGULAR;
   } else {
     return vl_camera_wrong_in(file, camera, "projection_type",

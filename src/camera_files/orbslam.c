@@ -2,8 +2,8 @@
  * down, z forward; the first pixel's centre is (0, 0). The world's space is the first camera's; the second one's pose
  * in it is Stereo.T_c1_c2 (older: Tlr). */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static const char *key_of(char key[64], const char *prefix, const char *name) {
@@ -40,8 +40,8 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   char key[64];
   double f[4];
   vlResult result = VL_OK;
-  bool fisheye = type && strcmp(type, "KannalaBrandt8") == 0;
-  if (type && !fisheye && strcmp(type, "PinHole") != 0 && strcmp(type, "Rectified") != 0)
+  bool fisheye = vl_text_is(type, "KannalaBrandt8");
+  if (type && !fisheye && !vl_text_is(type, "PinHole") && !vl_text_is(type, "Rectified"))
     return vl_camera_wrong_in(file, tree, "Camera.type",
                               "orbslam: unknown Camera.type \"%s\"; there are PinHole, Rectified, KannalaBrandt8",
                               vl_short_text(type).text);

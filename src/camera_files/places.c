@@ -2,8 +2,8 @@
  * order, with each value before the values that it contains. A lookup counts the values before the wanted one. */
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 bool vl_camera_place(const vlCameraFile *file, uint32_t line, uint32_t column) {
@@ -44,7 +44,7 @@ static size_t index_of(const vlCameraPlaces *places, const json_t *object, const
   json_t *child;
   size_t inner = index + 1;
   json_object_foreach((json_t *)object, other, child) {
-    if (strcmp(other, key) == 0) return inner;
+    if (vl_text_is(other, key)) return inner;
     count_to(child, NULL, &inner);
   }
   return index;
@@ -78,7 +78,7 @@ static const json_t *holder_of(const json_t *node, const char *key) {
 
 void vl_camera_place_error(const vlCameraFile *file) {
   vlError *error = file->error;
-  if (!error || error->line || !file->places || !file->places->at.count || strcmp(error->file, file->path) != 0) return;
+  if (!error || error->line || !file->places || !file->places->at.count || !vl_text_is(error->file, file->path)) return;
   const json_t *root = file->places->root, *holder = NULL;
   char key[64];
   const char *quote = strchr(error->message, '"'), *end = quote ? strchr(quote + 1, '"') : NULL;

@@ -6,8 +6,8 @@
  * back) are the columns of Rz(-h) Rx(p) Ry(r). */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 #include "math/elementary.h"
 
@@ -39,7 +39,7 @@ static void set_lens(const Lens *lens, vlCameraDef *d) {
 
 static const json_t *description_of(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
-  if (!tag || strcmp(tag, "x:xmpmeta") != 0) return NULL;
+  if (!vl_text_is(tag, "x:xmpmeta")) return NULL;
   return vl_camera_child(vl_camera_child(tree, "rdf:RDF"), "rdf:Description");
 }
 
@@ -72,7 +72,7 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   Lens lens = {.f35 = 0.0};
   const char *model = property(description, "xcr:DistortionModel");
   bool known = !model;
-  for (size_t i = 0; i < sizeof models / sizeof *models && !known; i++) known = strcmp(model, models[i]) == 0;
+  for (size_t i = 0; i < VL_LENGTH(models) && !known; i++) known = vl_text_is(model, models[i]);
   if (!known)
     return vl_camera_wrong_element(file, description,
                                    "xcr:DistortionModel \"%s\" is no model of velo; there are perspective, brown3, "
@@ -89,7 +89,7 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   if (result != VL_OK) return result;
   if (aspect != 1.0 || skew != 0.0)
     return vl_camera_wrong_element(file, description, "xcr:AspectRatio must be 1 and xcr:Skew 0");
-  if (model && strcmp(model, models[0]) == 0) memset(lens.k, 0, sizeof lens.k);
+  if (vl_text_is(model, models[0])) memset(lens.k, 0, sizeof lens.k);
   for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * c[0] + r[3 * i + 1] * c[1] + r[3 * i + 2] * c[2]);
   vl_camera_set_pose(&record->camera, r, t);
   char image[300];
@@ -218,7 +218,7 @@ static vlResult read_csv(const vlCameraFile *file, const char *text, size_t size
   for (int k = 0; k < COLUMNS; k++) {
     of[k] = -1;
     for (int i = 0; i < row.count; i++)
-      if (strcmp(row.fields[i], columns[k]) == 0) of[k] = i;
+      if (vl_text_is(row.fields[i], columns[k])) of[k] = i;
     if (k <= F && of[k] < 0)
       return vl_camera_wrong_at(file, row.number, 1, "realitycapture: the column \"%s\" is missing", columns[k]);
   }

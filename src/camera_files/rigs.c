@@ -3,8 +3,8 @@
  * nuScenes: a list of calibrated_sensor, world (the vehicle's) from camera, quaternion w x y z; no image size; (0, 0).
  * CMU Panoptic: cameras with K, distCoef, R, t, camera from world, in centimetres; (0, 0). Nerfies: orientation, camera
  * from world, and position, the camera's centre; (0.5, 0.5). */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
@@ -44,7 +44,7 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCam
   vlResult result = vl_camera_field(file, camera, "model", &model);
   if (result != VL_OK) return result;
   const char *name = vl_camera_text(model, "polymorphic_name");
-  if (name && strcmp(name, "libCalib::CameraModelOpenCV") != 0)
+  if (name && !vl_text_is(name, "libCalib::CameraModelOpenCV"))
     return vl_camera_wrong_in(file, model, "polymorphic_name",
                               "calibio: unknown polymorphic_name \"%s\"; there is libCalib::CameraModelOpenCV",
                               vl_short_text(name).text);

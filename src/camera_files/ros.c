@@ -2,7 +2,6 @@
  * OpenCV: x right, y down, z forward; the first pixel's centre is (0, 0). No pose. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/fields.h"
@@ -77,21 +76,21 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
     if (*line == '[') {
       char name[64];
       snprintf(name, sizeof name, "%.*s", (int)strcspn(line + 1, "]"), line + 1);
-      if (strcmp(name, "image") == 0) side_line = ini.lines.number;
-      if (strcmp(name, "image") == 0 || strcmp(name, "externals") == 0) continue;
+      if (vl_text_is(name, "image")) side_line = ini.lines.number;
+      if (vl_text_is(name, "image") || vl_text_is(name, "externals")) continue;
       wanted = !found && vl_camera_is_frame(file, record->frames, name);
       if (wanted) vl_camera_name(record, name);
       if (wanted) matrix_line = ini.lines.number;
       found = found || wanted;
       record->frames++;
-    } else if (strcmp(line, "width") == 0 || strcmp(line, "height") == 0) {
+    } else if (vl_text_is(line, "width") || vl_text_is(line, "height")) {
       side_line = ini.lines.number;
       result = ini_numbers(&ini, line[0] == 'w' ? "width" : "height", &side[line[0] == 'h'], 1, 1, &count);
-    } else if (wanted && strcmp(line, "camera matrix") == 0) {
+    } else if (wanted && vl_text_is(line, "camera matrix")) {
       matrix_line = ini.lines.number;
       result = ini_numbers(&ini, "camera matrix", k, 9, 9, &count);
       matrix = result == VL_OK;
-    } else if (wanted && strcmp(line, "distortion") == 0) {
+    } else if (wanted && vl_text_is(line, "distortion")) {
       result = ini_numbers(&ini, "distortion", lens, 4, 8, &lenses);
     }
   }

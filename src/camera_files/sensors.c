@@ -3,7 +3,6 @@
  * the space of the camera that points to no other one, in centimetres. Azure Kinect: CalibrationInformation; numbers
  * are shares of the image's sides, which begin at (-0.5, -0.5); the world is the depth camera's space, in metres.
  * RealSense: the fields of rs2_intrinsics; no pose. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

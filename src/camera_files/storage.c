@@ -5,8 +5,8 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 static bool place_of(const vlCameraFile *file, const json_t *element) {
@@ -62,7 +62,7 @@ static json_t *convert(const vlCameraFile *file, const json_t *element, int dept
   if (!place_of(file, element) || depth == 0) return NULL;
   if (json_array_size(children) == 0) return value_of(file, element, text ? text : "");
   bool list = true, failed = false;
-  json_array_foreach(children, i, child) list = list && strcmp(vl_camera_text(child, "<"), "_") == 0;
+  json_array_foreach(children, i, child) list = list && vl_text_is(vl_camera_text(child, "<"), "_");
   json_t *value = list ? json_array() : json_object();
   json_array_foreach(children, i, child) {
     if (failed) break;
@@ -82,7 +82,7 @@ vlResult vl_camera_storage(const vlCameraFile *file, const char *text, size_t si
   *tree = NULL;
   vlResult result = vl_camera_xml(file, text, size, NULL, &root);
   if (result != VL_OK) return result;
-  if (strcmp(vl_camera_text(root, "<"), "opencv_storage") != 0) {
+  if (!vl_text_is(vl_camera_text(root, "<"), "opencv_storage")) {
     *tree = root; /* a file of another tool: the elements hold their own places in the file */
     return VL_OK;
   }

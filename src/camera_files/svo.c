@@ -2,8 +2,8 @@
  * each with camera and T_B_C). Camera axes: x right, y down, z forward. T_B_C is body from camera, and the world's
  * space is that of the body. The first pixel's centre is (0, 0). ATAN's numbers are fractions of the image's sides,
  * and its image begins at (-0.5, -0.5); so cx in velo's pixels is cam_cx times the width. */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
@@ -12,8 +12,8 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
   const char *model = vl_camera_text(tree, "cam_model");
   vlCameraDef *d = &record->camera;
   double f[4], k[4] = {0};
-  bool atan = model && strcmp(model, "ATAN") == 0;
-  if (!atan && !(model && strcmp(model, "Pinhole") == 0))
+  bool atan = vl_text_is(model, "ATAN");
+  if (!atan && !(vl_text_is(model, "Pinhole")))
     return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%s\"; there are Pinhole, ATAN",
                               vl_short_text(model).text);
   vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
@@ -42,14 +42,14 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
   const char *type = vl_camera_text(lens, "type");
   double k[4] = {0};
   uint32_t n = 0;
-  if (!lens || (type && strcmp(type, "none") == 0)) return VL_OK;
+  if (!lens || vl_text_is(type, "none")) return VL_OK;
   vlResult result = vl_camera_numbers(file, lens, "parameters", k, 1, 4, &n);
   if (result != VL_OK) return result;
-  if (type && strcmp(type, "radial-tangential") == 0 && n == 4) {
+  if (vl_text_is(type, "radial-tangential") && n == 4) {
     vl_camera_set_opencv(d, k, n);
-  } else if (type && strcmp(type, "equidistant") == 0 && n == 4 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+  } else if (vl_text_is(type, "equidistant") && n == 4 && d->projection == VL_PROJECTION_PERSPECTIVE) {
     vl_camera_set_fisheye(d, k);
-  } else if (type && strcmp(type, "fisheye") == 0 && n == 1 && d->projection == VL_PROJECTION_PERSPECTIVE) {
+  } else if (vl_text_is(type, "fisheye") && n == 1 && d->projection == VL_PROJECTION_PERSPECTIVE) {
     d->projection = VL_PROJECTION_FOV;
     d->shape[0] = k[0];
   } else {
@@ -69,8 +69,8 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
   vlResult result = vl_camera_field(file, item, "camera", &camera);
   if (result != VL_OK) return result;
   const char *type = vl_camera_text(camera, "type");
-  bool unified = type && strcmp(type, "omni") == 0;
-  if (!unified && type && strcmp(type, "pinhole") != 0)
+  bool unified = vl_text_is(type, "omni");
+  if (!unified && type && !vl_text_is(type, "pinhole"))
     return vl_camera_wrong_in(file, camera, "type", "svo: unknown type \"%s\"; there are pinhole, omni",
                               vl_short_text(type).text);
   result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);

@@ -1,8 +1,8 @@
 /* camera_files/threejs.c: three.js' JSON of a camera (Object3D.toJSON): object with type PerspectiveCamera (fov:
  * vertical, degrees; aspect; zoom) or OrthographicCamera (left, right, top, bottom), and matrix, world from camera, 16
  * numbers by columns. Camera axes: x right, y up, z back. There are no pixels. */
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 #include "math/elementary.h"
 
@@ -10,14 +10,14 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 static bool is_camera(const json_t *object) {
   const char *type = vl_camera_text(object, "type");
-  return type && (strcmp(type, "PerspectiveCamera") == 0 || strcmp(type, "OrthographicCamera") == 0);
+  return type && (vl_text_is(type, "PerspectiveCamera") || vl_text_is(type, "OrthographicCamera"));
 }
 
 static vlResult read_lens(const vlCameraFile *file, const json_t *object, vlCameraRecord *record) {
   static const char *const sides[4] = {"left", "right", "top", "bottom"};
   vlCameraDef *d = &record->camera;
   double fov = 0.0, aspect = 1.0, zoom = 1.0, s[4];
-  bool flat = strcmp(vl_camera_text(object, "type"), "OrthographicCamera") == 0;
+  bool flat = vl_text_is(vl_camera_text(object, "type"), "OrthographicCamera");
   vlResult result = vl_camera_optional(file, object, "zoom", &zoom);
   if (result == VL_OK && !flat) result = vl_camera_number(file, object, "fov", &fov);
   if (result == VL_OK && !flat) result = vl_camera_number(file, object, "aspect", &aspect);

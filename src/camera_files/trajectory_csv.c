@@ -5,7 +5,6 @@
  * the header says "axes: opengl" or "pose: camera_from_world". */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/context.h"
 #include "base/text.h"
@@ -165,11 +164,11 @@ static vlResult read_header(Csv *csv, char *fields[], int count) {
     int column = 0;
     for (char *c = fields[i]; *c; c++)
       if (*c >= 'A' && *c <= 'Z') *c = (char)(*c + 'a' - 'A');
-    while (column < COLUMNS && strcmp(names[column], fields[i]) != 0) column++;
-    for (size_t k = 0; k < sizeof aliases / sizeof *aliases; k++)
-      if (strcmp(aliases[k].alias, fields[i]) == 0) column = aliases[k].column;
-    bool lens = strcmp(fields[i], "fx") == 0 || strcmp(fields[i], "fy") == 0 || strcmp(fields[i], "cx") == 0 ||
-                strcmp(fields[i], "cy") == 0; /* Stray Scanner's */
+    while (column < COLUMNS && !vl_text_is(names[column], fields[i])) column++;
+    for (size_t k = 0; k < VL_LENGTH(aliases); k++)
+      if (vl_text_is(aliases[k].alias, fields[i])) column = aliases[k].column;
+    bool lens = vl_text_is(fields[i], "fx") || vl_text_is(fields[i], "fy") || vl_text_is(fields[i], "cx") ||
+                vl_text_is(fields[i], "cy"); /* Stray Scanner's */
     if (lens && column == COLUMNS)
       vl_log(csv->file->context, VL_LOG_WARNING, NULL, "%s: the column \"%s\" is ignored: the file has poses only",
              csv->file->path, fields[i]);

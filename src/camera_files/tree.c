@@ -3,7 +3,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/json.h"
 #include "base/text.h"
@@ -248,9 +247,9 @@ bool vl_camera_is_frame(const vlCameraFile *file, uint32_t index, const char *na
   char number[16];
   if (file->ordinal) return index == *file->ordinal;
   if (!wish) return index == 0;
-  if (name && strcmp(wish, name) == 0) return true;
+  if (name && vl_text_is(wish, name)) return true;
   snprintf(number, sizeof number, "%u", index);
-  return strcmp(wish, number) == 0;
+  return vl_text_is(wish, number);
 }
 
 void vl_camera_name(vlCameraRecord *record, const char *name) {

@@ -3,7 +3,6 @@
  * tenths of a scene unit. The aperture's offset moves the window, so the principal point moves the other way; y is
  * up. The image's size is the resolution of the file's RenderSettings or RenderProduct. */
 #include <math.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -75,7 +74,7 @@ static vlResult local_matrix(const vlCameraFile *file, const json_t *prim, vlMat
   *m = vl_mat4_identity();
   json_array_foreach(order, i, item) {
     const char *name = json_string_value(item);
-    if (name && strcmp(name, "!resetXformStack!") == 0) {
+    if (vl_text_is(name, "!resetXformStack!")) {
       *reset = true;
       *m = vl_mat4_identity();
       continue;
@@ -133,7 +132,7 @@ static vlResult walk(Search *s, const json_t *prim) {
   const json_t *child;
   vlResult result = VL_OK;
   size_t i;
-  if (type && strcmp(type, "Camera") == 0) {
+  if (vl_text_is(type, "Camera")) {
     bool wanted = !s->camera && vl_camera_is_frame(s->file, s->frames++, vl_camera_text(prim, "@"));
     if (wanted) {
       s->camera = prim;
@@ -171,7 +170,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
                 {"shutter:open", &d->shutter_open},
                 {"shutter:close", &d->shutter_close}};
   vlResult result = VL_OK;
-  for (size_t i = 0; i < sizeof fields / sizeof *fields && result == VL_OK; i++)
+  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
     result = vl_camera_optional(file, prim, fields[i].key, fields[i].value);
   if (result == VL_OK) result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
   if (result == VL_OK && json_object_get(prim, "clippingRange")) {
@@ -183,8 +182,8 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   }
   if (result != VL_OK) return result;
   const char *projection = vl_camera_text(prim, "projection");
-  bool flat = projection && strcmp(projection, "orthographic") == 0;
-  if (projection && !flat && strcmp(projection, "perspective") != 0)
+  bool flat = vl_text_is(projection, "orthographic");
+  if (projection && !flat && !vl_text_is(projection, "perspective"))
     return vl_camera_wrong(file, "usd: unknown projection \"%s\"; there are perspective, orthographic",
                            vl_short_text(projection).text);
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))

@@ -5,8 +5,8 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 enum { MAX_DEPTH = 64, MAX_PRIMS = 20000, MAX_NUMBERS = 64 };
@@ -196,7 +196,7 @@ static bool metadata(Parser *p, json_t *into) {
 static bool is_kept(const json_t *prim, const char *name, size_t length) {
   const char *type = json_string_value(json_object_get(prim, "<"));
   if (length >= 7 && memcmp(name, "xformOp", 7) == 0) return true;
-  return type && (strcmp(type, "Camera") == 0 || strncmp(type, "Render", 6) == 0);
+  return type && (vl_text_is(type, "Camera") || strncmp(type, "Render", 6) == 0);
 }
 
 /* Parses [custom] [uniform] type name [= value] [(metadata)]: the last word before = or ( is the name. */

@@ -2,7 +2,6 @@
  * exactly, in the unit of the def. Fields that have their defaults are not written. Unknown fields are errors. */
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "camera/kinds.h"
@@ -109,7 +108,7 @@ static void add_parameter(Fields *fields, const vlParameter *p) {
   if (form_of(p) == NOT_HELD) return;
   for (size_t i = 0; i < fields->count; i++) {
     Field *field = &fields->items[i];
-    if (!field->member || strcmp(field->member, p->member) != 0) continue;
+    if (!vl_text_is(field->member, p->member)) continue;
     if (!field->row) field->row = p;
     return;
   }
@@ -124,7 +123,7 @@ static const char *last_word(const char *member) {
 /* From the last row on: the first rows are pbrt's cameras, in which some parameters have other defaults. */
 static void list_fields(Fields *fields) {
   const vlKindFamily *cameras = vl_kind_family_find("cameras");
-  fields->count = sizeof known_fields / sizeof *known_fields;
+  fields->count = VL_LENGTH(known_fields);
   memcpy(fields->items, known_fields, sizeof known_fields);
   for (uint32_t i = cameras->kind_count; i-- > 0;)
     for (uint32_t k = 0; k < cameras->rows[i]->parameter_count; k++)
@@ -150,7 +149,7 @@ static uint32_t count_choices(const vlParameter *p) {
 
 static vlResult check_names(const vlCameraFile *file, const json_t *tree, const Fields *fields) {
   static const char *const others[] = {"velo_camera", "name", "pixel_origin", "axes", "projection", "width", "height"};
-  enum { OTHERS = sizeof others / sizeof *others };
+  enum { OTHERS = VL_LENGTH(others) };
   const char *known[MOST_FIELDS + OTHERS], *key;
   size_t count = 0;
   json_t *unused;
@@ -158,7 +157,7 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree, const 
   for (size_t i = 0; i < OTHERS; i++) known[count++] = others[i];
   json_object_foreach((json_t *)tree, key, unused) {
     bool found = false;
-    for (size_t i = 0; i < count; i++) found |= strcmp(key, known[i]) == 0;
+    for (size_t i = 0; i < count; i++) found |= vl_text_is(key, known[i]);
     if (found) continue;
     const char *near = vl_nearest_name(key, known, count);
     return vl_camera_wrong(file, "velo: unknown field \"%s\"%s%s%s", vl_short_text(key).text,
@@ -174,7 +173,7 @@ static vlResult word(const vlCameraFile *file, const json_t *object, const char 
   const char *text = vl_camera_text(object, key);
   if (!text) return vl_camera_wrong(file, "velo: \"%s\" must be a word", key);
   for (uint32_t i = 0; i < count; i++)
-    if (strcmp(text, names[i]) == 0) {
+    if (vl_text_is(text, names[i])) {
       *index = i;
       return VL_OK;
     }

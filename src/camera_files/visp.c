@@ -3,9 +3,8 @@
  * point to the distorted one and equals OpenCV's k1. kdu, the inverse, is not used. k1 to k4 of Kannala-Brandt are
  * those of OpenCV's fisheye model; ViSP writes a k5 and does not use it. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/fields.h"
 
 static const char with_distortion[] = "perspectiveProjWithDistortion";
@@ -32,18 +31,18 @@ static vlResult read_model(const vlCameraFile *file, const json_t *model, vlCame
   child_text(model, "type", type);
   for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, names[i], true, &f[i]);
   if (result != VL_OK) return result;
-  if (strcmp(type, with_distortion) == 0) {
+  if (vl_text_is(type, with_distortion)) {
     result = vl_camera_child_number(file, model, "kud", true, &k[0]);
     if (result == VL_OK && k[0] != 0.0) {
       d->distortion = VL_DISTORTION_RADIAL;
       d->distortion_count = 1;
       d->distortion_coefficients[0] = k[0];
     }
-  } else if (strcmp(type, kannala_brandt) == 0) {
+  } else if (vl_text_is(type, kannala_brandt)) {
     for (int i = 0; i < 4 && result == VL_OK; i++) result = vl_camera_child_number(file, model, radial[i], true, &k[i]);
     if (result != VL_OK) return result;
     vl_camera_set_fisheye(d, k);
-  } else if (strcmp(type, without_distortion) != 0) {
+  } else if (!vl_text_is(type, without_distortion)) {
     return vl_camera_wrong_element(file, model, "unknown model \"%s\"; there are %s, %s, %s", vl_short_text(type).text,
                                    without_distortion, with_distortion, kannala_brandt);
   }
@@ -79,10 +78,10 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCamera
   record->frames = 0;
   json_array_foreach(json_object_get(root, "/"), i, camera) {
     char name[64];
-    if (strcmp(vl_camera_text(camera, "<"), "camera") != 0) continue;
+    if (!vl_text_is(vl_camera_text(camera, "<"), "camera")) continue;
     child_text(camera, "name", name);
     json_array_foreach(json_object_get(camera, "/"), k, model) {
-      if (strcmp(vl_camera_text(model, "<"), "model") != 0) continue;
+      if (!vl_text_is(vl_camera_text(model, "<"), "model")) continue;
       if (!chosen && vl_camera_is_frame(file, record->frames, name)) {
         chosen = model;
         of = camera;
@@ -98,7 +97,7 @@ static vlResult read_visp(const vlCameraFile *file, const json_t *root, vlCamera
 static bool is_visp(const json_t *tree) {
   const char *tag = vl_camera_text(tree, "<");
   const json_t *model = vl_camera_child(vl_camera_child(tree, "camera"), "model");
-  return tag && strcmp(tag, "root") == 0 && vl_camera_child(model, "px");
+  return vl_text_is(tag, "root") && vl_camera_child(model, "px");
 }
 
 static vlResult write_visp(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 enum { MAX_DEPTH = 32, MAX_ELEMENTS = 2000000, MAX_WANTED = 20000 };
@@ -32,7 +32,7 @@ static void stop(Builder *b, vlResult result) {
 }
 
 static bool is_among(const char *const *tags, const char *tag) {
-  while (*tags && strcmp(*tags, tag) != 0) tags++;
+  while (*tags && !vl_text_is(*tags, tag)) tags++;
   return *tags != NULL;
 }
 
@@ -164,7 +164,7 @@ const json_t *vl_camera_child(const json_t *element, const char *tag) {
   size_t i;
   const json_t *child;
   json_array_foreach(json_object_get(element, "/"), i, child) {
-    if (strcmp(json_string_value(json_object_get(child, "<")), tag) == 0) return child;
+    if (vl_text_is(json_string_value(json_object_get(child, "<")), tag)) return child;
   }
   return NULL;
 }

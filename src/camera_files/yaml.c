@@ -4,9 +4,9 @@
  * ignored, and its tabs count as blanks. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <yaml.h>
 
+#include "base/text.h"
 #include "camera_files/files.h"
 
 enum { MAX_DEPTH = 32, MAX_ANCHORS = 256, MAX_COPIES = 100000 };
@@ -32,9 +32,9 @@ static json_t *scalar(const yaml_event_t *event) {
   size_t length = event->data.scalar.length;
   if (event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE) {
     char *end;
-    if (length == 0 || strcmp(text, "~") == 0 || strcmp(text, "null") == 0) return json_null();
-    if (strcmp(text, "true") == 0) return json_true();
-    if (strcmp(text, "false") == 0) return json_false();
+    if (length == 0 || vl_text_is(text, "~") || vl_text_is(text, "null")) return json_null();
+    if (vl_text_is(text, "true")) return json_true();
+    if (vl_text_is(text, "false")) return json_false();
     if (strchr("+-.0123456789", text[0])) {
       double value = strtod(text, &end);
       if (end == text + length && isfinite(value)) return json_real(value);
@@ -85,7 +85,7 @@ static vlResult remember(const vlCameraFile *file, Builder *b, const yaml_char_t
                          yaml_mark_t mark) {
   if (!name) return VL_OK;
   uint32_t i = 0;
-  while (i < b->anchors && strcmp(b->anchor[i], (const char *)name) != 0) i++; /* an anchor may be used again */
+  while (i < b->anchors && !vl_text_is(b->anchor[i], (const char *)name)) i++; /* an anchor may be used again */
   if (i == MAX_ANCHORS) return wrong_at(file, mark, "more than 256 anchors");
   if (i == b->anchors) {
     b->anchor[i] = vl_strdup(file->context, (const char *)name);
@@ -117,12 +117,12 @@ static vlResult alias(const vlCameraFile *file, Builder *b, const yaml_event_t *
   const char *name = (const char *)event->data.alias.anchor;
   json_t *value = NULL;
   for (uint32_t i = 0; i < b->anchors; i++)
-    if (strcmp(b->anchor[i], name) == 0) value = b->anchored[i];
+    if (vl_text_is(b->anchor[i], name)) value = b->anchored[i];
   if (!value) return wrong_at(file, event->start_mark, "an alias whose anchor is not there");
   for (int i = 0; i < b->depth; i++)
     if (b->tree[i] == value) return wrong_at(file, event->start_mark, "an alias inside of its own anchor");
   const char *key = b->depth ? b->key[b->depth - 1] : NULL;
-  if (key && strcmp(key, "<<") == 0) return merge(file, b, value, event->start_mark);
+  if (vl_text_is(key, "<<")) return merge(file, b, value, event->start_mark);
   vlResult result = place_copy(file, b, value, event->start_mark);
   return result == VL_OK ? add(file, b, json_deep_copy(value), event->start_mark) : result;
 }

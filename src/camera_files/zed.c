@@ -4,8 +4,8 @@
  * left camera's: x' = R x - (Baseline, TY, TZ) is camera from world of the right one. The sections' names tell the
  * image's size. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "camera_files/lines.h"
 
 static const struct {
@@ -20,8 +20,8 @@ static int mode_of(const char *section, bool *right) {
   *right = strncmp(section, "RIGHT_CAM_", 10) == 0;
   if (!*right && strncmp(section, "LEFT_CAM_", 9) != 0) return -1;
   const char *name = section + (*right ? 10 : 9);
-  for (size_t i = 0; i < sizeof modes / sizeof *modes; i++)
-    if (strcmp(name, modes[i].name) == 0) return (int)i;
+  for (size_t i = 0; i < VL_LENGTH(modes); i++)
+    if (vl_text_is(name, modes[i].name)) return (int)i;
   return -1;
 }
 
@@ -43,7 +43,7 @@ static vlResult find_value(const vlCameraFile *file, const char *text, size_t si
   uint32_t count;
   *found = false;
   while (vl_camera_next_line(&lines)) {
-    if (is_section(lines.text, name) || strcmp(name, section) != 0) continue;
+    if (is_section(lines.text, name) || !vl_text_is(name, section)) continue;
     if (strncmp(lines.text, key, length) != 0) continue;
     const char *sign = lines.text + length + strspn(lines.text + length, " \t");
     if (*sign != '=') continue;

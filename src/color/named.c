@@ -1,8 +1,7 @@
 /* color/named.c: finds spectra by name. */
 #include "color/named.h"
 
-#include <string.h>
-
+#include "base/text.h"
 #include "color/tables.h"
 
 const char *vl_named_spectrum_name(unsigned index) {
@@ -12,7 +11,7 @@ const char *vl_named_spectrum_name(unsigned index) {
 const float *vl_named_spectrum(const char *name) {
   if (!name) return NULL;
   for (uint32_t i = 0; i < vl_table_named_count; i++) {
-    if (strcmp(vl_table_named[i].name, name) == 0) return vl_table_named[i].values;
+    if (vl_text_is(vl_table_named[i].name, name)) return vl_table_named[i].values;
   }
   return NULL;
 }

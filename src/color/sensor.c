@@ -1,9 +1,7 @@
 /* color/sensor.c: see sensor.h. Matches pbrt-v4's PixelSensor, so that its scenes keep their colours. */
 #include "color/sensor.h"
 
-#include <math.h>
-#include <string.h>
-
+#include "base/text.h"
 #include "color/tables.h"
 #include "math/elementary.h"
 #include "math/transform.h"
@@ -11,7 +9,7 @@
 
 const vlSensorCurves *vl_sensor_find(const char *name) {
   for (uint32_t i = 0; name && i < vl_sensor_count; i++)
-    if (strcmp(vl_sensor_curves[i].name, name) == 0) return &vl_sensor_curves[i];
+    if (vl_text_is(vl_sensor_curves[i].name, name)) return &vl_sensor_curves[i];
   return NULL;
 }
 

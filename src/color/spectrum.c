@@ -1,6 +1,5 @@
 /* color/spectrum.c: evaluates a vlSpectrum: its values every nm, its luminance, its colour. */
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/text.h"

@@ -3,7 +3,6 @@
 
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/cookie.h"
 #include "base/text.h"
@@ -20,7 +19,7 @@ void vl_export_lose(vlExport *x, const char *format, ...) {
   vsnprintf(text, sizeof text, format, args);
   va_end(args);
   for (uint32_t i = 0; i < x->loss_count; i++)
-    if (strcmp(x->losses[i].text, text) == 0 || i + 1 == VL_EXPORT_LOSSES) {
+    if (vl_text_is(x->losses[i].text, text) || i + 1 == VL_EXPORT_LOSSES) {
       x->losses[i].count++;
       return;
     }
@@ -34,7 +33,7 @@ static void lose_many(vlExport *x, uint64_t count, const char *text) {
   if (!count) return;
   vl_export_lose(x, "%s", text);
   for (uint32_t i = 0; i < x->loss_count; i++)
-    if (strcmp(x->losses[i].text, text) == 0) x->losses[i].count += count - 1;
+    if (vl_text_is(x->losses[i].text, text)) x->losses[i].count += count - 1;
 }
 
 static uint32_t beyond_first(const vlScene *scene, vlChoiceKind kind) {

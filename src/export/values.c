@@ -1,6 +1,5 @@
 /* export/values.c: the scene's spectra, textures and roughnesses as the plain numbers of other formats. */
 #include <math.h>
-#include <string.h>
 
 #include "color/color.h"
 #include "export/export.h"

@@ -1,6 +1,5 @@
 /* film/file_attributes.c: the attributes of images in the header of a film file, as JSON. */
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/json.h"
@@ -16,7 +15,7 @@ static const struct {
              [VL_ATTRIBUTE_M44F] = {"m44f", 16},    [VL_ATTRIBUTE_BOX2I] = {"box2i", 4},
              [VL_ATTRIBUTE_DOUBLE] = {"double", 1}, [VL_ATTRIBUTE_CHROMATICITIES] = {"chromaticities", 8},
              [VL_ATTRIBUTE_M44D] = {"m44d", 16},    [VL_ATTRIBUTE_STRINGS] = {"strings", 0}};
-enum { TYPES = sizeof types / sizeof *types };
+enum { TYPES = VL_LENGTH(types) };
 
 static bool append(json_t *list, json_t *value) {
   return value && json_array_append_new(list, value) == 0;
@@ -57,7 +56,7 @@ static bool take_attribute(const json_t *list, vlAttribute *a) {
   const char *name = json_string_value(json_array_get(list, 0));
   for (int type = 0; name && type < TYPES; type++) {
     size_t count = types[type].numbers;
-    if (strcmp(types[type].name, name) != 0 || json_array_size(list) != 1 + (count ? count : 1)) continue;
+    if (!vl_text_is(types[type].name, name) || json_array_size(list) != 1 + (count ? count : 1)) continue;
     a->type = (vlAttributeType)type;
     a->string = count ? NULL : json_string_value(json_array_get(list, 1));
     if (!count) return a->string != NULL;

@@ -1,10 +1,10 @@
 /* film/file_header.c: the header of a film file as JSON: the film's def and the receipt of its render. */
 #include <math.h>
 #include <stddef.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "base/json.h"
+#include "base/text.h"
 #include "film/file.h"
 #include "velo/schema.h"
 
@@ -30,9 +30,9 @@ static const Field fields[] = {FIELD("width", COUNT, width),
                                FIELD("buckets", COUNT, buckets),
                                FIELD("lambda_min", DOUBLE, lambda_min),
                                FIELD("lambda_max", DOUBLE, lambda_max)};
-enum { FIELDS = sizeof fields / sizeof *fields };
+enum { FIELDS = VL_LENGTH(fields) };
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
-enum { SPACES = sizeof spaces / sizeof *spaces };
+enum { SPACES = VL_LENGTH(spaces) };
 
 static bool put(json_t *object, const char *key, json_t *value) {
   return value && json_object_set_new(object, key, value) == 0;
@@ -114,7 +114,7 @@ static bool count_of(const json_t *value, uint32_t *count) {
 
 static bool number_of(const json_t *value, double *result) {
   const char *text = json_string_value(value);
-  if (text && strcmp(text, "infinity") == 0) {
+  if (vl_text_is(text, "infinity")) {
     *result = INFINITY;
     return true;
   }
@@ -147,17 +147,17 @@ static bool take_names(const json_t *film, vlFilmDef *def) {
   const vlKindFamily *family = vl_kind_family_find("filters");
   bool found[3] = {false, false, false};
   for (uint32_t i = 0; filter && i < family->kind_count; i++)
-    if (strcmp(family->rows[i]->name, filter) == 0) {
+    if (vl_text_is(family->rows[i]->name, filter)) {
       def->filter.kind = (vlPixelFilterKind)i;
       found[0] = true;
     }
   for (int i = 0; space && i < SPACES; i++)
-    if (strcmp(spaces[i], space) == 0) {
+    if (vl_text_is(spaces[i], space)) {
       def->space = (vlColorSpace)i;
       found[1] = true;
     }
   for (uint32_t i = 0; sensor && (name = vl_sensor_name(i)); i++)
-    if (strcmp(name, sensor) == 0) {
+    if (vl_text_is(name, sensor)) {
       def->sensor = i ? name : NULL;
       found[2] = true;
     }

@@ -1,5 +1,4 @@
 /* film/file_lock.c: locks on film files: one process at a time writes a film. */
-#include <stdlib.h>
 
 #include "base/error.h"
 #include "base/file_stream.h"

@@ -1,12 +1,10 @@
 /* film/passes.c: creation of films; passes; merging of films. */
 #include "base/cookie.h"
+#include "base/text.h"
 #include "color/sensor.h"
 #include "film/sums.h"
 #include "film/white.h"
 #include "velo/film.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { SIZE_MAX_PIXELS = 65536, MOST_BUCKETS = 1000 };
 
@@ -24,7 +22,7 @@ vlFilmDef vl_coarse_film_def(const vlFilmDef *def, uint32_t factor) {
 /* Sets the sensor's response curves and matrix, its name (a static string), and pbrt's default white balance for it. */
 static vlResult set_sensor(vlFilm *film) {
   vlFilmDef *def = &film->def;
-  if (!def->sensor || strcmp(def->sensor, vl_sensor_name(0)) == 0) {
+  if (!def->sensor || vl_text_is(def->sensor, vl_sensor_name(0))) {
     def->sensor = NULL;
     return VL_OK;
   }
@@ -113,7 +111,7 @@ const char *const vl_own_words[VL_OWN_KINDS] = {"camera", "sampler", "tracer"};
 
 vlOwnKind vl_film_own_differs(const vlFilmOwn *a, const vlFilmOwn *b) {
   int kind = 0;
-  while (kind < VL_OWN_KINDS && strcmp(a->name[kind], b->name[kind]) == 0) kind++;
+  while (kind < VL_OWN_KINDS && vl_text_is(a->name[kind], b->name[kind])) kind++;
   return (vlOwnKind)kind;
 }
 

@@ -1,8 +1,6 @@
 /* image/codec.c: the table of image formats. Readers are chosen by content, writers by file name suffix. */
 #include "image/codec.h"
 
-#include <string.h>
-
 #include "base/cookie.h"
 #include "base/text.h"
 #include "image/pixel.h"
@@ -21,7 +19,7 @@ const vlCodec vl_codecs[] = {
     {"WebP", {NULL}, vl_webp_probe, vl_webp_read, NULL},
     {"TGA", {".tga"}, vl_tga_probe, vl_tga_read, vl_tga_write},
 };
-const uint32_t vl_codec_count = sizeof vl_codecs / sizeof *vl_codecs;
+const uint32_t vl_codec_count = VL_LENGTH(vl_codecs);
 
 vlResult vl_codec_broken(const vlImageFile *file, const char *format, const char *what) {
   return vl_fail(file->error, VL_ERROR_SCENE, "%s: broken %s file: %s", file->name, format, what);

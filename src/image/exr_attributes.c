@@ -1,7 +1,7 @@
 /* image/exr_attributes.c: conversion of attributes between vlImage and OpenEXR headers. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "image/exr.h"
 
 void vl_exr_on_error(exr_const_context_t context, exr_result_t code, const char *message) {
@@ -18,8 +18,8 @@ static const char *const LAYOUT[] = {"channels",          "compression", "lineOr
                                      "maxSamplesPerPixel"};
 
 static bool is_layout(const char *name) {
-  for (size_t i = 0; i < sizeof LAYOUT / sizeof *LAYOUT; i++)
-    if (strcmp(name, LAYOUT[i]) == 0) return true;
+  for (size_t i = 0; i < VL_LENGTH(LAYOUT); i++)
+    if (vl_text_is(name, LAYOUT[i])) return true;
   return false;
 }
 
@@ -95,10 +95,9 @@ static bool convert(const exr_attribute_t *from, vlAttribute *to, char *text, si
 
 /* Whether an attribute that every header has is at its default; such attributes are not kept. */
 static bool is_default(const vlAttribute *a, const vlImage *image) {
-  if (strcmp(a->name, "pixelAspectRatio") == 0 || strcmp(a->name, "screenWindowWidth") == 0)
-    return a->numbers[0] == 1.0;
-  if (strcmp(a->name, "screenWindowCenter") == 0) return a->numbers[0] == 0.0 && a->numbers[1] == 0.0;
-  if (strcmp(a->name, "dataWindow") == 0 || strcmp(a->name, "displayWindow") == 0)
+  if (vl_text_is(a->name, "pixelAspectRatio") || vl_text_is(a->name, "screenWindowWidth")) return a->numbers[0] == 1.0;
+  if (vl_text_is(a->name, "screenWindowCenter")) return a->numbers[0] == 0.0 && a->numbers[1] == 0.0;
+  if (vl_text_is(a->name, "dataWindow") || vl_text_is(a->name, "displayWindow"))
     return a->numbers[0] == 0.0 && a->numbers[1] == 0.0 && a->numbers[2] == image->width - 1.0 &&
            a->numbers[3] == image->height - 1.0;
   return false;
@@ -115,7 +114,7 @@ vlResult vl_exr_attributes_in(exr_const_context_t exr, vlImage *image) {
     char text[2048];
     if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &from) != EXR_ERR_SUCCESS) continue;
     if (!from->name || !from->name[0] || is_layout(from->name) || !convert(from, &to, text, sizeof text)) continue;
-    if (strcmp(to.name, "dataWindow") == 0 || strcmp(to.name, "displayWindow") == 0) {
+    if (vl_text_is(to.name, "dataWindow") || vl_text_is(to.name, "displayWindow")) {
       windows[to.name[1] == 'a' ? 0 : 1] = to;
       plain += is_default(&to, image);
       continue;
@@ -162,8 +161,8 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
   for (int i = 0; i < 16; i++) f[i] = (float)n[i];
   switch (a->type) {
     case VL_ATTRIBUTE_FLOAT:
-      if (strcmp(a->name, "pixelAspectRatio") == 0) return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
-      if (strcmp(a->name, "screenWindowWidth") == 0) return exr_set_screen_window_width(exr, 0, f[0]);
+      if (vl_text_is(a->name, "pixelAspectRatio")) return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
+      if (vl_text_is(a->name, "screenWindowWidth")) return exr_set_screen_window_width(exr, 0, f[0]);
       return exr_attr_set_float(exr, 0, a->name, f[0]);
     case VL_ATTRIBUTE_DOUBLE: return exr_attr_set_double(exr, 0, a->name, n[0]);
     case VL_ATTRIBUTE_INT: return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
@@ -172,7 +171,7 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     case VL_ATTRIBUTE_V2F: {
       exr_attr_v2f_t v;
       memcpy(v.arr, f, sizeof v.arr);
-      if (strcmp(a->name, "screenWindowCenter") == 0) return exr_set_screen_window_center(exr, 0, &v);
+      if (vl_text_is(a->name, "screenWindowCenter")) return exr_set_screen_window_center(exr, 0, &v);
       return exr_attr_set_v2f(exr, 0, a->name, &v);
     }
     case VL_ATTRIBUTE_V3F: {
@@ -201,8 +200,8 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     }
     case VL_ATTRIBUTE_BOX2I: {
       const exr_attr_box2i_t box = box_of(n);
-      if (strcmp(a->name, "displayWindow") == 0) return exr_set_display_window(exr, 0, &box);
-      if (strcmp(a->name, "dataWindow") == 0) return exr_set_data_window(exr, 0, &box);
+      if (vl_text_is(a->name, "displayWindow")) return exr_set_display_window(exr, 0, &box);
+      if (vl_text_is(a->name, "dataWindow")) return exr_set_data_window(exr, 0, &box);
       return exr_attr_set_box2i(exr, 0, a->name, &box);
     }
   }
@@ -228,11 +227,11 @@ vlResult vl_exr_attributes_out(exr_context_t exr, const vlImage *image, vlError 
     const vlImageAttribute *a = &image->attributes.items[i];
     if (is_layout(a->name)) continue;
     bool ok = true;
-    for (size_t k = 0; k < sizeof FIXED / sizeof *FIXED; k++)
-      if (strcmp(a->name, FIXED[k].name) == 0 && a->type != FIXED[k].type) ok = false;
+    for (size_t k = 0; k < VL_LENGTH(FIXED); k++)
+      if (vl_text_is(a->name, FIXED[k].name) && a->type != FIXED[k].type) ok = false;
     if (a->type == VL_ATTRIBUTE_BOX2I) ok = ok && fits_int(a->numbers, 4);
     if (a->type == VL_ATTRIBUTE_INT) ok = ok && fits_int(a->numbers, 1);
-    if (ok && strcmp(a->name, "dataWindow") == 0)
+    if (ok && vl_text_is(a->name, "dataWindow"))
       ok = a->numbers[2] - a->numbers[0] + 1.0 == image->width && a->numbers[3] - a->numbers[1] + 1.0 == image->height;
     exr_result_t code = ok ? set_attribute(exr, a) : EXR_ERR_INVALID_ATTR;
     if (code == EXR_ERR_OUT_OF_MEMORY) return vl_fail_memory(error);

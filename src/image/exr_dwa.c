@@ -7,9 +7,9 @@
  * exponential above. */
 #include "image/exr_dwa.h"
 
-#include <string.h>
 #include <zlib.h>
 
+#include "base/text.h"
 #include "image/dct.h"
 #include "image/exr_huffman.h"
 #include "image/pixel.h"
@@ -98,7 +98,7 @@ static void legacy_rules(Dwa *d) {
   } OLD[] = {{"r", LOSSY, 0},     {"red", LOSSY, 0}, {"g", LOSSY, 1},   {"grn", LOSSY, 1},
              {"green", LOSSY, 1}, {"b", LOSSY, 2},   {"blu", LOSSY, 2}, {"blue", LOSSY, 2},
              {"y", LOSSY, -1},    {"by", LOSSY, -1}, {"ry", LOSSY, -1}, {"a", RUNS, -1}};
-  for (size_t i = 0; i < sizeof OLD / sizeof *OLD; i++)
+  for (size_t i = 0; i < VL_LENGTH(OLD); i++)
     for (int type = OLD[i].scheme == RUNS ? UINT : HALF; type <= FLOAT; type++) {
       Rule rule = {.scheme = OLD[i].scheme, .place = OLD[i].place, .type = type, .any_case = true};
       memcpy(rule.suffix, OLD[i].suffix, strlen(OLD[i].suffix) + 1);

@@ -3,9 +3,8 @@
  *
  * Channel order: R G B A (Y A) first, then the others in file order (alphabetical). All channels get one type: half or
  * integer when all channels of the file have it, otherwise float. */
-#include <limits.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "image/exr.h"
 #include "image/exr_dwa.h"
 #include "image/pixel.h"
@@ -81,7 +80,7 @@ static bool headers_fit(const vlImageFile *file) {
       uint32_t size = le32(file->data + size_at);
       at = size_at + 4;
       if (size > file->size - at) return false;
-      if (strcmp((const char *)file->data + type, "preview") == 0) { /* width, height, four bytes per pixel */
+      if (vl_text_is((const char *)file->data + type, "preview")) { /* width, height, four bytes per pixel */
         if (size < 8 || (double)le32(file->data + at) * le32(file->data + at + 4) * 4.0 > size - 8.0) return false;
       }
       at += size;
@@ -96,7 +95,7 @@ static vlResult fail(Reader *r, exr_result_t code) {
   /* The PIZ decoder reports "out of memory" for damaged data, too; the message tells the two apart. */
   bool damaged = strncmp(r->base.message, "Unable to decompress", 20) == 0;
   bool refused =
-      strcmp(r->base.message, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)) == 0; /* hidden by `code` */
+      vl_text_is(r->base.message, exr_get_default_error_message(EXR_ERR_OUT_OF_MEMORY)); /* hidden by `code` */
   if ((code == EXR_ERR_OUT_OF_MEMORY && !damaged) || refused) return vl_fail_memory(r->base.file->error);
   return vl_codec_broken(r->base.file, "OpenEXR",
                          r->base.message[0] ? r->base.message : exr_get_default_error_message(code));
@@ -106,13 +105,13 @@ static vlResult fail(Reader *r, exr_result_t code) {
 static uint32_t rank(const char *name) {
   static const char *const FRONT[] = {"R", "G", "B", "Y", "A"};
   for (uint32_t i = 0; i < 5; i++)
-    if (strcmp(name, FRONT[i]) == 0) return i;
+    if (vl_text_is(name, FRONT[i])) return i;
   return 5;
 }
 
 static bool is_wanted(const vlImageFile *file, const char *name) {
   for (uint32_t i = 0; i < file->wanted_count; i++)
-    if (file->wanted[i] && strcmp(file->wanted[i], name) == 0) return true;
+    if (vl_text_is(file->wanted[i], name)) return true;
   return !file->wanted;
 }
 

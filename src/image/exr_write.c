@@ -2,9 +2,8 @@
  * compression level and no time stamp give the same bytes for the same image, whatever the number of threads. Halves
  * are written for half images or, on request, for the colours (R G B A Y, also of layers: "diffuse.R"); 8 and 16-bit
  * images are written as linear light. Several images of one size become one file with all their channels. */
-#include <limits.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "image/exr.h"
 #include "image/pixel.h"
 
@@ -92,7 +91,7 @@ static const char *channel_name(const Channel *c) {
 
 static const Channel *find_channel(const Writer *w, const char *name) {
   for (uint32_t i = 0; i < w->count; i++)
-    if (strcmp(channel_name(&w->channels[i]), name) == 0) return &w->channels[i];
+    if (vl_text_is(channel_name(&w->channels[i]), name)) return &w->channels[i];
   return NULL;
 }
 

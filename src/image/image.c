@@ -3,10 +3,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "image/pixel.h"
 
 enum { NAME_MAX_LENGTH = 255 }; /* OpenEXR's limit for long names */
@@ -49,7 +49,7 @@ static vlResult copy_names(vlContext *context, const char *const *names, uint32_
     memcpy(copy, names, count * sizeof *copy);
     qsort(copy, count, sizeof *copy, compare_names);
     for (uint32_t i = 1; i < count; i++) {
-      if (strcmp(copy[i - 1], copy[i]) == 0) {
+      if (vl_text_is(copy[i - 1], copy[i])) {
         vl_free(context, copy);
         return VL_ERROR_ARGUMENT;
       }
@@ -149,7 +149,7 @@ const void *vl_image_const_pixels(const vlImage *image) {
 
 int vl_image_find_channel(const vlImage *image, const char *name) {
   for (uint32_t i = 0; name && i < image->channels; i++)
-    if (strcmp(image->names[i], name) == 0) return (int)i;
+    if (vl_text_is(image->names[i], name)) return (int)i;
   return -1;
 }
 
@@ -157,7 +157,7 @@ int vl_image_find_channel(const vlImage *image, const char *name) {
 static bool find_layer(const vlImage *image, uint32_t channel[4]) {
   for (uint32_t i = 0; i < image->channels; i++) {
     const char *name = image->names[i], *dot = strrchr(name, '.');
-    if (!dot || strcmp(dot, ".R") != 0) continue;
+    if (!vl_text_is(dot, ".R")) continue;
     bool all = true;
     for (int c = 0; c < 3; c++) {
       char full[NAME_MAX_LENGTH + 1];
@@ -293,7 +293,7 @@ vlResult vl_image_to_float(const vlImage *image, const uint32_t *channel, uint32
 
 static vlImageAttribute *find_attribute(const vlImage *image, const char *name) {
   for (size_t i = 0; i < image->attributes.count; i++)
-    if (strcmp(image->attributes.items[i].name, name) == 0) return &image->attributes.items[i];
+    if (vl_text_is(image->attributes.items[i].name, name)) return &image->attributes.items[i];
   return NULL;
 }
 

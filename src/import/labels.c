@@ -1,8 +1,8 @@
 /* import/labels.c: see labels.h. */
 #include "import/labels.h"
+#include "base/text.h"
 
 #include <stdio.h>
-#include <string.h>
 
 void vl_label_append(char path[VL_LABEL_SIZE], const char *name) {
   if (!name || !*name) return;
@@ -35,7 +35,7 @@ bool vl_label_make_unique(vlScene *scene, vlNameTable *table, const char *name, 
 
 void vl_label_of_file(const char *path, char name[VL_LABEL_SIZE]) {
   const char *slash = strrchr(path, '/'), *start = slash ? slash + 1 : path, *dot = strrchr(start, '.');
-  if (dot && dot > start && strcmp(dot, ".gz") == 0)
+  if (dot && dot > start && vl_text_is(dot, ".gz"))
     while (dot > start && *--dot != '.') {
     }
   char stem[VL_LABEL_SIZE];

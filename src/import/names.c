@@ -1,8 +1,6 @@
 /* import/names.c: see names.h. Linear probing, at most half full. */
 #include "import/names.h"
 
-#include <string.h>
-
 #include "base/text.h"
 
 static uint32_t hash(const char *s) { /* FNV-1a */
@@ -13,7 +11,7 @@ static uint32_t hash(const char *s) { /* FNV-1a */
 
 static vlNamed *slot_of(const vlNameTable *t, const char *name) {
   uint32_t i = hash(name) & (t->capacity - 1);
-  while (t->slots[i].name && strcmp(t->slots[i].name, name) != 0) i = (i + 1) & (t->capacity - 1);
+  while (t->slots[i].name && !vl_text_is(t->slots[i].name, name)) i = (i + 1) & (t->capacity - 1);
   return &t->slots[i];
 }
 

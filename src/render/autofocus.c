@@ -3,7 +3,6 @@
 #include "velo/focus.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
 #include "camera/parts.h"

@@ -4,7 +4,6 @@
  * order of work. */
 #include "render/boxes.h"
 
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 

@@ -2,7 +2,6 @@
  * ones that have a name or a source location. Objects refer only to earlier ones, so one pass from the last to the
  * first suffices. */
 #include <stdio.h>
-#include <string.h>
 
 #include "scene/check.h"
 #include "schema/schema.h"

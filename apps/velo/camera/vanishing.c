@@ -2,7 +2,6 @@
  * drawn over an image; and the inverse: a camera from vanishing points. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "camera/camera.h"

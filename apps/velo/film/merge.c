@@ -1,7 +1,5 @@
 /* film/merge.c: `velo film merge`: merges the films of a render's parts into one film. */
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/report.h"

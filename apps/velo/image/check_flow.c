@@ -1,6 +1,5 @@
 /* image/check_flow.c: whether flow leads to the same point in the other image. */
 #include <math.h>
-#include <string.h>
 
 #include "image/check.h"
 

@@ -1,5 +1,4 @@
 /* image/denoise.c: `velo image denoise`: writes a denoised copy of a rendered image. */
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/commands.h"

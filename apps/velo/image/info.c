@@ -1,6 +1,4 @@
 /* image/info.c: `velo image info`: the content of an image file. Also functions shared by the image commands. */
-#include <ctype.h>
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,7 +1,6 @@
 /* render/again.c: see again.h. */
 #include "render/again.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/context.h"

@@ -1,7 +1,6 @@
 /* render/channels_form.c: ids and counts in a form that other programs display (docs/ground-truth.md, "In other
  * programs"): the channel's name ends in one letter, and values are 32-bit floats, which are exact below 2^24. */
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/report.h"
 #include "render/channels.h"

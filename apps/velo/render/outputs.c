@@ -1,7 +1,6 @@
 /* render/outputs.c: see outputs.h. */
 #include "render/outputs.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>

@@ -2,8 +2,6 @@
  * chosen one, so that --continue, --again and velo film merge need no race. */
 #include "render/race.h"
 
-#include <string.h>
-
 #include "cli/kinds.h"
 #include "cli/report.h"
 #include "cli/signals.h"

@@ -2,7 +2,6 @@
 #include "render/shard.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/report.h"
 

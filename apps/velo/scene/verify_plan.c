@@ -1,5 +1,4 @@
 /* scene/verify_plan.c: which tracers claim the light of a scene, and which renders are compared. */
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

@@ -2,7 +2,6 @@
  * differs. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "cli/json.h"
 #include "scene/scene.h"

@@ -3,8 +3,6 @@
  * wins, its image is rendered beside the shown one, and replaces it when it has less noise. The choice holds for all
  * cameras until the scene is loaded again; coarse images keep the scene's tracer, which is the quickest. */
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "cli/report.h"
 #include "render/race_rules.h"

@@ -1,7 +1,6 @@
 /* view/engine_tasks.c: answers to messages that need the world: of the render thread, which has the film, and of a
  * thread beside it, with a higher priority. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "view/engine_status.h"

@@ -1,5 +1,4 @@
 /* view/server_http.c: the server's answers to HTTP requests: the files of the page. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "view/server_parts.h"

@@ -3,7 +3,6 @@
  * mirror. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "export/export.h"
@@ -31,7 +30,7 @@ void vl_gltf_use(vlExport *x, const char *extension) {
   json_t *used = json_object_get(x->root, "extensionsUsed");
   if (!used) json_object_set_new(x->root, "extensionsUsed", used = json_array());
   for (size_t i = 0; i < json_array_size(used); i++)
-    if (strcmp(json_string_value(json_array_get(used, i)), extension) == 0) return;
+    if (vl_text_is(json_string_value(json_array_get(used, i)), extension)) return;
   json_array_append_new(used, json_string(extension));
 }
 
@@ -112,7 +111,7 @@ static void put_attribute(vlExport *x, json_t *attributes, const char *name, con
                           uint32_t components) {
   if (!values) return;
   json_object_set_new(attributes, name,
-                      json_integer(put_floats(x, values, m->vertices, components, strcmp(name, "POSITION") == 0)));
+                      json_integer(put_floats(x, values, m->vertices, components, vl_text_is(name, "POSITION"))));
 }
 
 static bool put_attributes(vlExport *x, const vlExportMesh *m, json_t *attributes, bool turned, bool colors,
@@ -163,7 +162,7 @@ static int last_uv_set(const json_t *material, const vlExportMesh *mesh) {
   json_object_foreach((json_t *)(uintptr_t)material, key, value) {
     if (!json_is_object(value)) continue;
     const size_t n = strlen(key);
-    const bool texture = n > 7 && strcmp(key + n - 7, "Texture") == 0 && json_object_get(value, "index");
+    const bool texture = n > 7 && vl_text_is(key + n - 7, "Texture") && json_object_get(value, "index");
     const int set =
         texture ? (int)json_integer_value(json_object_get(value, "texCoord")) : last_uv_set(value, &(vlExportMesh){0});
     if (set > last) last = set;

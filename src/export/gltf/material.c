@@ -1,11 +1,11 @@
 /* export/gltf/material.c: materials as metallic-roughness with the KHR extensions. The principled material is exported
  * losslessly where possible; other materials are approximated. */
 #include <math.h>
-#include <string.h>
 
 #include "export/export.h"
 #include "schema/schema.h"
 
+#include "base/text.h"
 #include "math/elementary.h"
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
@@ -89,7 +89,7 @@ static void put_base(vlExport *x, json_t *material, const vlSpectrumInput *color
 
 static bool same_image(const vlTextureDef *a, const vlTextureDef *b) {
   return a->data == b->data && a->image == b->image && a->uv_set == b->uv_set &&
-         (a->path == b->path || (a->path && b->path && strcmp(a->path, b->path) == 0));
+         (a->path == b->path || (a->path && b->path && vl_text_is(a->path, b->path)));
 }
 
 static void put_metal(vlExport *x, json_t *base, const vlPrincipledDef *p) {

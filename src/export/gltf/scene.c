@@ -1,9 +1,9 @@
 /* export/gltf/scene.c: camera and lights of a scene as glTF. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "export/export.h"
 #include "math/elementary.h"
 #include "velo/camera_file.h"
@@ -20,7 +20,7 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
   def.dialect = VL_CAMERA_DIALECT_GLTF;
   if (drop) {
     def.drop = beyond;
-    def.drop_count = sizeof beyond / sizeof *beyond;
+    def.drop_count = VL_LENGTH(beyond);
   }
   return vl_camera_write(x->context, path, &def, record, &error);
 }
@@ -133,7 +133,7 @@ bool vl_gltf_put_lights(vlExport *x, json_t *nodes) {
     const vlLightDef *d = &x->scene->lights.items[i];
     float rgb[3];
     if (d->kind == VL_LIGHT_INFINITE) continue; /* vl_gltf_put_environment */
-    if (d->kind >= sizeof types / sizeof *types || !types[d->kind]) {
+    if (d->kind >= VL_LENGTH(types) || !types[d->kind]) {
       vl_export_lose(x, "lights of kinds that glTF has not: left out");
       continue;
     }

@@ -1,10 +1,10 @@
 /* export/gltf/texture.c: images, samplers and textures of a glTF file, each written once. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "export/export.h"
 
+#include "base/text.h"
 #include "math/elementary.h"
 
 json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const char *suffix) {
@@ -12,7 +12,7 @@ json_int_t vl_gltf_put_file(vlExport *x, const char *bytes, size_t size, const c
   json_t *image = json_object();
   if (x->binary) {
     json_object_set_new(image, "bufferView", json_integer(vl_gltf_put_view(x, bytes, size, 0)));
-    json_object_set_new(image, "mimeType", json_string(strcmp(suffix, ".png") == 0 ? "image/png" : "image/jpeg"));
+    json_object_set_new(image, "mimeType", json_string(vl_text_is(suffix, ".png") ? "image/png" : "image/jpeg"));
   } else {
     char uri[900], *to = uri;
     snprintf(name, sizeof name, "%.200s-%zu%s", x->stem, json_array_size(json_object_get(x->root, "images")), suffix);
@@ -36,7 +36,7 @@ static json_int_t put_image(vlExport *x, const vlTextureDef *t) {
   const void *data = t->data ? t->data : (const void *)t->image;
   for (size_t i = 0; i < x->images.count; i++) {
     const vlExportImage *p = &x->images.items[i];
-    if (p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0))) return p->index;
+    if (p->data == data && (data || (p->path && t->path && vl_text_is(p->path, t->path)))) return p->index;
   }
   char *bytes;
   const char *suffix;

@@ -1,8 +1,8 @@
 /* export/pbrt/film.c: writes the film of a scene by the row of its kind, and functions for parameters that do not stand
  * in the scene as they do in files. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
 static vlFilmKind kind_of(const vlSceneDefs *defs) {
@@ -122,11 +122,11 @@ static const struct {
     {"imagingratio", NULL}, /* iso */
     {"savefp16", NULL},     /* is ignored */
 };
-enum { RULES = sizeof rules / sizeof *rules };
+enum { RULES = VL_LENGTH(rules) };
 
 static bool has_rule(const vlParameter *p) {
   for (size_t i = 0; i < RULES; i++)
-    if (strcmp(rules[i].name, p->name) == 0) return true;
+    if (vl_text_is(rules[i].name, p->name)) return true;
   return false;
 }
 

@@ -1,8 +1,6 @@
 /* export/pbrt/material.c: materials of pbrt-v4. pbrt's own kinds are written unchanged; the principled material is
  * approximated. */
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "export/pbrt/pbrt.h"
 

@@ -1,7 +1,7 @@
 /* export/pbrt/medium.c: participating media as pbrt's. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
 /* `per` numbers per cell. */
@@ -18,7 +18,7 @@ static void put_arrays(vlExport *x, const vlKindRow *row, const vlMediumDef *m) 
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
-    bool rgb = strcmp(p->text, "rgb array") == 0;
+    bool rgb = vl_text_is(p->text, "rgb array");
     char name[64];
     snprintf(name, sizeof name, "%s %s", rgb ? "rgb" : "float", p->name);
     put_cells(x, name, m, *(const float *const *)(const void *)((const char *)m + p->offset), rgb ? 3 : 1);

@@ -1,7 +1,7 @@
 /* export/pbrt/parameters.c: writes the members of a def that differ from their defaults as parameters, by the row of
  * its kind. */
-#include <string.h>
 
+#include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
 bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p) {
@@ -19,7 +19,7 @@ static bool prepare_file(vlExport *x, const vlParameter *p, const char *path, ch
   t.path = path;
   t.encoding = VL_ENCODING_LINEAR;
   t.encoding_given = true;
-  return vl_pbrt_image(x, &t, strcmp(p->name, "normalmap") == 0 ? VL_PBRT_COLORS : VL_PBRT_ANY, name);
+  return vl_pbrt_image(x, &t, vl_text_is(p->name, "normalmap") ? VL_PBRT_COLORS : VL_PBRT_ANY, name);
 }
 
 static bool prepare(vlExport *x, const vlParameter *p, const void *def, bool spectrum, int depth,

@@ -1,9 +1,9 @@
 /* export/pbrt/pbrt.c: a scene in pbrt-v4's language: the part before WorldBegin, the order of the rest, lights. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
+#include "base/text.h"
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
 #include "velo/camera_file.h"
@@ -86,7 +86,7 @@ static bool put_camera(vlExport *x) {
   if (r == VL_ERROR_UNSUPPORTED) {
     vl_export_lose(x, "the camera: %.120s", error.message);
     def.drop = beyond;
-    def.drop_count = sizeof beyond / sizeof *beyond;
+    def.drop_count = VL_LENGTH(beyond);
     r = vl_camera_write(x->context, path, &def, &record, &error);
   }
   if (r == VL_OK) r = vl_file_read_given(x->context, path, false, &text, &size, &error);

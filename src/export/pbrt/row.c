@@ -1,6 +1,6 @@
 /* export/pbrt/row.c: writes the members of a def as parameters of pbrt's language, by the row of its kind. */
-#include <string.h>
 
+#include "base/text.h"
 #include "export/pbrt/pbrt.h"
 
 static double in_files(const vlParameter *p, double value) {
@@ -44,7 +44,7 @@ void vl_pbrt_parameter(vlExport *x, const vlParameter *p, const void *def) {
 void vl_pbrt_row(vlExport *x, const vlKindRow *row, const void *def, bool all, const char *skip) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && strcmp(p->name, skip) == 0)) continue;
+    if (!p->name || (p->flags & VL_PARAMETER_SHORTHAND) || (skip && vl_text_is(p->name, skip))) continue;
     bool is_default = vl_parameter_is_default(p, def, false);
     if (p->flags & VL_PARAMETER_UNSET ? is_default : is_default && !all && !(p->flags & VL_PARAMETER_RGB)) continue;
     if (vl_pbrt_knows(x, row, p)) vl_pbrt_parameter(x, p, def);

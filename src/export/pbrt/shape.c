@@ -1,7 +1,6 @@
 /* export/pbrt/shape.c: shapes as pbrt's. Large meshes are written to PLY files. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "export/pbrt/pbrt.h"
 #include "scene/solid.h"

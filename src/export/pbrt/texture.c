@@ -2,7 +2,6 @@
  * new image (EXR, which does not round the values). */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
@@ -13,7 +12,7 @@ static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t va
   const void *data = t->data ? t->data : (const void *)t->image;
   for (size_t i = 0; i < x->images.count; i++) {
     vlExportImage *p = &x->images.items[i];
-    if (p->variant == variant && p->data == data && (data || (p->path && t->path && strcmp(p->path, t->path) == 0)))
+    if (p->variant == variant && p->data == data && (data || (p->path && t->path && vl_text_is(p->path, t->path))))
       return p;
   }
   return NULL;
@@ -34,7 +33,7 @@ static bool write_image(vlExport *x, const vlTextureDef *t, uint32_t variant, co
 /* Whether pbrt reads files of this name. (velo recognises images by their content.) */
 static bool is_name_for_pbrt(const char *name) {
   static const char *const known[] = {".exr", ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tga"};
-  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+  for (size_t i = 0; i < VL_LENGTH(known); i++)
     if (vl_ends_with(name, known[i])) return true;
   return false;
 }
@@ -266,8 +265,8 @@ static bool is_placed(const vlTextureDef *t, const vlKindRow *row, vlMat4 *world
 static vlPbrtWished wish(const void *def, const vlParameter *p) {
   static const char *const of_mapping[] = {"mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"};
   (void)def;
-  for (size_t i = 0; i < sizeof of_mapping / sizeof *of_mapping; i++)
-    if (p->name && strcmp(p->name, of_mapping[i]) == 0) return VL_PBRT_NEVER;
+  for (size_t i = 0; i < VL_LENGTH(of_mapping); i++)
+    if (vl_text_is(p->name, of_mapping[i])) return VL_PBRT_NEVER;
   return VL_PBRT_UNLESS_DEFAULT;
 }
 

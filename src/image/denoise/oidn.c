@@ -2,9 +2,9 @@
  * Only functions of its C interface that versions 1 and 2 have in common are called, some of them under two names. */
 #include <dlfcn.h>
 #include <math.h>
-#include <string.h>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "image/denoise/denoise.h"
 
 typedef struct Oidn {
@@ -29,7 +29,7 @@ static vlResult load(Oidn *o, const char *library, vlError *error) {
   static const char *const usual[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
                                       "libOpenImageDenoise.so.0", "libOpenImageDenoise.so"};
   if (library) o->library = dlopen(library, RTLD_NOW | RTLD_LOCAL);
-  for (size_t i = 0; i < sizeof usual / sizeof *usual && !library && !o->library; i++)
+  for (size_t i = 0; i < VL_LENGTH(usual) && !library && !o->library; i++)
     o->library = dlopen(usual[i], RTLD_NOW | RTLD_LOCAL);
   if (!o->library)
     return vl_fail(error, VL_ERROR_MISSING, "Open Image Denoise: %s cannot be loaded", library ? library : usual[0]);
@@ -47,7 +47,7 @@ static vlResult load(Oidn *o, const char *library, vlError *error) {
                  {"oidnCommitFilter", NULL, &o->commit_filter},
                  {"oidnExecuteFilter", NULL, &o->execute},
                  {"oidnReleaseFilter", NULL, &o->release_filter}};
-  for (size_t i = 0; i < sizeof symbols / sizeof *symbols; i++) {
+  for (size_t i = 0; i < VL_LENGTH(symbols); i++) {
     void *symbol = dlsym(o->library, symbols[i].name);
     if (!symbol && symbols[i].other) symbol = dlsym(o->library, symbols[i].other);
     if (!symbol)

@@ -1,7 +1,7 @@
 /* import/gltf/accessor.c: typed arrays over buffer views. An accessor is checked once; its elements are then read as
  * floats or unsigned integers. */
-#include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 
 static uint32_t component_size(uint32_t type) {
@@ -21,8 +21,8 @@ static uint32_t component_count(const char *type, bool *matrix) {
     const char *name;
     uint32_t count;
   } types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
-  for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-    if (strcmp(types[i].name, type) == 0) {
+  for (size_t i = 0; i < VL_LENGTH(types); i++)
+    if (vl_text_is(types[i].name, type)) {
       *matrix = i > 3;
       return types[i].count;
     }

@@ -3,7 +3,6 @@
  * value after the last key. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -149,10 +148,10 @@ static bool apply_channel(vlGltf *g, const vlGltfPlace *up, const json_t *animat
       !vl_gltf_text(g, at_target, target, "path", &path))
     return false;
   if (sampler < 0) return vl_gltf_fail(g, at, "\"sampler\" is missing");
-  if (strcmp(path, "pointer") == 0 && !read_pointer(g, at_target, target, &node, &path)) return false;
+  if (vl_text_is(path, "pointer") && !read_pointer(g, at_target, target, &node, &path)) return false;
   int what = -1;
   for (int k = 0; k < 4; k++)
-    if (strcmp(path, paths[k]) == 0) what = k;
+    if (vl_text_is(path, paths[k])) what = k;
   if (what < 0 && *path)
     vl_gltf_warn(g, VL_LOG_WARNING, VL_GLTF_KEY(at_target, "path"), "unknown name \"%s\" is ignored",
                  vl_short_text(path).text);
@@ -194,7 +193,7 @@ bool vl_gltf_apply_animation(vlGltf *g, size_t index) {
 static size_t find_animation(const vlGltf *g, const char *name) {
   for (size_t i = 0; i < g->animation_count; i++) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "animations", i), "name"));
-    if (own && strcmp(own, name) == 0) return i;
+    if (vl_text_is(own, name)) return i;
   }
   char *end;
   unsigned long number = strtoul(name, &end, 10);
@@ -218,7 +217,7 @@ bool vl_gltf_each_animation(vlGltf *g, bool (*visit)(vlGltf *g, size_t index)) {
   if (g->animation_count == 0) return true;
   size_t whole = wanted ? find_animation(g, wanted) : 0;
   if (whole != SIZE_MAX) return visit(g, whole);
-  bool all = strcmp(wanted, "all") == 0;
+  bool all = vl_text_is(wanted, "all");
   for (size_t i = 0; all && i < g->animation_count; i++)
     if (!visit(g, i)) return false;
   for (const char *from = wanted; !all;) {

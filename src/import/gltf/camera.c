@@ -1,7 +1,6 @@
 /* import/gltf/camera.c: the choice of the scene's camera, and its parameters (specification, 3.10). */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -110,7 +109,7 @@ bool vl_gltf_check_camera(vlGltf *g, size_t index) {
 
 static bool is_called(const json_t *json, const char *name) {
   const char *own = json_string_value(json_object_get(json, "name"));
-  return own && strcmp(own, name) == 0;
+  return vl_text_is(own, name);
 }
 
 bool vl_gltf_choose_camera(vlGltf *g) {

@@ -1,7 +1,6 @@
 /* import/gltf/extension.c: the extensions that are read. An unknown extension is an error when the file requires it and
  * a warning when the file only uses it. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -65,23 +64,22 @@ static const char *const silent[] = {"KHR_xmp", "KHR_xmp_json_ld", "KHR_node_hov
 
 static bool is_in(const char *name, const char *const *names, size_t count) {
   for (size_t i = 0; i < count; i++)
-    if (strcmp(name, names[i]) == 0) return true;
+    if (vl_text_is(name, names[i])) return true;
   return false;
 }
 
 bool vl_gltf_reads_extension(const char *name) {
-  return is_in(name, known, sizeof known / sizeof *known);
+  return is_in(name, known, VL_LENGTH(known));
 }
 
 vlShortText vl_gltf_extension_text(const char *name) {
   vlShortText text = vl_short_text(name);
-  if (is_in(name, registered, sizeof registered / sizeof *registered))
-    snprintf(text.text, sizeof text.text, "%s", name);
+  if (is_in(name, registered, VL_LENGTH(registered))) snprintf(text.text, sizeof text.text, "%s", name);
   return text;
 }
 
 bool vl_gltf_check_extensions(vlGltf *g) {
-  const size_t known_count = sizeof known / sizeof *known, silent_count = sizeof silent / sizeof *silent;
+  const size_t known_count = VL_LENGTH(known), silent_count = VL_LENGTH(silent);
   const json_t *used, *required;
   size_t used_count, required_count;
   if (!vl_gltf_array(g, NULL, g->root, "extensionsUsed", &used, &used_count) ||
@@ -92,10 +90,10 @@ bool vl_gltf_check_extensions(vlGltf *g) {
     const vlGltfPlace *at = VL_GLTF_ITEM(NULL, "extensionsRequired", i);
     if (!name) return vl_gltf_fail(g, at, "must be a string");
     if (is_in(name, known, known_count)) continue;
-    if (strcmp(name, "KHR_draco_mesh_compression") == 0)
+    if (vl_text_is(name, "KHR_draco_mesh_compression"))
       return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "this velo was built without libdraco, which %s needs",
                                name);
-    if (strcmp(name, "KHR_texture_basisu") == 0)
+    if (vl_text_is(name, "KHR_texture_basisu"))
       return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at,
                                "velo does not read KTX2 images (%s): convert them to PNG, as gltf-transform does",
                                name);

@@ -1,7 +1,6 @@
 /* import/gltf/file.c: reads the file: .gltf or .glb (distinguished by the first bytes), its JSON, uris, buffers and
  * buffer views. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
 #include "base/json.h"
@@ -64,7 +63,7 @@ static bool parse(vlGltf *g, const char *text, size_t size) {
   const char *version = json_string_value(json_object_get(asset, "version"));
   const char *least = json_string_value(json_object_get(asset, "minVersion"));
   if (!version) return vl_gltf_fail(g, NULL, "asset.version: is missing: not glTF 2.0");
-  if (strncmp(least ? least : version, "2.", 2) != 0 || (least && strcmp(least, "2.0") != 0))
+  if (strncmp(least ? least : version, "2.", 2) != 0 || (least && !vl_text_is(least, "2.0")))
     return vl_gltf_fail(g, NULL, "asset: glTF %s; velo reads 2.0", vl_short_text(least ? least : version).text);
   return true;
 }

@@ -2,8 +2,6 @@
 #include "import/gltf/gltf.h"
 #include "base/text.h"
 
-#include <string.h>
-
 #include "import/import.h"
 #include "import/plain.h"
 
@@ -18,7 +16,7 @@ bool vl_gltf_choose_variant(vlGltf *g) {
   for (size_t i = 0; i < count; i++) {
     const char *name = json_string_value(json_object_get(json_array_get(variants, i), "name"));
     if (!name) continue;
-    if (strcmp(name, g->def->variant) == 0) {
+    if (vl_text_is(name, g->def->variant)) {
       g->variant = (int64_t)i;
       return true;
     }

@@ -1,7 +1,6 @@
 /* import/gltf/json.c: errors that name a place in the JSON; typed members. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -134,7 +133,7 @@ bool vl_gltf_choice(vlGltf *g, const vlGltfPlace *at, const json_t *object, cons
   if (!vl_gltf_text(g, at, object, key, &text)) return false;
   char list[160] = "";
   for (int i = 0; i < count; i++) {
-    if (strcmp(text, names[i]) == 0) {
+    if (vl_text_is(text, names[i])) {
       *value = i;
       return true;
     }

@@ -1,8 +1,8 @@
 /* import/gltf/label.c: names of nodes, meshes and materials become labels of shapes, instances and materials. A mesh
  * placed by one node is called by the node, else by the mesh; equal names get those of their parents: Hall/Chair. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
 
@@ -174,7 +174,7 @@ bool vl_gltf_label_shape(vlGltf *g, const vlGltfShapePlace *at, vlLabel *label) 
     place[n++] = '.';
   }
   const char *last = strrchr(path, '/');
-  if (mesh && strcmp(last ? last + 1 : path, mesh) != 0) vl_label_append(path, mesh);
+  if (mesh && !vl_text_is(last ? last + 1 : path, mesh)) vl_label_append(path, mesh);
   vl_label_append(path, material);
   snprintf(place + n, sizeof place - n, "meshes[%zu].primitives[%zu]", at->mesh, at->primitive);
   const json_t *primitives = json_object_get(vl_gltf_item(g, "meshes", at->mesh), "primitives");

@@ -1,7 +1,6 @@
 /* import/gltf/light.c: KHR_lights_punctual. The extension's units, candela and lux, match velo's if radiance is in
  * nits. */
 #include <math.h>
-#include <string.h>
 
 #include "import/gltf/gltf.h"
 

@@ -1,7 +1,6 @@
 /* import/gltf/names.c: warns of members whose name is unknown but similar to a known one. Such members are ignored, as
  * the specification demands. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -169,7 +168,7 @@ static const char *const known[] = {"COLOR_0",
                                     "ymag",
                                     "zfar",
                                     "znear"};
-enum { KNOWN = sizeof known / sizeof *known, MOST_REPORTED = 4 };
+enum { KNOWN = VL_LENGTH(known), MOST_REPORTED = 4 };
 
 static int compare(const void *a, const void *b) {
   return strcmp(*(const char *const *)a, *(const char *const *)b);
@@ -199,12 +198,12 @@ static void walk(vlGltf *g, const vlGltfPlace *at, json_t *value, uint32_t *repo
   size_t i;
   if (*reported >= MOST_REPORTED) return;
   if (json_is_object(value)) {
-    bool extensions = at && strcmp(at->key, "extensions") == 0;
+    bool extensions = at && vl_text_is(at->key, "extensions");
     json_object_foreach(value, name, part) {
       const vlShortText shown = vl_short_text(name);
       const char *key =
           bsearch(&name, known, KNOWN, sizeof *known, compare) || vl_gltf_reads_extension(name) ? name : shown.text;
-      if (extensions ? !vl_gltf_reads_extension(name) : strcmp(name, "extras") == 0) continue;
+      if (extensions ? !vl_gltf_reads_extension(name) : vl_text_is(name, "extras")) continue;
       if (!extensions) look(g, at, name, reported);
       if (json_is_object(part)) walk(g, VL_GLTF_KEY(at, key), part, reported);
       if (!json_is_array(part)) continue;

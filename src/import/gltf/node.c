@@ -1,7 +1,6 @@
 /* import/gltf/node.c: the node tree: poses, the choice of the scene, and the placement of meshes and lights. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -324,7 +323,7 @@ static bool choose_scene(vlGltf *g, size_t *chosen) {
   char names[200] = "", *end;
   for (size_t i = 0; i < g->scene_count; i++) {
     const char *own = json_string_value(json_object_get(vl_gltf_item(g, "scenes", i), "name"));
-    if (own && strcmp(own, wanted) == 0) {
+    if (vl_text_is(own, wanted)) {
       *chosen = i;
       return true;
     }

@@ -2,7 +2,6 @@
  * KHR_texture_transform. Images are not decoded here; the scene keeps their bytes or paths. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/text.h"
@@ -74,7 +73,7 @@ static bool choose_image(vlGltf *g, size_t texture, int64_t *image) {
   if (*image >= 0) return true;
   if (!vl_gltf_index(g, at, json, "source", g->image_count, image)) return false;
   if (*image >= 0) return true;
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+  for (size_t i = 0; i < VL_LENGTH(others); i++)
     if (vl_gltf_extension(json, others[i]))
       return vl_gltf_fail_code(g, VL_ERROR_UNSUPPORTED, at, "its image is there by %s only, which velo does not read",
                                others[i]);

@@ -1,7 +1,6 @@
 /* import/gltf/unread.c: counts what a file has and the scene does not hold: extras, extensions that velo does not read,
  * occlusion maps, further vertex attributes. Exporters report it as lost. The copyright is kept. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
@@ -13,7 +12,7 @@ static bool add(vlGltf *g, const char *format, const char *name) {
   char text[200];
   snprintf(text, sizeof text, format, name);
   for (size_t i = 0; i < g->scene->unread.count; i++)
-    if (strcmp(g->scene->unread.items[i].what, text) == 0) {
+    if (vl_text_is(g->scene->unread.items[i].what, text)) {
       g->scene->unread.items[i].count++;
       return true;
     }
@@ -37,8 +36,7 @@ static bool count_attributes(vlGltf *g, const json_t *attributes) {
   json_t *value;
   json_object_foreach((json_t *)(uintptr_t)attributes, name, value) {
     bool known = false;
-    for (size_t i = 0; i < sizeof read / sizeof *read; i++)
-      known = known || strncmp(name, read[i], strlen(read[i])) == 0;
+    for (size_t i = 0; i < VL_LENGTH(read); i++) known = known || strncmp(name, read[i], strlen(read[i])) == 0;
     if (!known && !add(g, "vertex attribute %s: left out", vl_short_text(name).text)) return false;
   }
   return true;
@@ -46,17 +44,17 @@ static bool count_attributes(vlGltf *g, const json_t *attributes) {
 
 /* jansson limits the depth of the recursion. */
 static bool walk(vlGltf *g, const char *key, json_t *value) {
-  const bool extensions = strcmp(key, "extensions") == 0;
+  const bool extensions = vl_text_is(key, "extensions");
   const char *name;
   json_t *part, *item;
   size_t i;
-  if (strcmp(key, "attributes") == 0 && !count_attributes(g, value)) return false;
+  if (vl_text_is(key, "attributes") && !count_attributes(g, value)) return false;
   json_object_foreach(value, name, part) {
-    if (strcmp(name, "extras") == 0) {
+    if (vl_text_is(name, "extras")) {
       if (!is_own(part) && !add(g, "%s of applications: left out", name)) return false;
       continue;
     }
-    if (strcmp(name, "occlusionTexture") == 0 && !add(g, "%s: left out, velo computes occlusion", name)) return false;
+    if (vl_text_is(name, "occlusionTexture") && !add(g, "%s: left out, velo computes occlusion", name)) return false;
     if (extensions && !vl_gltf_reads_extension(name)) {
       if (!add(g, "extension %s: left out, velo does not read it", vl_gltf_extension_text(name).text)) return false;
       continue;

@@ -1,7 +1,6 @@
 /* import/gltf/volume.c: the medium behind a surface (KHR_materials_volume), and images that are converted before they
  * become textures. */
 #include <math.h>
-#include <string.h>
 
 #include "image/image.h"
 #include "import/gltf/gltf.h"

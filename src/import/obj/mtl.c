@@ -2,7 +2,6 @@
  * ignored; broken ones are errors with their line. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/file.h"
@@ -62,7 +61,7 @@ static bool find_image(vlObj *obj, char *name, const char **path) {
     return report_missing(obj, "there is no image", name);
   }
   bool readable = false;
-  for (size_t i = 0; i < sizeof known / sizeof *known; i++) readable |= vl_ends_with(whole, known[i]);
+  for (size_t i = 0; i < VL_LENGTH(known); i++) readable |= vl_ends_with(whole, known[i]);
   if (!readable) {
     vl_obj_warn(obj, VL_LOG_WARNING, "\"%.200s\": velo does not read images of this kind; done without", name);
     return true;
@@ -222,7 +221,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
   } colors[] = {{"Kd", m->kd}, {"Ks", m->ks}, {"Ke", m->ke}, {"Tf", m->tf}},
     numbers[] = {{"Ns", &m->ns}, {"Ni", &m->ni}, {"d", &m->d},     {"Pr", &m->pr},       {"Pm", &m->pm},
                  {"Pc", &m->pc}, {"Ps", &m->ps}, {"Pcr", &m->pcr}, {"aniso", &m->aniso}, {"anisor", &m->anisor}};
-  for (size_t i = 0; i < sizeof colors / sizeof *colors; i++)
+  for (size_t i = 0; i < VL_LENGTH(colors); i++)
     if (is_word(word, n, colors[i].name)) return read_color(obj, colors[i].name, colors[i].to);
   if (is_word(word, n, "d")) { /* also "d -halo 0.5" */
     char *at = obj->at;
@@ -230,9 +229,9 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
     size_t k = vl_obj_word(obj, &halo);
     if (!is_word(halo, k, "-halo")) obj->at = at;
   }
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
     if (is_word(word, n, numbers[i].name)) return read_number(obj, numbers[i].name, numbers[i].to);
-  for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+  for (size_t i = 0; i < VL_LENGTH(maps); i++)
     if (is_word(word, n, maps[i].name)) return read_map(obj, m, maps[i].kind);
   float value = 0;
   if (is_word(word, n, "Tr")) {
@@ -253,7 +252,7 @@ static bool read_statement(vlObj *obj, uint32_t *current) {
 static bool read_library(vlObj *obj, char *name) {
   char path[4096];
   for (size_t i = 0; i < obj->libraries.count; i++)
-    if (strcmp(obj->libraries.items[i], name) == 0) return true;
+    if (vl_text_is(obj->libraries.items[i], name)) return true;
   if (obj->libraries.count >= VL_OBJ_LIBRARIES)
     return vl_obj_fail(obj, "mtllib: more than %d libraries", VL_OBJ_LIBRARIES);
   for (char *p = name; *p; p++)

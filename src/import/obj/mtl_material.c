@@ -2,10 +2,10 @@
  * ambiguous. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "import/obj/obj.h"
 
+#include "base/text.h"
 #include "math/elementary.h"
 
 static float given(float value, float otherwise) {
@@ -60,7 +60,7 @@ static bool number(vlObj *obj, const vlMtlMap *map, float factor, vlFloatInput *
 static bool is_normal_map(const char *path) {
   static const char *const signs[] = {"normal", "_nrm", "_nor.", "_n.", "_ddn", "-n.", "_norm"};
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-  for (size_t i = 0; i < sizeof signs / sizeof *signs; i++)
+  for (size_t i = 0; i < VL_LENGTH(signs); i++)
     if (strcasestr(name, signs[i])) return true;
   return false;
 }

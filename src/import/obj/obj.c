@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -294,7 +293,7 @@ uint32_t vl_obj_material(vlObj *obj, const char *name) {
   for (const char *p = name; *p; p++) hash = (hash ^ (uint8_t)*p) * 16777619u;
   uint32_t *head = &obj->heads[(hash ^ hash >> 15) % VL_OBJ_HEADS];
   for (uint32_t i = *head; i; i = obj->materials.items[i - 1].next)
-    if (strcmp(obj->materials.items[i - 1].name, name) == 0) return i - 1;
+    if (vl_text_is(obj->materials.items[i - 1].name, name)) return i - 1;
   const char *kept = name;
   if (obj->materials.count >= MAX_MATERIALS) {
     vl_obj_fail(obj, "too many materials");
@@ -364,9 +363,9 @@ static bool read_statement(vlObj *obj) {
   if (n == 2 && word[0] == 'f' && word[1] == 'o') return read_face(obj); /* "fo": the obsolete form of "f" */
   if (n == 6 && memcmp(word, "usemtl", 6) == 0) return use_material(obj);
   if (n == 6 && memcmp(word, "mtllib", 6) == 0) return vl_obj_read_libraries(obj);
-  for (size_t i = 0; i < sizeof silent / sizeof *silent; i++)
+  for (size_t i = 0; i < VL_LENGTH(silent); i++)
     if (strlen(silent[i]) == n && memcmp(word, silent[i], n) == 0) return true;
-  for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
+  for (size_t i = 0; i < VL_LENGTH(curves); i++)
     if (strlen(curves[i]) == n && memcmp(word, curves[i], n) == 0) {
       once(obj, REPORTED_CURVES, word, n);
       return true;

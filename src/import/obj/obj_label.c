@@ -1,6 +1,6 @@
 /* import/obj/obj_label.c: names of objects (o), groups (g) and materials become labels of shapes. */
-#include <string.h>
 
+#include "base/text.h"
 #include "import/obj/obj.h"
 
 /* Index 0 stands for faces before the first o or g. A new object has no group. */
@@ -29,7 +29,7 @@ bool vl_obj_label(vlObj *obj, vlNameTable *names, size_t part, vlLabel *label) {
   const char *material = obj->materials.items[p->material].name;
   char name[VL_LABEL_SIZE] = "", path[VL_LABEL_SIZE];
   vl_label_append(name, o->object);
-  if (!o->object || (o->group && strcmp(o->object, o->group) != 0)) vl_label_append(name, o->group);
+  if (!o->object || (o->group && !vl_text_is(o->object, o->group))) vl_label_append(name, o->group);
   memcpy(path, name, sizeof path);
   vl_label_append(path, material);
   if (!*name || has_neighbour(obj, part)) vl_label_append(name, material);

@@ -1,7 +1,6 @@
 /* import/obj/obj_line.c: points (p) and lines (l) of OBJ files: balls and tubes. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/obj/obj.h"

@@ -4,8 +4,7 @@
 #include "base/error.h"
 #include "import/pbrt/upgrade/detect.h"
 
-#include <string.h>
-
+#include "base/text.h"
 #include "import/import.h"
 
 /* The part of a file where a directive may stand: options precede WorldBegin, the world follows it. */
@@ -249,11 +248,11 @@ static void release(vlImport *import) {
   VL_ARRAY_FREE(context, &import->materials);
   vlChoice *choices[] = {&import->camera,     &import->film,   &import->sampler,
                          &import->integrator, &import->filter, &import->accelerator};
-  for (size_t i = 0; i < sizeof choices / sizeof *choices; i++) vl_param_list_free(context, &choices[i]->params);
+  for (size_t i = 0; i < VL_LENGTH(choices); i++) vl_param_list_free(context, &choices[i]->params);
   for (int t = 0; t < VL_ATTR_TARGETS; t++) vl_param_list_free(context, &import->attributes[t]);
   vlNameTable *tables[] = {&import->coordinate_systems, &import->float_textures, &import->spectrum_textures,
                            &import->named_materials,    &import->objects,        &import->media};
-  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) vl_free(context, tables[i]->slots);
+  for (size_t i = 0; i < VL_LENGTH(tables); i++) vl_free(context, tables[i]->slots);
   for (size_t i = 0; i < import->strings.count; i++) vl_free(context, import->strings.items[i]);
   VL_ARRAY_FREE(context, &import->strings);
   VL_ARRAY_FREE(context, &import->stack);

@@ -1,12 +1,12 @@
 /* import/pbrt/curve.c: Shape "curve". Every basis and degree becomes cubic Bezier segments. Successive curves that
  * differ only in their points become one shape, since hair is described by millions of directives. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 static bool same_text(const char *a, const char *b) {
-  return a == b || strcmp(a ? a : "", b ? b : "") == 0;
+  return a == b || vl_text_is(a ? a : "", b ? b : "");
 }
 
 /* Whether the curve can join the shape being gathered. */

@@ -2,7 +2,6 @@
 #include "import/pbrt/param.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
@@ -27,7 +26,7 @@ bool vl_param_type_find(const char *text, size_t length, vlParamType *type) {
       return true;
     }
   }
-  for (size_t i = 0; i < sizeof old / sizeof *old; i++) {
+  for (size_t i = 0; i < VL_LENGTH(old); i++) {
     if (strlen(old[i].name) == length && memcmp(old[i].name, text, length) == 0) {
       *type = old[i].type;
       return true;
@@ -77,7 +76,7 @@ static const char *wanted_types(uint32_t bits, char *text, size_t size) {
 static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *name, uint32_t bits, vlParam *found) {
   for (size_t i = params->list.count; i > 0; i--) { /* the last of several values counts */
     vlParam *p = params->list.items[i - 1];
-    if (strcmp(p->name, name) != 0) continue;
+    if (!vl_text_is(p->name, name)) continue;
     if (bits & 1u << p->type) {
       p->used = true; /* also marks earlier duplicates as used */
       if (!found) found = p;
@@ -94,7 +93,7 @@ static vlParam *find_in(vlDict *dict, const vlParamList *params, const char *nam
 
 vlParam *vl_dict_find(vlDict *dict, const char *name, uint32_t bits) {
   bool known = false;
-  for (uint32_t i = 0; i < dict->asked_count; i++) known = known || strcmp(dict->asked[i], name) == 0;
+  for (uint32_t i = 0; i < dict->asked_count; i++) known = known || vl_text_is(dict->asked[i], name);
   if (!known && dict->asked_count < sizeof dict->asked / sizeof *dict->asked) dict->asked[dict->asked_count++] = name;
   vlParam *found = find_in(dict, dict->own, name, bits, NULL);
   if (dict->attributes && dict->import->scene->error.code == VL_OK)
@@ -174,7 +173,7 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
   if (!p) return false;
   const char *text = p->strings.items[0];
   for (size_t i = 0; i < count; i++) {
-    if (strcmp(text, names[i]) == 0) {
+    if (vl_text_is(text, names[i])) {
       *value = (int)i;
       return true;
     }

@@ -2,7 +2,6 @@
 #include "import/pbrt/parse.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/pbrt/parser.h"
@@ -78,7 +77,7 @@ static const Keyword keywords[] = {
     {"Shape", PARAMS, VL_DIR_SHAPE, 0},
     {"Texture", TEXTURE, VL_DIR_TEXTURE, 0},
 };
-enum { KEYWORDS = sizeof keywords / sizeof *keywords };
+enum { KEYWORDS = VL_LENGTH(keywords) };
 
 static bool unknown_directive(vlParserFile *file, const vlToken *token) {
   char text[64];

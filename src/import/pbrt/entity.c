@@ -1,7 +1,7 @@
 /* import/pbrt/entity.c: statements whose parameters are kept: attributes, objects, and the textures and materials that
  * are resolved at the end. */
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 /* ---- parameters that outlive their directive -------------------------------------------------------------------- */
@@ -25,7 +25,7 @@ bool vl_import_attribute(vlImport *import, const vlStatement *s) {
   static const char *const targets[] = {"shape", "light", "material", "medium", "texture"};
   int target = -1;
   for (int i = 0; i < VL_ATTR_TARGETS; i++)
-    if (strcmp(s->names[0], targets[i]) == 0) target = i;
+    if (vl_text_is(s->names[0], targets[i])) target = i;
   if (target < 0)
     return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "Attribute: unknown target \"%s\" (known: shape, light, material, medium, texture)",
@@ -159,8 +159,8 @@ bool vl_import_named_material(vlImport *import, const vlStatement *s) {
 }
 
 bool vl_import_texture(vlImport *import, const vlStatement *s) {
-  bool spectrum = strcmp(s->names[1], "spectrum") == 0 || strcmp(s->names[1], "color") == 0;
-  if (!spectrum && strcmp(s->names[1], "float") != 0)
+  bool spectrum = vl_text_is(s->names[1], "spectrum") || vl_text_is(s->names[1], "color");
+  if (!spectrum && !vl_text_is(s->names[1], "float"))
     return vl_import_fail(import, VL_ERROR_SCENE, s->source,
                           "Texture \"%s\": the type must be \"float\" or \"spectrum\", not \"%s\"",
                           vl_short_text(s->names[0]).text, vl_short_text(s->names[1]).text);

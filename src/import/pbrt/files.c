@@ -1,6 +1,5 @@
 /* import/pbrt/files.c: reads the first file and the files of Include and Import, within limits (parse.h). */
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/file.h"
@@ -111,7 +110,7 @@ static bool parse_text(vlParserFile *file, const char *text, size_t size) {
 /* The given text of an included file; null: it is read from the disk. */
 static const char *given_text(const vlParseTarget *target, const char *name) {
   for (size_t i = 0; i < target->text_count; i++)
-    if (strcmp(target->texts[2 * i], name) == 0) return target->texts[2 * i + 1];
+    if (vl_text_is(target->texts[2 * i], name)) return target->texts[2 * i + 1];
   return NULL;
 }
 

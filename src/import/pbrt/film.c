@@ -1,8 +1,8 @@
 /* import/pbrt/film.c: Film, Option and media. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/token.h"
 #include "velo/render.h"
@@ -56,10 +56,10 @@ static bool read_sensor_name(vlDict *dict, double *white) {
     count++;
   }
   vlParam *p = vl_dict_find(dict, "sensor", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "sensor", &name) || strcmp(name, plain) == 0) return true;
+  if (!vl_dict_string(dict, "sensor", &name) || vl_text_is(name, plain)) return true;
   *white = 6500.0;
   for (uint32_t i = 1; i < count; i++)
-    if (strcmp(name, names[i]) == 0) {
+    if (vl_text_is(name, names[i])) {
       vl_scene_defs(import->scene)->film.sensor = names[i];
       return true;
     }
@@ -173,7 +173,7 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
   char name[64];
   const char *value = s->names[1];
   normalise(s->names[0], name, sizeof name);
-  if (strcmp(name, "seed") == 0) {
+  if (vl_text_is(name, "seed")) {
     double seed;
     if (!vl_number_parse(value, strlen(value), &seed) || seed != floor(seed) || fabs(seed) > 4294967295.0)
       return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"seed\": \"%s\" is not an integer",
@@ -181,15 +181,15 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
     defs->render.seed = (uint32_t)(int64_t)seed;
     return true;
   }
-  if (strcmp(name, "displacementedgescale") == 0) {
+  if (vl_text_is(name, "displacementedgescale")) {
     if (vl_number_parse(value, strlen(value), &import->edge_scale) && import->edge_scale > 0.0) return true;
     return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": \"%s\" is not a number above 0", name,
                           vl_short_text(value).text);
   }
-  for (size_t i = 0; i < sizeof switches / sizeof *switches; i++) {
-    if (strcmp(name, switches[i].name) != 0) continue;
-    bool on = strcmp(value, "true") == 0;
-    if (!on && strcmp(value, "false") != 0)
+  for (size_t i = 0; i < VL_LENGTH(switches); i++) {
+    if (!vl_text_is(name, switches[i].name)) continue;
+    bool on = vl_text_is(value, "true");
+    if (!on && !vl_text_is(value, "false"))
       return vl_import_fail(import, VL_ERROR_SCENE, s->source, "Option \"%s\": expected true or false, found \"%s\"",
                             switches[i].name, vl_short_text(value).text);
     if (switches[i].value) *switches[i].value = on;
@@ -197,8 +197,8 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
            vl_import_unsupported(import, s->source, "Option \"%s\": velo cannot; its materials stay what they are",
                                  name);
   }
-  for (size_t i = 0; i < sizeof harmless / sizeof *harmless; i++)
-    if (strcmp(name, harmless[i]) == 0) return true;
+  for (size_t i = 0; i < VL_LENGTH(harmless); i++)
+    if (vl_text_is(name, harmless[i])) return true;
   static const char *const known[] = {"seed",
                                       "displacementedgescale",
                                       "disablepixeljitter",
@@ -210,5 +210,5 @@ bool vl_import_option(vlImport *import, const vlStatement *s) {
                                       "pixelstats",
                                       "wavefront",
                                       "rendercoordsys"};
-  return vl_import_unknown(import, s->source, "option", s->names[0], known, sizeof known / sizeof *known, NULL, 0);
+  return vl_import_unknown(import, s->source, "option", s->names[0], known, VL_LENGTH(known), NULL, 0);
 }

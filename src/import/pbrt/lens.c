@@ -1,8 +1,7 @@
 /* import/pbrt/lens.c: see lens.h. Aperture images and lens files become objects owned by the scene. */
 #include "import/pbrt/lens.h"
 
-#include <string.h>
-
+#include "base/text.h"
 #include "image/image.h"
 
 static bool scene_ok(const vlDict *dict) {
@@ -43,7 +42,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   vlImport *import = dict->import;
   const char *name = "circle";
   vlParam *p = vl_dict_find(dict, "aperture", 1u << VL_PARAM_STRING);
-  if (!vl_dict_string(dict, "aperture", &name) || strcmp(name, "circle") == 0 || strcmp(name, "circular") == 0 ||
+  if (!vl_dict_string(dict, "aperture", &name) || vl_text_is(name, "circle") || vl_text_is(name, "circular") ||
       name[0] == 0)
     return scene_ok(dict);
   vlAperture **slot = VL_PUSH(import->context, &import->scene->apertures);
@@ -51,7 +50,7 @@ static bool read_aperture(vlDict *dict, const vlAperture **aperture) {
   vlError error = {0};
   vlResult result = VL_OK;
   bool named = false;
-  for (int i = 0; i < 4; i++) named = named || strcmp(name, names[i]) == 0;
+  for (int i = 0; i < 4; i++) named = named || vl_text_is(name, names[i]);
   if (named) {
     result = vl_aperture_create_named(import->context, name, slot, &error);
   } else {

@@ -2,7 +2,6 @@
  * since pbrt allows a medium to be named before it is defined. Parameters and defaults are pbrt-v4's. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
@@ -19,7 +18,7 @@ bool vl_import_scattering_preset(vlDict *dict, const char *parameter, vlSpectrum
   *given = name[0] != 0;
   for (const vlScattering *s; *given && count < 64 && (s = vl_scattering_preset(count)); count++) {
     names[count] = s->name;
-    if (strcmp(s->name, name) != 0) continue;
+    if (!vl_text_is(s->name, name)) continue;
     *absorption = vl_spectrum_rgb(s->absorption[0], s->absorption[1], s->absorption[2]);
     *scattering = vl_spectrum_rgb(s->scattering[0], s->scattering[1], s->scattering[2]);
     return true;
@@ -106,7 +105,7 @@ static bool read_arrays(vlDict *dict, const vlKindRow *row, vlMediumDef *def) {
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->type != VL_PARAMETER_BLOCK || !p->name) continue;
-    vlParamType type = strcmp(p->text, "rgb array") == 0 ? VL_PARAM_RGB : VL_PARAM_FLOAT;
+    vlParamType type = vl_text_is(p->text, "rgb array") ? VL_PARAM_RGB : VL_PARAM_FLOAT;
     if (!read_cells(dict, p->name, type, def, (const float **)(void *)((char *)def + p->offset))) return false;
   }
   return true;

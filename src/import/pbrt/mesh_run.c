@@ -3,14 +3,14 @@
  * triangles with equal graphics state are merged. Nothing is merged before that, or while diagnosing. Several runs are
  * open at a time, since exporters alternate between materials. */
 #include <math.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 enum { MOST_FACES = 256, MOST_OF_A_RUN = 1 << 20 };
 
 bool vl_import_same_text(const char *a, const char *b) {
-  return a == b || strcmp(a ? a : "", b ? b : "") == 0;
+  return a == b || vl_text_is(a ? a : "", b ? b : "");
 }
 
 bool vl_import_same_link(const vlShapeLink *a, const vlShapeLink *b) {

@@ -1,8 +1,8 @@
 /* import/pbrt/parameters.c: reads the parameters of a directive into the members of a def, by the row of its kind. */
 #include <assert.h>
-#include <string.h>
 #include <strings.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 /* Reads a choice. Upper and lower case are not distinguished, as in pbrt. */
@@ -165,7 +165,7 @@ bool vl_import_parameters(vlDict *dict, const vlKindRow *row, void *def, bool sp
 
 bool vl_import_given(const vlKindRow *row, const bool *given, const char *name) {
   for (uint32_t i = 0; i < row->parameter_count; i++)
-    if (row->parameters[i].name && strcmp(row->parameters[i].name, name) == 0) return given[i];
+    if (vl_text_is(row->parameters[i].name, name)) return given[i];
   assert(!"a parameter of the row");
   return false;
 }

@@ -1,8 +1,8 @@
 /* import/pbrt/parse_params.c: tokens, errors and the parameters of a directive. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "import/pbrt/parser.h"
 
 /* ---- errors ----------------------------------------------------------------------------------------------------- */
@@ -126,8 +126,8 @@ static bool add_value(vlParserFile *file, const vlToken *token, vlParam *param) 
   bool is_true = vl_parse_is_word(token, "true"), is_false = vl_parse_is_word(token, "false");
   /* Files written for older versions put booleans in quotes. */
   if (param->type == VL_PARAM_BOOL && token->kind == VL_TOKEN_STRING) {
-    is_true = strcmp(token->text, "true") == 0;
-    is_false = strcmp(token->text, "false") == 0;
+    is_true = vl_text_is(token->text, "true");
+    is_false = vl_text_is(token->text, "false");
   }
   if (param->type == VL_PARAM_BOOL) {
     if (!is_true && !is_false)

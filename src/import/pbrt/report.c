@@ -1,7 +1,6 @@
 /* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept strings, paths, copies of
  * parameters. */
 #include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -75,7 +74,7 @@ bool vl_import_unsupported(vlImport *import, vlSource source, const char *format
 bool vl_import_unknown(vlImport *import, vlSource source, const char *thing, const char *name, const char *const *known,
                        size_t known_count, const char *const *later, size_t later_count) {
   for (size_t i = 0; i < later_count; i++)
-    if (strcmp(name, later[i]) == 0)
+    if (vl_text_is(name, later[i]))
       return vl_import_unsupported(import, source, "%s \"%s\" is not understood yet", thing, vl_short_text(name).text);
   const char *near = vl_nearest_name(name, known, known_count);
   if (!near) near = vl_nearest_name(name, later, later_count);
@@ -93,7 +92,7 @@ vlShortText vl_import_kind_text(const vlKindFamily *family, const char *name) {
 
 bool vl_import_unknown_kind(vlImport *import, vlSource source, const vlKindFamily *family, const char *name) {
   const char *names[64];
-  size_t count = vl_kind_names(family, names, sizeof names / sizeof *names);
+  size_t count = vl_kind_names(family, names, VL_LENGTH(names));
   return vl_import_unknown(import, source, family->thing, name, names, count, NULL, 0);
 }
 
@@ -162,7 +161,7 @@ bool vl_import_color_space(const char *name, vlColorSpace *space) {
                 {"dci-p3", VL_SPACE_DCI_P3},
                 {"rec2020", VL_SPACE_REC2020},
                 {"aces2065-1", VL_SPACE_ACES2065_1}};
-  for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) {
+  for (size_t i = 0; i < VL_LENGTH(spaces); i++) {
     if (strlen(name) == strlen(spaces[i].name) &&
         vl_ends_with(name, spaces[i].name)) { /* case is ignored, as in pbrt */
       *space = spaces[i].space;

@@ -1,9 +1,8 @@
 /* import/pbrt/sampling.c: converts the directives Sampler, PixelFilter, Integrator and Accelerator to the scene's defs.
  * Defaults are pbrt-v4's. */
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 /* Finds the row of the kind that the file names. Null for an unknown kind; *good then says whether the import
@@ -17,7 +16,7 @@ static const vlKindRow *find_row(vlImport *import, const vlKindFamily *family, c
 }
 
 static bool is_alias(const vlKindRow *row, const vlChoice *choice) {
-  return row->alias && strcmp(row->alias, choice->kind) == 0;
+  return vl_text_is(row->alias, choice->kind);
 }
 
 /* Checks the types of pbrt's parameters that have no meaning in velo. */
@@ -127,13 +126,13 @@ static void read_photons(vlDict *dict, const vlKindRow *row, vlSceneDefs *s) {
 
 /* Replaces the name of an integrator that velo lacks by that of a similar tracer. */
 static const char *stand_in(const char *name) {
-  return strcmp(name, "mlt") == 0 ? "bdpt" : name;
+  return vl_text_is(name, "mlt") ? "bdpt" : name;
 }
 
 /* Reports that one of velo's tracers replaces pbrt's bidirectional integrator. Of pbrt's parameters, radius and photons
  * have an effect. */
 static void remark_two_way(vlImport *import, const char *kind, vlTracer tracer) {
-  bool pbrts = strcmp(kind, "bdpt") == 0 || strcmp(kind, "mlt") == 0 || strcmp(kind, "sppm") == 0;
+  bool pbrts = vl_text_is(kind, "bdpt") || vl_text_is(kind, "mlt") || vl_text_is(kind, "sppm");
   if (pbrts)
     vl_import_warn(import, VL_LOG_INFO, import->integrator.source, "integrator \"%s\": rendered by velo's %s",
                    vl_short_text(kind).text, tracer == VL_TRACER_SPPM ? "merging tracer" : "bidirectional tracer");
@@ -161,7 +160,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
   if (!row) { /* permissive: a path tracer of the same depth replaces it */
     static const char *const later[] = {"function"};
     const char *names[32];
-    size_t count = vl_kind_names(&vl_tracer_family, names, sizeof names / sizeof *names);
+    size_t count = vl_kind_names(&vl_tracer_family, names, VL_LENGTH(names));
     if (!vl_import_unknown(import, choice->source, "integrator", choice->kind, names, count, later, 1)) return false;
     read_depth(&dict, s);
     return import->scene->error.code == VL_OK;
@@ -181,7 +180,7 @@ static bool read_integrator(vlImport *import, vlSceneDefs *s) {
 static bool check_accelerator(vlImport *import) {
   static const char *const names[] = {"bvh", "kdtree"};
   const vlChoice *choice = &import->accelerator;
-  if (!choice->given || strcmp(choice->kind, names[0]) == 0 || strcmp(choice->kind, names[1]) == 0) return true;
+  if (!choice->given || vl_text_is(choice->kind, names[0]) || vl_text_is(choice->kind, names[1])) return true;
   return vl_import_unknown(import, choice->source, "accelerator", choice->kind, names, 2, NULL, 0);
 }
 

@@ -2,6 +2,7 @@
  * Practical Model for Subsurface Light Transport", figure 5; Narasimhan, Gupta, Donner, Ramamoorthi, Nayar, Jensen
  * 2006, "Acquiring Scattering Properties of Participating Media by Dilution", table 3. */
 #include "import/pbrt/scattering.h"
+#include "base/text.h"
 
 static const vlScattering presets[] = {
     /* Jensen et al. 2001 */
@@ -56,5 +57,5 @@ static const vlScattering presets[] = {
 };
 
 const vlScattering *vl_scattering_preset(size_t index) {
-  return index < sizeof presets / sizeof *presets ? &presets[index] : NULL;
+  return index < VL_LENGTH(presets) ? &presets[index] : NULL;
 }

@@ -1,7 +1,7 @@
 /* import/pbrt/shape.c: Shape directives. The arrays of a mesh move to the scene without a copy. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/loop.h"
 
@@ -284,14 +284,14 @@ static const struct {
   const char *name;
   EnterShape *enter;
 } meshes[] = {{"plymesh", enter_ply}, {"loopsubdiv", enter_loop}};
-enum { MESHES = sizeof meshes / sizeof *meshes };
+enum { MESHES = VL_LENGTH(meshes) };
 
 static EnterShape *find_shape(const char *name, vlShapeKind *kind) {
   int own = vl_kind_find(&vl_shape_family, name);
   *kind = own < 0 ? VL_SHAPE_TRIANGLES : (vlShapeKind)own;
   if (own >= 0) return rules[own] ? rules[own] : enter_row;
   for (size_t i = 0; i < MESHES; i++)
-    if (strcmp(meshes[i].name, name) == 0) return meshes[i].enter;
+    if (vl_text_is(meshes[i].name, name)) return meshes[i].enter;
   return NULL;
 }
 

@@ -1,6 +1,5 @@
 /* import/pbrt/spectrum.c: colours and numbers of parameters become inputs of the scene: rgb, named spectra, spectrum
  * files (two columns: wavelength in nm, value), sampled spectra, blackbodies, textures by name. */
-#include <string.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -81,7 +80,7 @@ static bool read_named(vlImport *import, const vlParam *param, vlSpectrum *spect
   const char *text = param->strings.items[0], *names[512];
   unsigned count = 0;
   for (const char *known; count < 512 && (known = vl_named_spectrum_name(count)); count++) {
-    if (strcmp(known, text) == 0) {
+    if (vl_text_is(known, text)) {
       *spectrum = vl_spectrum_named(known);
       return true;
     }

@@ -2,8 +2,8 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/builder.h"
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id) {
@@ -53,7 +53,7 @@ static bool check_mapping(const Reading *r, const vlTextureDef *def) {
   if (mapping && !mapping->optional)
     return vl_import_fail(r->dict->import, VL_ERROR_SCENE, mapping->source,
                           "%s: \"mapping\" has no effect with \"dimension\" 3", r->dict->what);
-  for (size_t i = 0; i < sizeof parameters / sizeof *parameters; i++) {
+  for (size_t i = 0; i < VL_LENGTH(parameters); i++) {
     const char *name = parameters[i].name;
     if (parameters[i].in[def->mapping] && !solid) continue;
     const vlParam *p = vl_import_given(r->row, r->given, name) ? vl_dict_find(r->dict, name, ~0u) : NULL;
@@ -70,9 +70,9 @@ static bool read_encoding(vlDict *dict, vlTextureDef *def) {
   if (!p) return true;
   const char *text = p->strings.items[0];
   def->encoding_given = true;
-  if (strcmp(text, "sRGB") == 0 || strcmp(text, "srgb") == 0) {
+  if (vl_text_is(text, "sRGB") || vl_text_is(text, "srgb")) {
     def->encoding = VL_ENCODING_SRGB;
-  } else if (strcmp(text, "linear") == 0) {
+  } else if (vl_text_is(text, "linear")) {
     def->encoding = VL_ENCODING_LINEAR;
   } else if (sscanf(text, "gamma %f", &def->gamma) == 1 && def->gamma > 0.0f && isfinite(def->gamma)) {
     def->encoding = VL_ENCODING_GAMMA;
@@ -155,7 +155,7 @@ static bool finish(vlImport *import, uint32_t index) {
   def.space = def.kind == VL_TEXTURE_IMAGE ? VL_SPACE_SRGB
                                            : pending->space; /* images have their own colour space or are sRGB */
   if (kind < 0) {                                            /* permissive: a constant replaces it: middle grey, or 1 */
-    if (strcmp(pending->kind, "ptex") == 0) {
+    if (vl_text_is(pending->kind, "ptex")) {
       if (!vl_import_unsupported(
               import, pending->source,
               "texture \"ptex\": Ptex files are not supported (to convert: bake it into an image over uv, "

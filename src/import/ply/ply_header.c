@@ -1,9 +1,9 @@
 /* import/ply/ply_header.c: reads the header of a PLY file into a table of elements and properties, and reports
  * errors. */
 #include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
+#include "base/text.h"
 #include "import/ply/ply_reader.h"
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) {
@@ -62,7 +62,7 @@ static bool find_type(const char *name, vlPlyType *type) {
       {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"}};
   for (int i = 0; i < 2; i++)
     for (int t = 0; t < VL_PLY_TYPES; t++)
-      if (strcmp(name, names[i][t]) == 0) {
+      if (vl_text_is(name, names[i][t])) {
         *type = (vlPlyType)t;
         return true;
       }
@@ -97,8 +97,8 @@ static vlPlyRole vertex_role(const char *name) {
                {"diffuse_red", VL_PLY_RED},
                {"diffuse_green", VL_PLY_GREEN},
                {"diffuse_blue", VL_PLY_BLUE}};
-  for (size_t i = 0; i < sizeof roles / sizeof *roles; i++)
-    if (strcmp(name, roles[i].name) == 0) return roles[i].role;
+  for (size_t i = 0; i < VL_LENGTH(roles); i++)
+    if (vl_text_is(name, roles[i].name)) return roles[i].role;
   return VL_PLY_NOTHING;
 }
 
@@ -108,10 +108,10 @@ static bool read_element(vlPlyReader *r, const Words *w) {
   vlPlyElement *e = &r->elements[r->element_count++];
   memset(e, 0, sizeof *e);
   snprintf(e->name, sizeof e->name, "%s", w->word[1]);
-  e->kind = strcmp(w->word[1], "vertex") == 0      ? VL_PLY_VERTEX
-            : strcmp(w->word[1], "face") == 0      ? VL_PLY_FACE
-            : strcmp(w->word[1], "tristrips") == 0 ? VL_PLY_STRIPS
-                                                   : VL_PLY_OTHER;
+  e->kind = vl_text_is(w->word[1], "vertex")      ? VL_PLY_VERTEX
+            : vl_text_is(w->word[1], "face")      ? VL_PLY_FACE
+            : vl_text_is(w->word[1], "tristrips") ? VL_PLY_STRIPS
+                                                  : VL_PLY_OTHER;
   const char *p = w->word[2];
   for (; *p >= '0' && *p <= '9' && e->count < 1000000000000000ull; p++) e->count = e->count * 10 + (uint64_t)(*p - '0');
   if (*p || p == w->word[2])
@@ -129,7 +129,7 @@ static bool read_property(vlPlyReader *r, const Words *w) {
   if (e->property_count == VL_PLY_MAX_PROPERTIES)
     return vl_ply_fail(r, "element %s has more than %d properties", e->name, VL_PLY_MAX_PROPERTIES);
   vlPlyProperty *p = &e->properties[e->property_count++];
-  bool list = w->count == 5 && strcmp(w->word[1], "list") == 0;
+  bool list = w->count == 5 && vl_text_is(w->word[1], "list");
   *p = (vlPlyProperty){.is_list = list};
   if (!list && w->count != 3)
     return vl_ply_fail(r, "a property line has the form \"property type name\" or \"property list type type name\"");
@@ -142,7 +142,7 @@ static bool read_property(vlPlyReader *r, const Words *w) {
   if (e->kind == VL_PLY_VERTEX && !list) p->role = vertex_role(name);
   if (e->kind == VL_PLY_FACE && !list && r->alone && vertex_role(name) >= VL_PLY_RED) p->role = vertex_role(name);
   if ((e->kind == VL_PLY_FACE || e->kind == VL_PLY_STRIPS) && list &&
-      (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0)) {
+      (vl_text_is(name, "vertex_indices") || vl_text_is(name, "vertex_index"))) {
     if (p->type >= VL_PLY_F32) return vl_ply_fail(r, "%s must be of an integer type", name);
     p->role = VL_PLY_INDICES;
   }
@@ -151,11 +151,11 @@ static bool read_property(vlPlyReader *r, const Words *w) {
 }
 
 static bool read_format(vlPlyReader *r, const Words *w) {
-  if (w->count == 3 && strcmp(w->word[1], "ascii") == 0)
+  if (w->count == 3 && vl_text_is(w->word[1], "ascii"))
     r->format = VL_PLY_ASCII;
-  else if (w->count == 3 && strcmp(w->word[1], "binary_little_endian") == 0)
+  else if (w->count == 3 && vl_text_is(w->word[1], "binary_little_endian"))
     r->format = VL_PLY_LITTLE;
-  else if (w->count == 3 && strcmp(w->word[1], "binary_big_endian") == 0)
+  else if (w->count == 3 && vl_text_is(w->word[1], "binary_big_endian"))
     r->format = VL_PLY_BIG;
   else
     return vl_ply_fail(r, "unknown format \"%s\" (known: ascii, binary_little_endian, binary_big_endian)",
@@ -184,15 +184,15 @@ bool vl_ply_read_header(vlPlyReader *r) {
   for (;;) {
     if (!next_line(r, &w)) return false;
     bool fine = true;
-    if (w.count == 0 || strcmp(w.word[0], "comment") == 0 || strcmp(w.word[0], "obj_info") == 0) continue;
+    if (w.count == 0 || vl_text_is(w.word[0], "comment") || vl_text_is(w.word[0], "obj_info")) continue;
     /* Blender 2.4x wrote "Created by Blender3D ..." without the word comment. */
     if (w.count > 1 && strcasecmp(w.word[0], "created") == 0 && strcasecmp(w.word[1], "by") == 0) continue;
-    if (strcmp(w.word[0], "end_header") == 0) break;
-    if (strcmp(w.word[0], "format") == 0)
+    if (vl_text_is(w.word[0], "end_header")) break;
+    if (vl_text_is(w.word[0], "format"))
       fine = has_format = read_format(r, &w);
-    else if (strcmp(w.word[0], "element") == 0)
+    else if (vl_text_is(w.word[0], "element"))
       fine = read_element(r, &w);
-    else if (strcmp(w.word[0], "property") == 0)
+    else if (vl_text_is(w.word[0], "property"))
       fine = read_property(r, &w);
     else
       fine = vl_ply_fail(r, "unknown word \"%s\" in the header", vl_short_text(w.word[0]).text);

@@ -1,20 +1,20 @@
 /* import/pbrt/upgrade/blocks.c: TransformBegin and TransformEnd. pbrt-v3's keep the transform alone, those of pbrt-v4
  * all attributes: what a block sets beside the transform is repeated after it. */
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 /* Directives that set an attribute, by attribute. */
 static const char *const setters[][2] = {
     {"Material", "NamedMaterial"}, {"AreaLightSource", NULL}, {"MediumInterface", NULL}};
-enum { SETTERS = sizeof setters / sizeof *setters };
+enum { SETTERS = VL_LENGTH(setters) };
 _Static_assert((int)SETTERS == (int)VL_OLD_ATTRIBUTES, "vlOldBlock has an entry for each");
 
 static int attribute_of(const char *word) {
   for (int i = 0; i < SETTERS; i++)
     for (int k = 0; k < 2; k++)
-      if (setters[i][k] && strcmp(setters[i][k], word) == 0) return i;
+      if (vl_text_is(setters[i][k], word)) return i;
   return -1;
 }
 

@@ -1,6 +1,5 @@
 /* import/pbrt/upgrade/check.c: reads the new scene before it is written: what velo refuses is an error of the upgrade.
  */
-#include <string.h>
 
 #include "base/context.h"
 #include "base/error.h"

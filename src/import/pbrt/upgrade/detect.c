@@ -2,9 +2,9 @@
 #include "import/pbrt/upgrade/detect.h"
 
 #include <stdio.h>
-#include <string.h>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "import/pbrt/token.h"
 
 /* Directives, and kinds of directives, that pbrt-v4 does not have. kind null: any. */
@@ -49,11 +49,11 @@ static void look(vlOldScene *found, char *data, size_t size) {
   for (;;) {
     vlToken t = vl_token_next(&tokens);
     if (t.kind == VL_TOKEN_END || t.kind == VL_TOKEN_BAD) return;
-    for (size_t i = 0; i < sizeof signs / sizeof *signs; i++) {
+    for (size_t i = 0; i < VL_LENGTH(signs); i++) {
       bool kind = signs[i].kind != NULL;
       const vlToken *word = kind ? &before : &t;
       if (!is_word(word, signs[i].directive)) continue;
-      if (kind && (t.kind != VL_TOKEN_STRING || strcmp(t.text, signs[i].kind) != 0)) continue;
+      if (kind && (t.kind != VL_TOKEN_STRING || !vl_text_is(t.text, signs[i].kind))) continue;
       if (found->version && found->version <= signs[i].version) continue;
       *found = (vlOldScene){.version = signs[i].version, .line = word->line, .column = word->column};
       snprintf(found->sign, sizeof found->sign, kind ? "%s \"%s\"" : "%s", signs[i].directive, kind ? t.text : "");

@@ -2,10 +2,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 /* ---- errors and reports ------------------------------------------------------------------------------------------ */
@@ -180,7 +180,7 @@ bool vl_old_add(vlOldFile *file, const vlOldStatement *s, const char *format, ..
 }
 
 bool vl_old_rename(vlOldFile *file, vlOldStatement *s, size_t i, const char *name) {
-  if (strcmp(s->name[i], name) == 0) return true;
+  if (vl_text_is(s->name[i], name)) return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", s->name[i], name);
   s->name[i] = name;
   return vl_old_edit(file, s->names[i], "\"%s\"", name);
@@ -209,7 +209,7 @@ bool vl_old_finish(vlOldFile *file, vlOldStatement *s) {
     if (p->dropped && s->whole.end == s->whole.start) continue; /* the whole statement is removed */
     if (p->dropped && !cut_param(file, p)) return false;
     if (p->dropped) continue;
-    bool named = strcmp(p->name, p->new_name) == 0, typed = strcmp(p->type, p->new_type) == 0;
+    bool named = vl_text_is(p->name, p->new_name), typed = vl_text_is(p->type, p->new_type);
     if (!named) vl_old_note(s, "%s -> %s", p->name, p->new_name);
     if (named && !typed) vl_old_note(s, "%s %s -> %s", p->type, p->name, p->new_type);
     if ((!named || !typed) && !vl_old_edit(file, p->decl, "\"%s %s\"", p->new_type, p->new_name)) return false;

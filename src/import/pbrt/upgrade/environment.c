@@ -2,7 +2,6 @@
  * maps of the same directions (pbrt book 3.8.3). */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/context.h"
@@ -116,7 +115,7 @@ bool vl_old_environment(vlOldFile *file, uint32_t line, const char *name, const 
   }
   for (size_t i = 0; i < u->maps.count; i++) {
     const vlOldMap *map = &u->maps.items[i];
-    if (strcmp(map->from, path) == 0 && memcmp(map->factor, factor, sizeof map->factor) == 0)
+    if (vl_text_is(map->from, path) && memcmp(map->factor, factor, sizeof map->factor) == 0)
       return snprintf(result, size, "%s", map->name) > 0;
   }
   vlOldMap *map = VL_PUSH(u->context, &u->maps);

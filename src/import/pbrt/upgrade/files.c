@@ -2,7 +2,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/context.h"
@@ -38,10 +37,10 @@ static bool is_metal(const char *name, char *result, size_t size) {
   static const char *const parts[] = {"eta", "k"};
   const char *slash = strrchr(name, '/'), *base = slash ? slash + 1 : name;
   char known[32];
-  for (size_t i = 0; i < sizeof metals / sizeof *metals; i++)
+  for (size_t i = 0; i < VL_LENGTH(metals); i++)
     for (int k = 0; k < 2; k++) {
       snprintf(known, sizeof known, "%s.%s.spd", metals[i], parts[k]);
-      if (strcmp(known, base) == 0) return snprintf(result, size, "metal-%s-%s", metals[i], parts[k]) > 0;
+      if (vl_text_is(known, base)) return snprintf(result, size, "metal-%s-%s", metals[i], parts[k]) > 0;
     }
   return false;
 }
@@ -72,7 +71,7 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
 
 static const vlOldInclude *find_include(vlUpgrade *u, const char *path) {
   for (size_t i = 0; i < u->includes.count; i++)
-    if (strcmp(u->includes.items[i].path, path) == 0) return &u->includes.items[i];
+    if (vl_text_is(u->includes.items[i].path, path)) return &u->includes.items[i];
   return NULL;
 }
 
@@ -111,7 +110,7 @@ static bool keep_output(vlUpgrade *u, const char *name, char *text) {
 static const vlOldInclude *find_text(const vlUpgrade *u, const char *path, const char *text) {
   for (size_t i = 0; i < u->includes.count; i++) {
     const vlOldInclude *n = &u->includes.items[i];
-    if (strcmp(n->path, path) == 0 && (n->text && text ? strcmp(n->text, text) == 0 : n->text == text)) return n;
+    if (vl_text_is(n->path, path) && (n->text && text ? vl_text_is(n->text, text) : n->text == text)) return n;
   }
   return NULL;
 }

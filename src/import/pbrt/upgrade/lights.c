@@ -1,9 +1,8 @@
 /* import/pbrt/upgrade/lights.c: LightSource and AreaLightSource. */
-#include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "color/color.h"
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
@@ -74,13 +73,13 @@ static bool read_pairs(vlOldFile *file, const vlOldParam *p, float **wavelengths
 static bool luminance(vlOldFile *file, uint32_t line, const vlOldParam *p, double *factor) {
   vlSpectrum one = vl_spectrum_constant(1.0f), spectrum = one;
   float *wavelengths = NULL, *values = NULL;
-  bool fine = true, sampled = p && strcmp(p->type, "spectrum") == 0;
+  bool fine = true, sampled = p && vl_text_is(p->type, "spectrum");
   vlError error;
   *factor = 1;
   if (sampled && p->strings)
     vl_old_lose(file, line, "pbrt-v4 divides the spectrum of \"%s\" by its luminance: give the brightness by \"scale\"",
                 p->name);
-  if (p && strcmp(p->type, "blackbody") == 0 && p->count && p->number[0] > 0) {
+  if (p && vl_text_is(p->type, "blackbody") && p->count && p->number[0] > 0) {
     spectrum = vl_spectrum_blackbody((float)p->number[0]);
   } else if (sampled && !p->strings && p->count && p->count % 2 == 0) {
     fine = read_pairs(file, p, &wavelengths, &values);
@@ -127,7 +126,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
       memcpy(tint, rgb, sizeof rgb);
     }
   }
-  if (scale && value * more == value && strcmp(scale->new_type, "float") == 0) return true;
+  if (scale && value * more == value && vl_text_is(scale->new_type, "float")) return true;
   value *= more;
   bool needed = (float)value != 1.0f;
   if (scale && needed && scale->count == 3 && more == 1) { /* the number as it is written */
@@ -144,7 +143,7 @@ static bool fold_scale(vlOldFile *file, vlOldStatement *s, vlOldParam *color, do
 
 /* pbrt-v3's blackbody has a factor as its second number. */
 static double blackbody_scale(vlOldFile *file, vlOldParam *p) {
-  if (!p || strcmp(p->type, "blackbody") != 0 || p->count != 2) return 1;
+  if (!p || !vl_text_is(p->type, "blackbody") || p->count != 2) return 1;
   snprintf(p->new_value, sizeof p->new_value, "%.*s", (int)(p->span[0].end - p->span[0].start),
            file->text + p->span[0].start);
   return p->number[1];
@@ -158,7 +157,7 @@ static bool name_image(vlOldFile *file, vlOldStatement *s, vlOldParam *map, bool
   if (!(around ? vl_old_environment(file, s->line, map->text[0], factor, name, sizeof name)
                : vl_old_file_name(file, s->line, map->text[0], name, sizeof name)))
     return false;
-  if (strcmp(name, map->text[0]) == 0) return true;
+  if (vl_text_is(name, map->text[0])) return true;
   vl_old_note(s, around ? "an equal-area map \"%s\"" : "filename is \"%s\"", name);
   return vl_old_edit(file, map->span[0], "\"%s\"", name);
 }
@@ -176,10 +175,10 @@ static bool goniometric_light(vlOldFile *file, vlOldStatement *s, vlOldParam *ma
 
 static bool image_light(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *map = vl_old_find(s, "mapname"), *color = vl_old_find(s, "L");
-  bool around = strcmp(s->name[0], "projection") != 0;
+  bool around = !vl_text_is(s->name[0], "projection");
   double more = 1, tint[3], rgb[3] = {1, 1, 1}, grey;
   if (!map || !map->strings || !map->text[0][0]) return true;
-  if (strcmp(s->name[0], "goniometric") == 0) return goniometric_light(file, s, map);
+  if (vl_text_is(s->name[0], "goniometric")) return goniometric_light(file, s, map);
   if (!color) color = vl_old_find(s, "I");
   if (color && !vl_old_is_color(color, rgb)) {
     vl_old_lose(file, s->line, "\"%s\" is a spectrum beside an image: left out", color->name);
@@ -215,7 +214,7 @@ static bool plain_light(vlOldFile *file, vlOldStatement *s) {
   if (!color) {
     char n[3][32];
     for (int i = 0; i < 3; i++) vl_old_text(tint[i], n[i]);
-    bool intensity = strcmp(s->name[0], "point") == 0 || strcmp(s->name[0], "spot") == 0;
+    bool intensity = vl_text_is(s->name[0], "point") || vl_text_is(s->name[0], "spot");
     return vl_old_add(file, s, "\"rgb %s\" [ %s %s %s ]", intensity ? "I" : "L", n[0], n[1], n[2]);
   }
   vl_old_lose(file, s->line, "a colour \"scale\" of a spectrum has no counterpart: left out");
@@ -241,7 +240,7 @@ bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
 }
 
 bool vl_old_area_light(vlOldFile *file, vlOldStatement *s) {
-  bool diffuse = strcmp(s->name[0], "diffuse") == 0 || strcmp(s->name[0], "area") == 0;
+  bool diffuse = vl_text_is(s->name[0], "diffuse") || vl_text_is(s->name[0], "area");
   if (!s->name[0][0]) return true;
   if (!diffuse) {
     vl_old_lose(file, s->line, "area light \"%s\" has no counterpart: left out", s->name[0]);

@@ -1,8 +1,8 @@
 /* import/pbrt/upgrade/materials.c: Material and MakeNamedMaterial: the rows of the materials. Defaults that differ are
  * written out. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define BUMP                                    \
@@ -123,7 +123,7 @@ static bool is_black(vlOldStatement *s, const char *name) {
 static bool coat_rule(vlOldFile *file, vlOldStatement *s) {
   if (is_black(s, "Ks")) {
     static const char *const coat[] = {"Ks", "roughness", "uroughness", "vroughness", "remaproughness"};
-    for (size_t i = 0; i < sizeof coat / sizeof *coat; i++) vl_old_drop(s, vl_old_find(s, coat[i]));
+    for (size_t i = 0; i < VL_LENGTH(coat); i++) vl_old_drop(s, vl_old_find(s, coat[i]));
     return true;
   }
   return add_roughness(file, s, "0.1");
@@ -188,7 +188,7 @@ static bool kd_rule(vlOldFile *file, vlOldStatement *s) {
 static bool none_rule(vlOldFile *file, vlOldStatement *s) {
   (void)file;
   for (size_t i = 0; i < s->params.count; i++)
-    if (strcmp(s->params.items[i].name, "type") != 0) vl_old_drop(s, &s->params.items[i]);
+    if (!vl_text_is(s->params.items[i].name, "type")) vl_old_drop(s, &s->params.items[i]);
   return true;
 }
 
@@ -219,19 +219,19 @@ static bool is_new(const char *name, vlOldStatement *s) {
   static const char *const names[] = {"diffuse",         "coateddiffuse", "conductor",
                                       "coatedconductor", "dielectric",    "diffusetransmission",
                                       "thindielectric",  "interface",     "principled"};
-  if (strcmp(name, "measured") == 0) return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (strcmp(names[i], name) == 0) return true;
+  if (vl_text_is(name, "measured")) return vl_old_find(s, "filename") != NULL && !vl_old_find(s, "type");
+  for (size_t i = 0; i < VL_LENGTH(names); i++)
+    if (vl_text_is(names[i], name)) return true;
   return false;
 }
 
 /* A material without a coat: what its reflectance is, is known already. */
 static const char *new_kind(vlOldStatement *s, const vlOldKind *kind) {
-  bool coated = strcmp(kind->to, "coateddiffuse") == 0;
+  bool coated = vl_text_is(kind->to, "coateddiffuse");
   for (size_t i = 0; i < s->params.count && coated; i++) {
     const vlOldParam *p = &s->params.items[i];
     double value;
-    if (p->dropped && strcmp(p->name, "Ks") == 0 && vl_old_is_grey(p, &value) && value == 0) return "diffuse";
+    if (p->dropped && vl_text_is(p->name, "Ks") && vl_old_is_grey(p, &value) && value == 0) return "diffuse";
   }
   return kind->to;
 }
@@ -253,7 +253,7 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
                                   BUMP,
                                   {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
                                   END};
-  if (strcmp(new_kind(s, kind), kind->to) != 0) rows = bare;
+  if (!vl_text_is(new_kind(s, kind), kind->to)) rows = bare;
   return vl_old_rows(file, s, rows, VL_OLD_LOSE);
 }
 

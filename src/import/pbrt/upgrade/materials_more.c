@@ -1,8 +1,8 @@
 /* import/pbrt/upgrade/materials_more.c: materials whose parameters are computed: uber with opacity, translucent, mix,
  * disney. */
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 /* Text of a colour: [ r g b ]. */
@@ -41,7 +41,7 @@ static bool mix_with_nothing(vlOldFile *file, vlOldStatement *s, const vlOldPara
   if (!u->see_through && !vl_old_before(file, s, "MakeNamedMaterial \"see-through\" \"string type\" \"interface\""))
     return false;
   u->see_through = true;
-  if (strcmp(s->word->name, "Material") == 0) {
+  if (vl_text_is(s->word->name, "Material")) {
     snprintf(solid, sizeof solid, "solid-%u", ++u->made);
     vlOldSpan head = {s->keyword.start, s->names[0].end};
     if (!vl_old_edit(file, head, "MakeNamedMaterial \"%s\" \"string type\" \"coateddiffuse\"", solid)) return false;
@@ -74,7 +74,7 @@ bool vl_old_uber(vlOldFile *file, vlOldStatement *s) {
   if (!coat) {
     static const char *const names[] = {"Ks",    "roughness", "uroughness", "vroughness", "remaproughness",
                                         "index", "eta"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) vl_old_drop(s, vl_old_find(s, names[i]));
+    for (size_t i = 0; i < VL_LENGTH(names); i++) vl_old_drop(s, vl_old_find(s, names[i]));
   }
   if (!opacity) return true;
   bool opaque = vl_old_is_grey(opacity, &value) && value == 1;
@@ -172,7 +172,7 @@ bool vl_old_disney(vlOldFile *file, vlOldStatement *s) {
   rename_if(s, "spectrans", "transmission");
   rename_if(s, "thin", "thinwalled");
   rename_if(s, "anisotropic", "anisotropy");
-  for (size_t i = 0; i < sizeof lost / sizeof *lost; i++) {
+  for (size_t i = 0; i < VL_LENGTH(lost); i++) {
     vlOldParam *p = vl_old_find(s, lost[i]);
     double value;
     if (!p) continue;

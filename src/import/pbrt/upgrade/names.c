@@ -2,9 +2,9 @@
  * of its attribute block, and a later one of the same name replaces it; in pbrt-v4 each name is given once. Later ones
  * get a number, and what refers to them follows. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 typedef enum Family { FLOAT_TEXTURE, COLOR_TEXTURE, MATERIAL, MEDIUM, OBJECT } Family;
@@ -15,13 +15,13 @@ static bool is_scoped(Family family) {
 }
 
 static bool is_word(const vlOldStatement *s, const char *word) {
-  return strcmp(s->word->name, word) == 0;
+  return vl_text_is(s->word->name, word);
 }
 
 /* The family of which the statement makes a member. */
 static bool makes(const vlOldStatement *s, Family *family) {
   if (is_word(s, "Texture") && s->name_count == 3)
-    *family = strcmp(s->name[1], "float") == 0 ? FLOAT_TEXTURE : COLOR_TEXTURE;
+    *family = vl_text_is(s->name[1], "float") ? FLOAT_TEXTURE : COLOR_TEXTURE;
   else if (is_word(s, "MakeNamedMaterial"))
     *family = MATERIAL;
   else if (is_word(s, "MakeNamedMedium"))
@@ -37,14 +37,14 @@ static bool makes(const vlOldStatement *s, Family *family) {
 static const vlOldName *find(const vlUpgrade *u, Family family, const char *name, bool ended) {
   for (size_t i = u->names.count; i > 0; i--) {
     const vlOldName *n = &u->names.items[i - 1];
-    if (n->family == (int)family && (ended || !n->ended) && strcmp(n->old, name) == 0) return n;
+    if (n->family == (int)family && (ended || !n->ended) && vl_text_is(n->old, name)) return n;
   }
   return NULL;
 }
 
 static bool is_taken(const vlUpgrade *u, Family family, const char *name) {
   for (size_t i = 0; i < u->names.count; i++)
-    if (u->names.items[i].family == (int)family && strcmp(u->names.items[i].name, name) == 0) return true;
+    if (u->names.items[i].family == (int)family && vl_text_is(u->names.items[i].name, name)) return true;
   return false;
 }
 
@@ -59,7 +59,7 @@ static bool make(vlUpgrade *u, vlOldStatement *s, Family family) {
                    .old = vl_strdup(u->context, s->name[0]),
                    .name = vl_strdup(u->context, name)};
   if (!n->old || !n->name) return vl_old_fail_memory(u);
-  if (strcmp(name, s->name[0]) == 0) return true;
+  if (vl_text_is(name, s->name[0])) return true;
   vl_old_note(s, "a second \"%s\" -> \"%s\"", s->name[0], name);
   s->name[0] = n->name;
   s->renamed |= 1u;
@@ -72,7 +72,7 @@ static const char *new_name(vlUpgrade *u, Family family, const char *name) {
   u->referred++;
   const vlOldName *n = find(u, family, name, false);
   if (!n) n = find(u, family, name, true);
-  return n && strcmp(n->name, name) != 0 ? n->name : NULL;
+  return n && !vl_text_is(n->name, name) ? n->name : NULL;
 }
 
 static void refer(vlUpgrade *u, vlOldStatement *s, size_t i, Family family) {
@@ -98,9 +98,9 @@ static bool takes_numbers(const vlOldStatement *s, const char *name) {
       "vroughness",  "sigma",       "eta",       "index",     "beta_m",         "beta_n",    "eumelanin",
       "pheomelanin", "metallic",    "clearcoat", "sheen",     "clearcoatgloss", "sheentint", "speculartint",
       "flatness",    "anisotropic", "spectrans", "difftrans", "scale"};
-  if (is_word(s, "Texture") && strcmp(s->name[1], "float") == 0) return true;
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-    if (strcmp(numbers[i], name) == 0) return true;
+  if (is_word(s, "Texture") && vl_text_is(s->name[1], "float")) return true;
+  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
+    if (vl_text_is(numbers[i], name)) return true;
   return false;
 }
 

@@ -2,14 +2,14 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 vlOldParam *vl_old_find(vlOldStatement *s, const char *name) {
   for (size_t i = s->params.count; i > 0; i--) {
     vlOldParam *p = &s->params.items[i - 1];
-    if (!p->dropped && strcmp(p->name, name) == 0) return p;
+    if (!p->dropped && vl_text_is(p->name, name)) return p;
   }
   return NULL;
 }
@@ -21,11 +21,11 @@ void vl_old_drop(vlOldStatement *s, vlOldParam *p) {
 }
 
 bool vl_old_is_texture(const vlOldParam *p) {
-  return strcmp(p->type, "texture") == 0 && p->count > 0;
+  return vl_text_is(p->type, "texture") && p->count > 0;
 }
 
 bool vl_old_is_color(const vlOldParam *p, double rgb[3]) {
-  if (!p || p->strings || strcmp(p->new_type, "blackbody") == 0 || strcmp(p->new_type, "spectrum") == 0) return false;
+  if (!p || p->strings || vl_text_is(p->new_type, "blackbody") || vl_text_is(p->new_type, "spectrum")) return false;
   if (p->count != 1 && p->count != 3) return false;
   for (int i = 0; i < 3; i++) rgb[i] = p->number[p->count == 3 ? i : 0];
   return true;
@@ -76,8 +76,8 @@ static void set_rgb_of_xyz(vlOldParam *p) {
 static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
   for (size_t i = 0; i < p->count && i < VL_OLD_FIRST; i++) {
     if (!p->text[i]) continue;
-    bool on = strcmp(p->text[i], "true") == 0;
-    if (!on && strcmp(p->text[i], "false") != 0) continue;
+    bool on = vl_text_is(p->text[i], "true");
+    if (!on && !vl_text_is(p->text[i], "false")) continue;
     if (!vl_old_edit(file, p->span[i], on ? "true" : "false")) return false;
     if (!i) vl_old_note(s, "bool %s without quotes", p->name);
   }
@@ -87,17 +87,17 @@ static bool unquote_bools(vlOldFile *file, vlOldStatement *s, vlOldParam *p) {
 bool vl_old_types(vlOldFile *file, vlOldStatement *s) {
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    for (size_t k = 0; k < sizeof types / sizeof *types; k++)
-      if (strcmp(p->type, types[k][0]) == 0) p->new_type = types[k][1];
-    if (strcmp(p->type, "xyz") == 0 && p->count == 3) set_rgb_of_xyz(p);
-    if (strcmp(p->type, "bool") == 0 && p->strings && !unquote_bools(file, s, p)) return false;
+    for (size_t k = 0; k < VL_LENGTH(types); k++)
+      if (vl_text_is(p->type, types[k][0])) p->new_type = types[k][1];
+    if (vl_text_is(p->type, "xyz") && p->count == 3) set_rgb_of_xyz(p);
+    if (vl_text_is(p->type, "bool") && p->strings && !unquote_bools(file, s, p)) return false;
     /* a spectrum of numbers is pairs of wavelength and value; a file's name is that of a file or of a metal */
-    if (strcmp(p->type, "spectrum") != 0 || !p->strings || p->count < 1) continue;
+    if (!vl_text_is(p->type, "spectrum") || !p->strings || p->count < 1) continue;
     char name[4096];
     if (!strchr(p->text[0], '.') && !strchr(p->text[0], '/')) continue;
     if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
     if (p->count > 1) vl_old_lose(file, s->line, "\"%s\" names several files: the first is kept", p->name);
-    if (strcmp(name, p->text[0]) == 0 && p->count == 1) continue;
+    if (vl_text_is(name, p->text[0]) && p->count == 1) continue;
     vl_old_note(s, "%s is \"%s\"", p->name, name);
     if (!vl_old_edit(file, p->value, "\"%s\"", name)) return false;
   }
@@ -114,9 +114,9 @@ static bool apply(vlOldFile *file, vlOldStatement *s, const vlOldRow *row, bool 
   bool found = false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    bool same = strcmp(p->name, row->name) == 0;
+    bool same = vl_text_is(p->name, row->name);
     if (same && row->action != VL_OLD_DEFAULT) known[i] = true;
-    found = found || same || strcmp(p->new_name, row->name) == 0;
+    found = found || same || vl_text_is(p->new_name, row->name);
     if (!same || !is_open(p)) continue;
     switch (row->action) {
       case VL_OLD_KEEP:
@@ -146,7 +146,7 @@ bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOld
     if (!apply(file, s, row, known)) return false;
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    if (known[i] || !is_open(p) || others == VL_OLD_KEEP || strcmp(p->name, "type") == 0) continue;
+    if (known[i] || !is_open(p) || others == VL_OLD_KEEP || vl_text_is(p->name, "type")) continue;
     p->dropped = true;
     vl_old_lose(file, s->line, "%s \"%s\": \"%s\" is not a parameter of pbrt-v4: left out", s->word->name,
                 s->name_count ? s->name[s->name_count - 1] : "", p->name);
@@ -156,6 +156,6 @@ bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOld
 
 const vlOldKind *vl_old_kind(const vlOldKind *kinds, const char *name) {
   for (const vlOldKind *k = kinds; k->from; k++)
-    if (strcmp(k->from, name) == 0) return k;
+    if (vl_text_is(k->from, name)) return k;
   return NULL;
 }

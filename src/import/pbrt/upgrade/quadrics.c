@@ -1,10 +1,9 @@
 /* import/pbrt/upgrade/quadrics.c: shapes that pbrt-v4 does not have, as triangles. */
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
 #include "math/elementary.h"
@@ -105,7 +104,7 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
   static const char *const names[] = {"cone", "paraboloid", "hyperboloid", "heightfield"};
   vlContext *context = file->u->context;
   Grid g = {.nu = AROUND + 1, .nv = ALONG + 1, .radius = vl_old_number(s, "radius", 1), .p2 = {1, 1, 1}};
-  while (strcmp(names[g.kind], s->name[0]) != 0) g.kind++;
+  while (!vl_text_is(names[g.kind], s->name[0])) g.kind++;
   g.phi = vl_old_number(s, "phimax", 360) * 3.141592653589793 / 180;
   g.z[0] = g.kind == 1 ? vl_old_number(s, "zmin", 0) : 0;
   g.z[1] = g.kind == 1 ? vl_old_number(s, "zmax", 1) : vl_old_number(s, "height", 1);
@@ -123,7 +122,7 @@ bool vl_old_mesh_of_shape(vlOldFile *file, vlOldStatement *s) {
                 2 * (g.nu - 1) * (g.nv - 1));
   for (size_t i = 0; i < s->params.count; i++) {
     vlOldParam *p = &s->params.items[i];
-    p->dropped = strcmp(p->name, "alpha") != 0;
+    p->dropped = !vl_text_is(p->name, "alpha");
   }
   fine = fine && vl_old_edit(file, (vlOldSpan){s->whole.end, s->whole.end}, "\n  %s", text.items);
   VL_ARRAY_FREE(context, &text);

@@ -1,8 +1,8 @@
 /* import/pbrt/upgrade/settings.c: camera, film, sampler, filter, integrator, accelerator, media, WorldBegin. */
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define END \
@@ -47,7 +47,7 @@ static bool lens_file(vlOldFile *file, vlOldStatement *s) {
   char name[4096];
   if (!p || !p->strings) return true;
   if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
-  return strcmp(name, p->text[0]) == 0 || vl_old_edit(file, p->span[0], "\"%s\"", name);
+  return vl_text_is(name, p->text[0]) || vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
 
 static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, half_fov, NULL},
@@ -93,7 +93,7 @@ static const vlOldKind films[] = {{"image", "rgb", film, NULL, NULL}, {NULL, NUL
 bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
   static const char *const news[] = {"rgb", "gbuffer", "spectral"};
   for (int i = 0; i < 3; i++)
-    if (strcmp(s->name[0], news[i]) == 0) return true;
+    if (vl_text_is(s->name[0], news[i])) return true;
   vlOldParam *scale = vl_old_find(s, "scale");
   vlUpgrade *u = file->u;
   if (scale && scale->count == 1) u->iso = 100 * scale->number[0];
@@ -203,7 +203,7 @@ static const vlOldRow direct[] = {KEEP("maxdepth"), DROP("strategy"), BOUNDS, EN
 /* pbrt-v3's spatial sampler is nearest to that of the light tree. */
 static bool light_sampler(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "lightsamplestrategy");
-  if (!p || !p->strings || strcmp(p->text[0], "spatial") != 0) return true;
+  if (!p || !p->strings || !vl_text_is(p->text[0], "spatial")) return true;
   vl_old_note(s, "spatial -> bvh");
   return vl_old_edit(file, p->span[0], "\"bvh\"");
 }
@@ -224,12 +224,12 @@ static const vlOldKind integrators[] = {{"path", "path", path, light_sampler, NU
                                         {NULL, NULL, NULL, NULL, NULL}};
 
 bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
-  bool older = strcmp(s->word->name, "SurfaceIntegrator") == 0;
+  bool older = vl_text_is(s->word->name, "SurfaceIntegrator");
   if (older) vl_old_note(s, "-> Integrator");
   if (older && !vl_old_edit(file, s->keyword, "Integrator")) return false;
   /* pbrt-v3's path renders subsurface scattering, pbrt-v4's does not */
   const vlOldKind *kind = vl_old_kind(integrators, s->name[0]);
-  bool path_tracer = !kind || strcmp(kind->to, "path") == 0;
+  bool path_tracer = !kind || vl_text_is(kind->to, "path");
   if (path_tracer && file->u->subsurface) {
     vlOldKind through = kind ? *kind : integrators[0];
     through.to = "volpath";
@@ -255,7 +255,7 @@ bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = type && type->strings ? vl_old_kind(media, type->text[0]) : NULL;
   if (!kind) return true; /* pbrt-v4's own */
   if (!vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) return false;
-  if (strcmp(kind->from, kind->to) == 0) return true;
+  if (vl_text_is(kind->from, kind->to)) return true;
   vl_old_note(s, "\"%s\" -> \"%s\"", kind->from, kind->to);
   return vl_old_edit(file, type->span[0], "\"%s\"", kind->to);
 }

@@ -1,7 +1,6 @@
 /* import/pbrt/upgrade/shapes.c: Shape. */
-#include <stdio.h>
-#include <string.h>
 
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 #define END \
@@ -49,7 +48,7 @@ static bool ply_rule(vlOldFile *file, vlOldStatement *s) {
   char name[4096];
   if (!p || !p->strings) return true;
   if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
-  if (strcmp(name, p->text[0]) == 0) return true;
+  if (vl_text_is(name, p->text[0])) return true;
   vl_old_note(s, "filename is \"%s\"", name);
   return vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
@@ -72,7 +71,7 @@ bool vl_old_shape(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);
   if (!kind) {
     vl_old_lose(file, s->line, "shape \"%s\" has no counterpart: left out%s", s->name[0],
-                strcmp(s->name[0], "nurbs") == 0 ? " (convert it to a mesh)" : "");
+                vl_text_is(s->name[0], "nurbs") ? " (convert it to a mesh)" : "");
     return vl_old_remove(file, s);
   }
   return (!kind->rule || kind->rule(file, s)) && (!kind->rows || vl_old_rows(file, s, kind->rows, VL_OLD_LOSE)) &&

@@ -1,13 +1,13 @@
 /* import/pbrt/upgrade/textures.c: Texture. */
 #include <stdio.h>
-#include <string.h>
 
 #include "base/context.h"
+#include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
 static vlOldTexture *find_texture(vlUpgrade *u, const char *name) {
   for (size_t i = u->textures.count; i > 0; i--)
-    if (strcmp(u->textures.items[i - 1].name, name) == 0) return &u->textures.items[i - 1];
+    if (vl_text_is(u->textures.items[i - 1].name, name)) return &u->textures.items[i - 1];
   return NULL;
 }
 
@@ -61,7 +61,7 @@ static const vlOldRow ptex[] = {
     {"filename", VL_OLD_KEEP, NULL}, {"encoding", VL_OLD_KEEP, NULL}, {"scale", VL_OLD_KEEP, NULL}, END};
 
 static bool is_spectrum(const vlOldStatement *s) {
-  return strcmp(s->name[1], "float") != 0;
+  return !vl_text_is(s->name[1], "float");
 }
 
 /* ---- scale ------------------------------------------------------------------------------------------------------- */
@@ -134,13 +134,12 @@ static bool image_rule(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *trilinear = vl_old_find(s, "trilinear"), *gamma = vl_old_find(s, "gamma"),
              *name = vl_old_find(s, "filename");
   if (trilinear) {
-    bool on =
-        trilinear->text[0] ? strcmp(trilinear->text[0], "true") == 0 : file->text[trilinear->span[0].start] == 't';
+    bool on = trilinear->text[0] ? vl_text_is(trilinear->text[0], "true") : file->text[trilinear->span[0].start] == 't';
     vl_old_drop(s, trilinear);
     if (on && !vl_old_add(file, s, "\"string filter\" \"trilinear\"")) return false;
   }
-  if (gamma && strcmp(gamma->type, "bool") == 0) {
-    bool on = gamma->text[0] ? strcmp(gamma->text[0], "true") == 0 : file->text[gamma->span[0].start] == 't';
+  if (gamma && vl_text_is(gamma->type, "bool")) {
+    bool on = gamma->text[0] ? vl_text_is(gamma->text[0], "true") : file->text[gamma->span[0].start] == 't';
     vl_old_drop(s, gamma);
     if (!vl_old_add(file, s, "\"string encoding\" \"%s\"", on ? "sRGB" : "linear")) return false;
   } else if (gamma) {
@@ -154,7 +153,7 @@ static bool image_rule(vlOldFile *file, vlOldStatement *s) {
   char path[4096];
   if (!name || !name->strings) return true;
   if (!vl_old_file_name(file, s->line, name->text[0], path, sizeof path)) return false;
-  if (strcmp(path, name->text[0]) == 0) return true;
+  if (vl_text_is(path, name->text[0])) return true;
   vl_old_note(s, "filename is \"%s\"", path);
   return vl_old_edit(file, name->span[0], "\"%s\"", path);
 }
@@ -233,7 +232,7 @@ const char *vl_old_float_copy(vlOldFile *file, vlOldStatement *s, const char *te
 /* Keeps what follows name and type of an image texture in the new text. */
 static bool keep(vlOldFile *file, const vlOldStatement *s) {
   vlUpgrade *u = file->u;
-  if (strcmp(s->name[2], "imagemap") != 0 || !is_spectrum(s)) return true;
+  if (!vl_text_is(s->name[2], "imagemap") || !is_spectrum(s)) return true;
   char *text = vl_old_render(file, (vlOldSpan){s->names[2].start, s->whole.end});
   vlOldTexture *t = text ? VL_PUSH(u->context, &u->textures) : NULL;
   if (!t) {
@@ -248,7 +247,7 @@ bool vl_old_texture(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[2]);
   if (kind && kind->lost) vl_old_lose(file, s->line, "%s", kind->lost);
   if (kind && kind->rule && !kind->rule(file, s)) return false;
-  if (strcmp(s->name[1], "color") == 0 && !vl_old_rename(file, s, 1, "spectrum")) return false;
+  if (vl_text_is(s->name[1], "color") && !vl_old_rename(file, s, 1, "spectrum")) return false;
   return !kind || (vl_old_rows(file, s, kind->rows, VL_OLD_LOSE) && vl_old_rename(file, s, 2, kind->to) &&
                    vl_old_finish(file, s) && keep(file, s));
 }

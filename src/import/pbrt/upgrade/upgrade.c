@@ -5,7 +5,6 @@
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "base/cookie.h"
@@ -245,7 +244,7 @@ vlResult vl_scene_upgrade(vlContext *context, const char *from, const char *to, 
                  .iso = 100,
                  .plain_path = true};
   if (!folder_of(to, u.to_folder)) return vl_fail(error, VL_ERROR_IO, "cannot write %s: no such folder", to);
-  u.same_folder = folder_of(from, u.from_folder) && strcmp(u.from_folder, u.to_folder) == 0;
+  u.same_folder = folder_of(from, u.from_folder) && vl_text_is(u.from_folder, u.to_folder);
   vl_file_set_begin(&u.files, context, to);
   vl_file_set_end(&u.files, run(&u));
   release(&u);

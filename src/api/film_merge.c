@@ -9,6 +9,7 @@
 #include "api/receipt.h"
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "film/file.h"
 #include "velo/film.h"
 
@@ -321,12 +322,7 @@ static vlResult merge_some(vlContext *context, const char *const *paths, uint32_
   if (m.earlier.path) vl_film_reader_close(&m.earlier);
   for (uint32_t i = 0; i < count && m.parts && m.order; i++)
     if (m.parts[i].reader.path) vl_film_reader_close(&m.parts[i].reader);
-  vl_free(context, m.parts);
-  vl_free(context, m.order);
-  vl_free(context, m.ranges);
-  vl_free(context, m.joined);
-  vl_free(context, m.sum);
-  vl_free(context, m.data);
+  VL_FREE(context, m.parts, m.order, m.ranges, m.joined, m.sum, m.data);
   return result;
 }
 

@@ -136,10 +136,7 @@ size_t vl_context_memory(const vlContext *context, size_t *peak) {
 void vl_log(vlContext *context, vlLogLevel level, const vlError *where, const char *format, ...) {
   if (!context->def.log) return;
   char text[1024];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vl_make_printable(text);
   pthread_mutex_lock(&context->log_mutex);
   context->def.log(context->def.log_user, level, where, text);

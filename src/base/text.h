@@ -2,9 +2,20 @@
 #ifndef BASE_TEXT_H
 #define BASE_TEXT_H
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "velo/base.h"
+
+/* In a function with the parameters (..., const char *format, ...): writes what printf would into the array `text`. */
+#define VL_FORMAT(text, format)                       \
+  do {                                                \
+    va_list arguments;                                \
+    va_start(arguments, format);                      \
+    vsnprintf(text, sizeof(text), format, arguments); \
+    va_end(arguments);                                \
+  } while (0)
 
 /* The number of elements of an array. */
 #define VL_LENGTH(array) (sizeof(array) / sizeof *(array))

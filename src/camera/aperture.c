@@ -6,6 +6,7 @@
 #include "base/context.h"
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "math/elementary.h"
 #include "math/warp.h"
@@ -167,10 +168,7 @@ vlResult vl_aperture_create(vlContext *context, uint32_t width, uint32_t height,
 void vl_aperture_destroy(vlAperture *a) {
   if (!a) return;
   vlContext *context = a->context;
-  vl_free(context, a->values);
-  vl_free(context, a->rows);
-  vl_free(context, a->columns);
-  vl_free(context, a);
+  VL_FREE(context, a->values, a->rows, a->columns, a);
 }
 
 /* ---- pbrt's names ------------------------------------------------------------------------------------------------ */

@@ -9,6 +9,7 @@
 #include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "math/elementary.h"
 
 /* Steps of a curve: an edge of the image, a circle. */
@@ -380,10 +381,8 @@ typedef struct Block {
 void vl_drawing_destroy(vlDrawing *drawing) {
   if (!drawing) return;
   Block *block = (Block *)(void *)((char *)drawing - offsetof(Block, head));
-  vl_free(block->context, (void *)(uintptr_t)drawing->lines);
-  vl_free(block->context, (void *)(uintptr_t)drawing->faces);
-  vl_free(block->context, (void *)(uintptr_t)drawing->labels);
-  vl_free(block->context, block);
+  VL_FREE(block->context, (void *)(uintptr_t)drawing->lines, (void *)(uintptr_t)drawing->faces,
+          (void *)(uintptr_t)drawing->labels, block);
 }
 
 vlResult vl_camera_outline(vlContext *context, const vlCamera *cameras, uint32_t count, const vlDrawingDef *def,

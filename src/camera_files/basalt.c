@@ -22,7 +22,6 @@ static const Model models[] = {
 enum { MODELS = VL_LENGTH(models) };
 
 static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCameraDef *d) {
-  static const char *const names[] = {"fx", "fy", "cx", "cy"};
   const json_t *type, *values;
   double f[4], k[8];
   vlResult result = vl_camera_field(file, camera, "camera_type", &type);
@@ -33,11 +32,9 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name)) model = &models[i];
   if (!model)
-    return vl_camera_wrong_in(file, camera, "camera_type",
-                              "basalt: unknown camera_type \"%s\"; there are pinhole, pinhole-radtan8, kb4, ds, "
-                              "eucm, ucm, fov",
-                              vl_short_text(name).text);
-  if (result == VL_OK) result = vl_camera_read_named(file, values, names, 4, false, f);
+    return vl_camera_unknown(file, camera, "camera_type", name,
+                             "there are pinhole, pinhole-radtan8, kb4, ds, eucm, ucm, fov");
+  if (result == VL_OK) result = vl_camera_read_named(file, values, vl_camera_matrix_names, 4, false, f);
   for (int i = 0; i < 2 && model->shapes[i] && result == VL_OK; i++)
     result = vl_camera_number(file, values, model->shapes[i], &d->shape[i]);
   uint32_t count = 0;
@@ -58,14 +55,13 @@ static vlResult read_model(const vlCameraFile *file, const json_t *camera, vlCam
 
 static vlResult read_pose(const vlCameraFile *file, const json_t *pose, vlCameraDef *d) {
   static const char *const names[] = {"px", "py", "pz", "qw", "qx", "qy", "qz"};
-  double v[7], r[9], m[16] = {[15] = 1.0};
+  double v[7], r[9];
   vlResult result = VL_OK;
   if (result == VL_OK) result = vl_camera_read_named(file, pose, names, 7, false, v);
   if (result != VL_OK) return result;
   if (!vl_rotation_from_quaternion(v + 3, r))
     return vl_camera_wrong_in(file, pose, "qw", "basalt: the quaternion of T_imu_cam is zero");
-  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : v[i / 4];
-  vl_camera_set_matrix(d, m, false);
+  vl_camera_set_rigid(d, r, v);
   return VL_OK;
 }
 

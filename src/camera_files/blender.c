@@ -14,12 +14,9 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
   const char *type = vl_camera_text(tree, "type"), *fit = vl_camera_text(tree, "sensor_fit");
   bool flat = vl_text_is(type, "ORTHO");
   if (type && !flat && !vl_text_is(type, "PERSP"))
-    return vl_camera_wrong_in(file, tree, "type", "blender: unknown type \"%s\"; there are PERSP, ORTHO",
-                              vl_short_text(type).text);
+    return vl_camera_unknown(file, tree, "type", type, "there are PERSP, ORTHO");
   if (fit && !vl_text_is(fit, "AUTO") && !vl_text_is(fit, "HORIZONTAL") && !vl_text_is(fit, "VERTICAL"))
-    return vl_camera_wrong_in(file, tree, "sensor_fit",
-                              "blender: unknown sensor_fit \"%s\"; there are AUTO, HORIZONTAL, VERTICAL",
-                              vl_short_text(fit).text);
+    return vl_camera_unknown(file, tree, "sensor_fit", fit, "there are AUTO, HORIZONTAL, VERTICAL");
   vlResult result =
       VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width), VL_FIELD_SIDE("resolution_y", &d->height));
   if (result == VL_OK)

@@ -30,10 +30,9 @@ static vlResult read_image(const vlCameraFile *file, const json_t *image, const 
 }
 
 static vlResult read_one(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  static const char *const names[] = {"fx", "fy", "cx", "cy"};
   double f[4];
   vlResult result = VL_OK;
-  if (result == VL_OK) result = vl_camera_read_named(file, tree, names, 4, false, f);
+  if (result == VL_OK) result = vl_camera_read_named(file, tree, vl_camera_matrix_names, 4, false, f);
   if (result == VL_OK) result = vl_camera_sides(file, tree, "width", "height", record);
   if (result != VL_OK) return result;
   vl_camera_set_centred(&record->camera, f[0], f[1], f[2], f[3]);

@@ -65,10 +65,7 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *tree, vlCame
     vl_camera_name(record, vl_camera_text(tree, "camera_name"));
     return result;
   }
-  return vl_camera_wrong_in(file, tree, "model_type",
-                            "camodocal: unknown model_type \"%s\"; there are PINHOLE, PINHOLE_FULL, MEI, "
-                            "KANNALA_BRANDT",
-                            vl_short_text(name).text);
+  return vl_camera_unknown(file, tree, "model_type", name, "there are PINHOLE, PINHOLE_FULL, MEI, KANNALA_BRANDT");
 }
 
 /* Reads the camera file whose name is in a configuration file. */

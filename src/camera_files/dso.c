@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/text.h"
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 
 static const struct {
@@ -38,12 +39,9 @@ static vlResult read_dso(const vlCameraFile *file, const char *text, size_t size
   const double *k = v + 4;
   if (!vl_camera_next_line(&lines)) return vl_camera_wrong(file, "dso: the image's size is missing");
   result = vl_camera_line_numbers(file, &lines, lines.text, sides, 2, 2, &count);
-  for (int i = 0; i < 2 && result == VL_OK; i++)
-    if (!(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
-      result = vl_camera_wrong_line(file, &lines, lines.text, "the image's size must be two whole numbers of pixels");
+  if (result == VL_OK && !vl_camera_set_sides(d, sides))
+    result = vl_camera_wrong_line(file, &lines, lines.text, "the image's size must be two whole numbers of pixels");
   if (result != VL_OK) return result;
-  d->width = (uint32_t)sides[0];
-  d->height = (uint32_t)sides[1];
   bool shares = v[2] < 1.0 && v[3] < 1.0;
   if (shares) {
     d->fx = v[0] * sides[0];

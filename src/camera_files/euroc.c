@@ -32,8 +32,7 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree, vlCamer
     return vl_camera_wrong_in(file, tree, "sensor_type", "euroc: the sensor is \"%s\", no camera",
                               vl_short_text(sensor).text);
   if (model && !vl_text_is(model, "pinhole"))
-    return vl_camera_wrong_in(file, tree, "camera_model", "euroc: unknown camera_model \"%s\"; there is pinhole",
-                              vl_short_text(model).text);
+    return vl_camera_unknown(file, tree, "camera_model", model, "there is pinhole");
   vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_LIST("intrinsics", k, 4), VL_FIELD_LIST("T_BS", m, 16));
   if (result == VL_OK)
     result = vl_camera_has(tree, "resolution") ? vl_camera_side_pair(file, tree, "resolution", record)

@@ -5,21 +5,15 @@
 #include "camera_files/fields.h"
 
 static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *list = json_object_get(tree, "[]"), *camera = NULL;
+  const json_t *camera = vl_camera_choose(file, json_object_get(tree, "[]"), "img_name", record);
   vlCameraDef *d = &record->camera;
-  double p[3], r[9], m[16] = {[15] = 1.0};
-  record->frames = (uint32_t)json_array_size(list);
-  for (uint32_t i = 0; i < record->frames && !camera; i++)
-    if (vl_camera_is_frame(file, i, vl_camera_text(json_array_get(list, i), "img_name")))
-      camera = json_array_get(list, i);
+  double p[3], r[9];
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = VL_READ_FIELDS(file, camera, VL_FIELD_SIDE("width", &d->width), VL_FIELD_SIDE("height", &d->height),
                                    VL_FIELD("fx", &d->fx), VL_FIELD("fy", &d->fy), VL_FIELD_LIST("position", p, 3),
                                    VL_FIELD_LIST("rotation", r, 9));
   if (result != VL_OK) return result;
-  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : p[i / 4];
-  vl_camera_set_matrix(d, m, false);
-  vl_camera_name(record, vl_camera_text(camera, "img_name"));
+  vl_camera_set_rigid(d, r, p);
   return VL_OK;
 }
 

@@ -19,12 +19,6 @@ static const Model models[] = {{"pinhole", VL_PROJECTION_PERSPECTIVE, 0},
                                {"ds", VL_PROJECTION_DOUBLE_SPHERE, 2}};
 enum { MODELS = VL_LENGTH(models) };
 
-static vlResult unknown_word(const vlCameraFile *file, const json_t *cam, const char *key, const char *text,
-                             const char *known) {
-  return vl_camera_wrong_in(file, cam, key, "kalibr: unknown %s \"%s\"; there are %s", key, vl_short_text(text).text,
-                            known);
-}
-
 static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraDef *d) {
   const json_t *field;
   double k[4] = {0};
@@ -39,7 +33,7 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *cam, vlCameraD
   bool radtan = vl_text_is(lens, "radtan"), equi = vl_text_is(lens, "equidistant");
   bool fov = vl_text_is(lens, "fov");
   if (!radtan && !equi && !fov)
-    return unknown_word(file, cam, "distortion_model", lens, "radtan, equidistant, fov, none");
+    return vl_camera_unknown(file, cam, "distortion_model", lens, "there are radtan, equidistant, fov, none");
   if (!plain && !radtan)
     return vl_camera_wrong_in(file, cam, "distortion_model",
                               "kalibr: distortion_model \"%s\" goes with the pinhole only", lens);
@@ -68,7 +62,7 @@ static vlResult read_cam(const vlCameraFile *file, const json_t *cam, vlCameraRe
   const Model *model = NULL;
   for (int i = 0; i < MODELS; i++)
     if (vl_text_is(name, models[i].name)) model = &models[i];
-  if (!model) return unknown_word(file, cam, "camera_model", name, "pinhole, omni, eucm, ds");
+  if (!model) return vl_camera_unknown(file, cam, "camera_model", name, "there are pinhole, omni, eucm, ds");
   d->projection = model->projection;
   result = vl_camera_numbers(file, cam, "intrinsics", k, model->shapes + 4, model->shapes + 4, NULL);
   bool sized = vl_camera_has(cam, "resolution");

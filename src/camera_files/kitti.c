@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 
 /* The numbers after a key such as "P2:". */
@@ -66,16 +67,13 @@ static vlResult read_raw(const vlCameraFile *file, const char *text, size_t size
     if (result != VL_OK) return result;
     if (!found) return missing(file, rows[i].key);
   }
-  const double *s = rows[0].values, *k = rows[1].values;
-  for (int i = 0; i < 2; i++)
-    if (!(s[i] >= 1.0 && s[i] <= 1 << 24) || s[i] != floor(s[i]))
-      return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text, "%s must be two whole numbers of pixels",
-                                  rows[0].key);
+  const double *k = rows[1].values;
+  if (!vl_camera_set_sides(d, rows[0].values))
+    return vl_camera_wrong_line(file, &rows[0].line, rows[0].line.text, "%s must be two whole numbers of pixels",
+                                rows[0].key);
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_line(file, &rows[1].line, rows[1].line.text, "%s must be fx 0 cx, 0 fy cy, 0 0 1",
                                 rows[1].key);
-  d->width = (uint32_t)s[0];
-  d->height = (uint32_t)s[1];
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, rows[2].values, 5);
   vl_camera_set_pose(d, rows[3].values, rows[4].values);

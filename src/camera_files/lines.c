@@ -1,9 +1,8 @@
 /* camera_files/lines.c: see lines.h. */
 #include "camera_files/lines.h"
+#include "base/text.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 bool vl_camera_next_line(vlCameraLines *lines) {
@@ -28,10 +27,7 @@ bool vl_camera_next_line(vlCameraLines *lines) {
 vlResult vl_camera_wrong_line(const vlCameraFile *file, const vlCameraLines *lines, const char *at, const char *format,
                               ...) {
   char message[300];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   uint32_t column = lines->indent + (uint32_t)(at - lines->text) + 1;
   return vl_camera_wrong_at(file, lines->number, column, "%s: %s", file->dialect, message);
 }

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 enum { NUMBERS = 17 };
 
@@ -59,11 +59,10 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
     if (vl_camera_is_frame(file, i, NULL)) chosen = i;
   if (chosen == UINT32_MAX) return vl_camera_no_frame(file, "camera", record->frames);
   for (int i = 0; i < NUMBERS; i++) v[i] = number_at(&array, chosen, (size_t)i);
-  const double height = v[4], width = v[9];
+  const double height = v[4], width = v[9], sides[2] = {width, height};
   for (int i = 0; i < 15; i++)
     if (!isfinite(v[i])) return vl_camera_wrong(file, "llff: image %u has a number that is not finite", chosen);
-  if (!(height >= 1.0 && height <= 1 << 24 && width >= 1.0 && width <= 1 << 24) || height != floor(height) ||
-      width != floor(width))
+  if (!vl_camera_set_sides(d, sides))
     return vl_camera_wrong(file, "llff: image %u is %g x %g; it must be whole pixels", chosen, width, height);
   for (int i = 0; i < 3; i++) {
     m[4 * i] = v[5 * i + 1];
@@ -72,8 +71,6 @@ static vlResult read_llff(const vlCameraFile *file, const char *text, size_t siz
     m[4 * i + 3] = v[5 * i + 3];
   }
   vl_camera_set_matrix(d, m, false);
-  d->width = (uint32_t)width;
-  d->height = (uint32_t)height;
   d->fx = d->fy = v[14];
   d->cx = 0.5 * width;
   d->cy = 0.5 * height;

@@ -142,7 +142,7 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   const json_t *intrinsic =
       with_id(json_object_get(tree, "intrinsics"), "intrinsicId", json_object_get(view, "intrinsicId"));
   const json_t *pose = with_id(json_object_get(tree, "poses"), "poseId", json_object_get(view, "poseId")), *transform;
-  double r[9] = {0.0}, center[3] = {0.0}, m[16] = {[15] = 1.0};
+  double r[9] = {0.0}, center[3] = {0.0};
   if (!intrinsic)
     return vl_camera_wrong_in(file, view, "intrinsicId",
                               "meshroom: the view's \"intrinsicId\" is not among the intrinsics");
@@ -155,8 +155,7 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
   if (result == VL_OK) result = numbers(file, transform, "center", center, 3);
   if (result != VL_OK) return result;
   /* the column-major matrix camera from world equals the row-major matrix world from camera */
-  for (int i = 0; i < 12; i++) m[i] = i % 4 < 3 ? r[3 * (i / 4) + i % 4] : center[i / 4];
-  vl_camera_set_matrix(&record->camera, m, false);
+  vl_camera_set_rigid(&record->camera, r, center);
   return VL_OK;
 }
 

@@ -135,11 +135,8 @@ static vlResult read_calibration(const vlCameraFile *file, const json_t *root, v
   vlResult result = VL_READ_CHILDREN(file, root, VL_FIELD("width", &size[0]), VL_FIELD("height", &size[1]));
   if (result == VL_OK) result = set_type(file, root, text, d);
   if (result != VL_OK) return result;
-  for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-      return vl_camera_wrong_element(file, root, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
-  d->width = (uint32_t)size[0];
-  d->height = (uint32_t)size[1];
+  if (!vl_camera_set_sides(d, size))
+    return vl_camera_wrong_element(file, root, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
   vl_camera_set_origin(d);
   return read_numbers(file, root, d);
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera_files/fields.h"
 #include "camera_files/lines.h"
 
 /* Finds the line "key=" and returns what follows, or null. */
@@ -35,12 +36,8 @@ static vlResult read_size(const vlCameraFile *file, const char *text, size_t siz
   if (result != VL_OK) return result;
   if (!found[0] && !found[1])
     return vl_camera_size_beside(file, (const char *const[]){number ? "im1.png" : "im0.png", NULL}, record);
-  for (int i = 0; i < 2; i++)
-    if (!found[i] || !(sides[i] >= 1.0 && sides[i] <= 1 << 24) || sides[i] != floor(sides[i]))
-      return vl_camera_wrong_at(file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
-  record->camera.width = (uint32_t)sides[0];
-  record->camera.height = (uint32_t)sides[1];
-  return VL_OK;
+  if (found[0] && found[1] && vl_camera_set_sides(&record->camera, sides)) return VL_OK;
+  return vl_camera_wrong_at(file, 1, 1, "middlebury: \"width\" and \"height\" must be whole numbers of pixels");
 }
 
 static vlResult read_middlebury(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {

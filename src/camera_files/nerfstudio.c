@@ -24,12 +24,9 @@ static vlResult read_type(const vlCameraFile *file, const json_t *tree, vlCamera
 }
 
 static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *path = json_object_get(tree, "camera_path"), *camera = NULL;
+  const json_t *camera = vl_camera_choose(file, json_object_get(tree, "camera_path"), NULL, record);
   vlCameraDef *d = &record->camera;
   double m[16], fov = 0.0;
-  record->frames = (uint32_t)json_array_size(path);
-  for (uint32_t i = 0; i < record->frames && !camera; i++)
-    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(path, i);
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_sides(file, tree, "render_width", "render_height", record);
   if (result == VL_OK) result = read_type(file, tree, d);

@@ -30,12 +30,9 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *camera, vlCame
 }
 
 static vlResult read_okvis(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *cameras = json_object_get(tree, "cameras"), *camera = NULL;
+  const json_t *camera = vl_camera_choose(file, json_object_get(tree, "cameras"), NULL, record);
   vlCameraDef *d = &record->camera;
   double m[16], f[2], c[2];
-  record->frames = (uint32_t)json_array_size(cameras);
-  for (uint32_t i = 0; i < record->frames && !camera; i++)
-    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(cameras, i);
   if (!camera)
     return vl_camera_wrong_in(file, tree, "cameras", "okvis: there is no camera \"%s\" among the %u",
                               vl_camera_asked(file, "0").text, record->frames);

@@ -3,7 +3,7 @@
  * pixel's centre is (0, 0). */
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 
 static vlResult read_intrinsic(const vlCameraFile *file, const json_t *intrinsic, vlCameraRecord *record) {
   double k[9];
@@ -44,9 +44,8 @@ static vlResult read_open3d(const vlCameraFile *file, const json_t *tree, vlCame
     return read_intrinsic(file, tree, record);
   }
   if (!list) return read_parameters(file, tree, record);
-  record->frames = (uint32_t)json_array_size(list);
-  for (uint32_t i = 0; i < record->frames; i++)
-    if (vl_camera_is_frame(file, i, NULL)) return read_parameters(file, json_array_get(list, i), record);
+  const json_t *chosen = vl_camera_choose(file, list, NULL, record);
+  if (chosen) return read_parameters(file, chosen, record);
   return vl_camera_wrong_in(file, tree, "parameters", "open3d: there is no camera \"%s\" among the %u",
                             vl_camera_asked(file, "0").text, record->frames);
 }

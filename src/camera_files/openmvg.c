@@ -102,14 +102,13 @@ static vlResult read_view(const vlCameraFile *file, const json_t *tree, const js
                           vlCameraRecord *record) {
   const json_t *intrinsics = json_object_get(tree, "intrinsics");
   const json_t *item = item_of(intrinsics, id_of(view, "id_intrinsic"));
-  double r[9], center[3], t[3];
+  double r[9], center[3];
   if (!item) return vl_camera_wrong_in(file, view, "id_intrinsic", "openmvg: the view's intrinsic is missing");
   vlResult result = read_intrinsic(file, intrinsics, item, record);
   if (result == VL_OK)
     result = VL_READ_FIELDS(file, pose, VL_FIELD_LIST("rotation", r, 9), VL_FIELD_LIST("center", center, 3));
   if (result != VL_OK) return result;
-  for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * center[0] + r[3 * i + 1] * center[1] + r[3 * i + 2] * center[2]);
-  vl_camera_set_pose(&record->camera, r, t);
+  vl_camera_set_centre(&record->camera, r, center);
   const char *name = vl_camera_text(view, "filename");
   if (name) vl_camera_name(record, name);
   return VL_OK;

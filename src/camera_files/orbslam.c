@@ -42,9 +42,7 @@ static vlResult read_one(const vlCameraFile *file, const json_t *tree, const cha
   vlResult result = VL_OK;
   bool fisheye = vl_text_is(type, "KannalaBrandt8");
   if (type && !fisheye && !vl_text_is(type, "PinHole") && !vl_text_is(type, "Rectified"))
-    return vl_camera_wrong_in(file, tree, "Camera.type",
-                              "orbslam: unknown Camera.type \"%s\"; there are PinHole, Rectified, KannalaBrandt8",
-                              vl_short_text(type).text);
+    return vl_camera_unknown(file, tree, "Camera.type", type, "there are PinHole, Rectified, KannalaBrandt8");
   for (int i = 0; i < 4 && result == VL_OK; i++)
     result = vl_camera_number(file, tree, key_of(key, prefix, names[i]), &f[i]);
   if (result == VL_OK) result = read_lens(file, tree, prefix, fisheye, &record->camera);

@@ -1,7 +1,5 @@
 /* camera_files/places.c: the line and column of each value of a tree. The parsers record the positions in the tree's
  * order, with each value before the values that it contains. A lookup counts the values before the wanted one. */
-#include <stdarg.h>
-#include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -52,10 +50,7 @@ static size_t index_of(const vlCameraPlaces *places, const json_t *object, const
 
 vlResult vl_camera_wrong_in(const vlCameraFile *file, const json_t *object, const char *key, const char *format, ...) {
   char message[400];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   size_t index = file->places && object ? index_of(file->places, object, key) : SIZE_MAX;
   uint64_t place = file->places && index < file->places->at.count ? file->places->at.items[index] : 0;
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, (uint32_t)(place >> 32), (uint32_t)place, "%s", message);

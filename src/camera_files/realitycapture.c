@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 
 /* The numbers that both forms have. */
@@ -68,7 +68,7 @@ static vlResult read_property(const vlCameraFile *file, const json_t *descriptio
 static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   static const char *const models[] = {"perspective", "brown3", "brown4", "brown3t2", "brown4t2"};
   const json_t *description = description_of(tree);
-  double r[9], c[3], t[3], aspect = 1.0, skew = 0.0;
+  double r[9], c[3], aspect = 1.0, skew = 0.0;
   Lens lens = {.f35 = 0.0};
   const char *model = property(description, "xcr:DistortionModel");
   bool known = !model;
@@ -90,8 +90,7 @@ static vlResult read_xmp(const vlCameraFile *file, const json_t *tree, vlCameraR
   if (aspect != 1.0 || skew != 0.0)
     return vl_camera_wrong_element(file, description, "xcr:AspectRatio must be 1 and xcr:Skew 0");
   if (vl_text_is(model, models[0])) memset(lens.k, 0, sizeof lens.k);
-  for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * c[0] + r[3 * i + 1] * c[1] + r[3 * i + 2] * c[2]);
-  vl_camera_set_pose(&record->camera, r, t);
+  vl_camera_set_centre(&record->camera, r, c);
   char image[300];
   const char *slash = strrchr(file->path, '/'), *name = slash ? slash + 1 : file->path, *dot = strrchr(name, '.');
   snprintf(image, sizeof image, "%.*s", dot ? (int)(dot - name) : 0, name);

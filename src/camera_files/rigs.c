@@ -12,13 +12,6 @@ static void set_lens(const double *k, uint32_t count, vlCameraDef *d) {
   vl_camera_set_opencv(d, k, count);
 }
 
-/* Sets camera from world by the rotation and the camera's centre. */
-static void set_centre(const double r[9], const double c[3], vlCameraDef *d) {
-  double t[3];
-  for (int i = 0; i < 3; i++) t[i] = 0.0 - (r[3 * i] * c[0] + r[3 * i + 1] * c[1] + r[3 * i + 2] * c[2]);
-  vl_camera_set_pose(d, r, t);
-}
-
 /* ---- calib.io ---------------------------------------------------------------------------------------------------- */
 
 static vlResult read_value(const vlCameraFile *file, const json_t *parameters, const char *key, bool needed,
@@ -33,21 +26,17 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCam
   static const char *const lens[] = {"k1", "k2", "p1", "p2", "k3", "k4",   "k5",
                                      "k6", "s1", "s2", "s3", "s4", "tauX", "tauY"};
   static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
-  const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"), *camera = NULL;
+  const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"),
+               *camera = vl_camera_choose(file, list, NULL, record);
   vlCameraDef *d = &record->camera;
   double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0}, v[3] = {0.0}, t[3] = {0.0}, r[9];
-  record->frames = (uint32_t)json_array_size(list);
-  for (uint32_t i = 0; i < record->frames && !camera; i++)
-    if (vl_camera_is_frame(file, i, NULL)) camera = json_array_get(list, i);
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
   const json_t *model, *parameters, *transform = json_object_get(camera, "transform");
   vlResult result = vl_camera_field(file, camera, "model", &model);
   if (result != VL_OK) return result;
   const char *name = vl_camera_text(model, "polymorphic_name");
   if (name && !vl_text_is(name, "libCalib::CameraModelOpenCV"))
-    return vl_camera_wrong_in(file, model, "polymorphic_name",
-                              "calibio: unknown polymorphic_name \"%s\"; there is libCalib::CameraModelOpenCV",
-                              vl_short_text(name).text);
+    return vl_camera_unknown(file, model, "polymorphic_name", name, "there is libCalib::CameraModelOpenCV");
   const json_t *data = json_object_get(json_object_get(model, "ptr_wrapper"), "data");
   const json_t *base = json_object_get(data, "CameraModelCRT");
   if (!base) base = json_object_get(data, "CameraModelCRTP");
@@ -85,7 +74,7 @@ const vlCameraFormat vl_format_calibio = {.name = "calibio",
 static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   const json_t *list = json_object_get(tree, "[]"), *item, *chosen = NULL;
   vlCameraDef *d = &record->camera;
-  double k[9], q[4], t[3], r[9], m[16] = {[15] = 1.0};
+  double k[9], q[4], t[3], r[9];
   size_t i;
   record->frames = 0;
   json_array_foreach(list, i, item) {
@@ -104,8 +93,7 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
   if (result != VL_OK) return result;
   if (!vl_rotation_from_quaternion(q, r))
     return vl_camera_wrong_in(file, chosen, "rotation", "nuscenes: the quaternion \"rotation\" is no rotation");
-  for (int j = 0; j < 12; j++) m[j] = j % 4 < 3 ? r[3 * (j / 4) + j % 4] : t[j / 4];
-  vl_camera_set_matrix(d, m, false);
+  vl_camera_set_rigid(d, r, t);
   return vl_camera_size_beside(file, NULL, record);
 }
 
@@ -121,16 +109,9 @@ const vlCameraFormat vl_format_nuscenes = {.name = "nuscenes",
 /* ---- CMU Panoptic ------------------------------------------------------------------------------------------------ */
 
 static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
-  const json_t *list = json_object_get(tree, "cameras"), *item, *chosen = NULL;
+  const json_t *chosen = vl_camera_choose(file, json_object_get(tree, "cameras"), "name", record);
   vlCameraDef *d = &record->camera;
   double k[9], lens[5], r[9], t[3];
-  size_t i;
-  record->frames = (uint32_t)json_array_size(list);
-  json_array_foreach(list, i, item) {
-    if (chosen || !vl_camera_is_frame(file, (uint32_t)i, vl_camera_text(item, "name"))) continue;
-    chosen = item;
-    vl_camera_name(record, vl_camera_text(item, "name"));
-  }
   if (!chosen) return vl_camera_no_frame(file, "camera", record->frames);
   vlResult result = vl_camera_side_pair(file, chosen, "resolution", record);
   if (result == VL_OK)
@@ -179,7 +160,7 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCam
   d->cx = c[0];
   d->cy = c[1];
   set_lens((double[]){radial[0], radial[1], tangential[0], tangential[1], radial[2]}, 5, d);
-  set_centre(r, p, d);
+  vl_camera_set_centre(d, r, p);
   return VL_OK;
 }
 

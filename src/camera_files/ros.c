@@ -96,14 +96,11 @@ static vlResult read_ini(const vlCameraFile *file, const char *text, size_t size
   }
   if (result != VL_OK) return result;
   if (!found) return vl_camera_wrong(file, "ros: there is no camera \"%s\"", vl_camera_asked(file, "0").text);
-  for (int i = 0; i < 2; i++)
-    if (!(side[i] >= 1.0 && side[i] <= 1 << 24) || side[i] != floor(side[i]))
-      return vl_camera_wrong_at(file, side_line, 1, "ros: [image] needs width and height in whole pixels");
+  if (!vl_camera_set_sides(d, side))
+    return vl_camera_wrong_at(file, side_line, 1, "ros: [image] needs width and height in whole pixels");
   if (!matrix || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0)
     return vl_camera_wrong_at(file, matrix_line, 1,
                               "ros: \"camera matrix\" must be there and be fx 0 cx, 0 fy cy, 0 0 1");
-  d->width = (uint32_t)side[0];
-  d->height = (uint32_t)side[1];
   vl_camera_set_centred(d, k[0], k[4], k[2], k[5]);
   vl_camera_set_opencv(d, lens, lenses);
   vl_camera_set_origin(d);

@@ -136,8 +136,7 @@ static vlResult read_kinect(const vlCameraFile *file, const json_t *tree, vlCame
   if (result != VL_OK) return result;
   const char *model = vl_camera_text(intrinsics, "ModelType");
   if (model && !strstr(model, "BrownConrady"))
-    return vl_camera_wrong_in(file, intrinsics, "ModelType", "kinect: unknown ModelType \"%s\"; there is BrownConrady",
-                              vl_short_text(model).text);
+    return vl_camera_unknown(file, intrinsics, "ModelType", model, "there is BrownConrady");
   if (!all_zero(v + 10, 2))
     return vl_camera_wrong_in(file, intrinsics, "ModelParameters", "kinect: the centre of the distortion must be 0, 0");
   d->cx = v[0] * d->width;

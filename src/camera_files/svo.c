@@ -14,8 +14,7 @@ static vlResult read_first(const vlCameraFile *file, const json_t *tree, vlCamer
   double f[4], k[4] = {0};
   bool atan = vl_text_is(model, "ATAN");
   if (!atan && !(vl_text_is(model, "Pinhole")))
-    return vl_camera_wrong_in(file, tree, "cam_model", "svo: unknown cam_model \"%s\"; there are Pinhole, ATAN",
-                              vl_short_text(model).text);
+    return vl_camera_unknown(file, tree, "cam_model", model, "there are Pinhole, ATAN");
   vlResult result = vl_camera_sides(file, tree, "cam_width", "cam_height", record);
   if (result == VL_OK) result = vl_camera_read_named(file, tree, names, 4, false, f);
   for (int i = 0; i < (atan ? 1 : 4) && result == VL_OK; i++) result = vl_camera_optional(file, tree, lens[i], &k[i]);
@@ -71,8 +70,7 @@ static vlResult read_rig_camera(const vlCameraFile *file, const json_t *item, vl
   const char *type = vl_camera_text(camera, "type");
   bool unified = vl_text_is(type, "omni");
   if (!unified && type && !vl_text_is(type, "pinhole"))
-    return vl_camera_wrong_in(file, camera, "type", "svo: unknown type \"%s\"; there are pinhole, omni",
-                              vl_short_text(type).text);
+    return vl_camera_unknown(file, camera, "type", type, "there are pinhole, omni");
   result = vl_camera_numbers(file, camera, "intrinsics", k, unified ? 5 : 4, unified ? 5 : 4, &n);
   if (result == VL_OK) result = vl_camera_sides(file, camera, "image_width", "image_height", record);
   if (result != VL_OK) return result;

@@ -3,8 +3,6 @@
 #include "camera_files/trajectory.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -18,10 +16,7 @@ static const double rotation_tolerance = 1e-3;
 
 vlResult vl_frame_wrong(const vlCameraFile *file, const vlFramePlace *place, const char *format, ...) {
   char message[300];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   const char *path = place->path ? place->path : file->path, *name = place->name ? place->name : "";
   return vl_fail_at(file->error, VL_ERROR_SCENE, path, place->line, place->line ? 1 : 0, "frame %u%s%s%s: %s",
                     place->frame, *name ? " (" : "", vl_short_text(name).text, *name ? ")" : "", message);

@@ -1,7 +1,6 @@
 /* camera_files/tree.c: reads values from a file's tree, with errors that name the field; collects text for writing. */
 #include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/json.h"
@@ -10,19 +9,13 @@
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   char message[400];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, 0, 0, "%s", message);
 }
 
 vlResult vl_camera_wrong_at(const vlCameraFile *file, uint32_t line, uint32_t column, const char *format, ...) {
   char message[400];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   return vl_fail_at(file->error, VL_ERROR_SCENE, file->path, line, column, "%s", message);
 }
 

@@ -63,12 +63,8 @@ static vlResult read_camera(const vlCameraFile *file, const json_t *camera, cons
   child_text(camera, "name", name);
   vl_camera_name(record, name);
   if (size[0] == 0.0 && size[1] == 0.0) return vl_camera_size_beside(file, NULL, record);
-  for (int i = 0; i < 2; i++)
-    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-      return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
-  d->width = (uint32_t)size[0];
-  d->height = (uint32_t)size[1];
-  return VL_OK;
+  if (vl_camera_set_sides(d, size)) return VL_OK;
+  return vl_camera_wrong_element(file, camera, "the image is %g x %g; it must be whole pixels", size[0], size[1]);
 }
 
 /* Each model of each camera counts as one camera, which is chosen by the camera's name or its number. */

@@ -43,7 +43,7 @@ static size_t name_length(const char *line) {
 static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_t size, vlCameraRecord *record) {
   vlCameraLines lines = {.at = text, .end = text + size};
   vlCameraDef *d = &record->camera;
-  double fixed[5] = {0.0}, count = 0.0, v[10], r[9], t[3];
+  double fixed[5] = {0.0}, count = 0.0, v[10], r[9];
   uint32_t n = 0;
   bool taken = false;
   vlResult result = VL_OK;
@@ -72,8 +72,7 @@ static vlResult read_visualsfm(const vlCameraFile *file, const char *text, size_
   if (!taken) return vl_camera_no_frame(file, "camera", record->frames);
   if (!vl_rotation_from_quaternion(v + 1, r))
     return vl_camera_wrong_line(file, &lines, lines.text, "the quaternion is no rotation");
-  for (int i = 0; i < 3; i++) t[i] = -(r[3 * i] * v[5] + r[3 * i + 1] * v[6] + r[3 * i + 2] * v[7]);
-  vl_camera_set_pose(d, r, t);
+  vl_camera_set_centre(d, r, v + 5);
   result = vl_camera_size_beside(file, (const char *const[]){record->name, NULL}, record);
   d->fx = d->fy = v[0];
   d->cx = 0.5 * d->width;

@@ -3,8 +3,6 @@
  * refused, and with it every entity that a file could define; depth and number of elements are bounded. */
 #include <expat.h>
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 #include "base/text.h"
 #include "camera_files/files.h"
@@ -171,10 +169,7 @@ const json_t *vl_camera_child(const json_t *element, const char *tag) {
 
 vlResult vl_camera_wrong_element(const vlCameraFile *file, const json_t *element, const char *format, ...) {
   char message[300];
-  va_list list;
-  va_start(list, format);
-  vsnprintf(message, sizeof message, format, list);
-  va_end(list);
+  VL_FORMAT(message, format);
   return vl_camera_wrong_at(file, (uint32_t)json_number_value(json_object_get(element, "#")),
                             (uint32_t)json_number_value(json_object_get(element, "|")), "%s: %s", file->dialect,
                             message);

@@ -2,7 +2,6 @@
 #include "export/export.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 
 #include "base/cookie.h"
 #include "base/text.h"
@@ -14,10 +13,7 @@ vlSaveDef vl_default_save_def(void) {
 
 void vl_export_lose(vlExport *x, const char *format, ...) {
   char text[sizeof x->losses->text];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   for (uint32_t i = 0; i < x->loss_count; i++)
     if (vl_text_is(x->losses[i].text, text) || i + 1 == VL_EXPORT_LOSSES) {
       x->losses[i].count++;
@@ -55,10 +51,7 @@ void vl_export_lose_choices(vlExport *x) {
 bool vl_export_fail(vlExport *x, vlResult result, const char *format, ...) {
   if (x->result != VL_OK) return false;
   char text[400];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   x->result = vl_fail(x->error, result, "%s", text);
   return false;
 }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file_input.h"
+#include "base/free.h"
 #include "film/file.h"
 
 static vlResult damaged(const vlFilmReader *r, const char *what, vlError *error) {
@@ -104,10 +105,7 @@ bool vl_film_begins_as_film(const char *path) {
 void vl_film_reader_close(vlFilmReader *r) {
   if (r->descriptor >= 0) close(r->descriptor);
   r->descriptor = -1;
-  vl_free(r->context, r->path);
-  vl_free(r->context, r->texts.receipt);
-  vl_free(r->context, r->texts.attributes);
-  vl_free(r->context, r->ranges);
+  VL_FREE(r->context, r->path, r->texts.receipt, r->texts.attributes, r->ranges);
   r->path = r->texts.receipt = r->texts.attributes = NULL;
   r->ranges = NULL;
 }

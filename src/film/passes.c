@@ -1,5 +1,6 @@
 /* film/passes.c: creation of films; passes; merging of films. */
 #include "base/cookie.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "color/sensor.h"
 #include "film/sums.h"
@@ -86,13 +87,7 @@ uint64_t vl_film_memory(const vlFilmDef *def) {
 void vl_film_destroy(vlFilm *film) {
   if (!film) return;
   vlContext *context = film->context;
-  vl_free(context, film->front);
-  vl_free(context, film->back);
-  vl_free(context, film->stamp);
-  vl_free(context, film->block_spp);
-  vl_free(context, film->compared);
-  vl_free(context, film->scratch);
-  vl_free(context, film->sensor);
+  VL_FREE(context, film->front, film->back, film->stamp, film->block_spp, film->compared, film->scratch, film->sensor);
   for (int i = 0; i < 2; i++) vl_free(context, film->moments[i]);
   vl_film_spectrum_free(film);
   vl_filter_free(context, &film->filter);

@@ -9,6 +9,7 @@
 
 #include <zlib.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "image/dct.h"
 #include "image/exr_huffman.h"
@@ -329,11 +330,7 @@ static vlResult unpack_streams(Dwa *d, const uint64_t *head, const uint8_t *p) {
     ok = ok && unpack_channels(d);
     if (!ok && result == VL_OK) result = VL_ERROR_SCENE;
   }
-  vl_free(d->context, scratch);
-  vl_free(d->context, d->unknown);
-  vl_free(d->context, d->runs);
-  vl_free(d->context, d->ac);
-  vl_free(d->context, d->dc);
+  VL_FREE(d->context, scratch, d->unknown, d->runs, d->ac, d->dc);
   return result;
 }
 

@@ -4,6 +4,7 @@
  * Channel order: R G B A (Y A) first, then the others in file order (alphabetical). All channels get one type: half or
  * integer when all channels of the file have it, otherwise float. */
 
+#include "base/free.h"
 #include "base/text.h"
 #include "image/exr.h"
 #include "image/exr_dwa.h"
@@ -392,11 +393,7 @@ vlResult vl_exr_read(const vlImageFile *file, vlImage **image) {
   vlResult result = code == EXR_ERR_SUCCESS ? read_all(&r) : fail(&r, code);
   if (r.started) exr_decoding_destroy(r.exr, &r.pipeline);
   exr_finish(&r.exr);
-  vl_free(file->context, r.place);
-  vl_free(file->context, r.dwa_channels);
-  vl_free(file->context, r.dwa_curve);
-  vl_free(file->context, r.packed);
-  vl_free(file->context, r.unpacked);
+  VL_FREE(file->context, r.place, r.dwa_channels, r.dwa_curve, r.packed, r.unpacked);
   if (result == VL_OK)
     *image = r.image;
   else

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "image/codec.h"
 
 bool vl_hdr_probe(const uint8_t *data, size_t size) {
@@ -219,8 +220,6 @@ vlResult vl_hdr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter 
   } else {
     result = vl_fail_memory(error);
   }
-  vl_free(image->context, row);
-  vl_free(image->context, rgbe);
-  vl_free(image->context, packed);
+  VL_FREE(image->context, row, rgbe, packed);
   return result;
 }

@@ -6,6 +6,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "image/pixel.h"
 
@@ -113,10 +114,7 @@ void vl_image_destroy(vlImage *image) {
     vl_free(context, image->attributes.items[i].string);
   }
   VL_ARRAY_FREE(context, &image->attributes);
-  vl_free(context, image->names);
-  vl_free(context, image->pixels);
-  vl_free(context, image->stored);
-  vl_free(context, image);
+  VL_FREE(context, image->names, image->pixels, image->stored, image);
 }
 
 uint32_t vl_image_width(const vlImage *image) {

@@ -9,6 +9,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include "base/free.h"
 #include "image/codec.h"
 
 typedef struct Jpeg {
@@ -223,8 +224,6 @@ vlResult vl_jpeg_write(const vlImage *image, const vlWriteDef *def, vlFileWriter
   j->writer = writer;
   vlResult result = encode(j, &c, image, def, error);
   jpeg_destroy_compress(&c);
-  vl_free(image->context, j->line);
-  vl_free(image->context, j->scratch);
-  vl_free(image->context, j);
+  VL_FREE(image->context, j->line, j->scratch, j);
   return result;
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/free.h"
 #include "import/import.h"
 #include "import/labels.h"
 #include "import/ply/ply.h"
@@ -50,12 +51,7 @@ static vlMaterialId add_material(vlScene *scene, bool colors) {
 }
 
 static void free_mesh(vlContext *context, vlPlainMesh *m) {
-  vl_free(context, m->positions);
-  vl_free(context, m->normals);
-  vl_free(context, m->uvs);
-  vl_free(context, m->colors);
-  vl_free(context, m->face_colors);
-  vl_free(context, m->indices);
+  VL_FREE(context, m->positions, m->normals, m->uvs, m->colors, m->face_colors, m->indices);
   *m = (vlPlainMesh){0};
 }
 

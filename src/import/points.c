@@ -1,5 +1,6 @@
 /* import/points.c: see points.h. */
 #include "import/points.h"
+#include "base/free.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -96,10 +97,7 @@ bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
   made.indices = vl_alloc_array(context, count * faces, 3 * sizeof(uint32_t));
   if (m->colors) made.colors = vl_alloc_array(context, count * CORNERS, 4 * sizeof(float));
   if (!made.positions || !made.normals || !made.indices || (m->colors && !made.colors)) {
-    vl_free(context, made.positions);
-    vl_free(context, made.normals);
-    vl_free(context, made.indices);
-    vl_free(context, made.colors);
+    VL_FREE(context, made.positions, made.normals, made.indices, made.colors);
     return false;
   }
   for (size_t i = 0; i < count; i++) {
@@ -121,11 +119,7 @@ bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
         made.indices[3 * (i * faces + f) + k] =
             (uint32_t)(i * CORNERS) + (m->normals ? disc_faces[f][k] : ball_faces[f][k]);
   }
-  vl_free(context, m->positions);
-  vl_free(context, m->normals);
-  vl_free(context, m->uvs);
-  vl_free(context, m->colors);
-  vl_free(context, m->indices);
+  VL_FREE(context, m->positions, m->normals, m->uvs, m->colors, m->indices);
   made.face_colors = m->face_colors;
   *m = made;
   vlError where = {0};

@@ -9,6 +9,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "render/channel_pass.h"
 #include "world/shape/moving.h"
 
@@ -173,9 +174,7 @@ static void free_room(Pass *p) {
   vlChannelPass *c = &p->channels;
   vlContext *context = c->world->context;
   for (uint32_t i = 0; c->workers && i < vl_context_threads(context); i++) {
-    vl_free(context, c->workers[i].scratch);
-    vl_free(context, c->workers[i].batch);
-    vl_free(context, c->workers[i].rows);
+    VL_FREE(context, c->workers[i].scratch, c->workers[i].batch, c->workers[i].rows);
   }
   vl_free(context, c->workers);
   vl_free(context, p->grouped);

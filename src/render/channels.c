@@ -8,6 +8,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "render/channel_pass.h"
 
 /* ---- which channels there are ------------------------------------------------------------------------------------ */
@@ -223,14 +224,7 @@ static void free_all(vlChannelPass *p) {
   vlContext *context = p->world->context;
   for (uint32_t i = 0; p->workers && i < vl_context_threads(context); i++) {
     vlChannelWorker *w = &p->workers[i];
-    vl_free(context, w->scratch);
-    vl_free(context, w->batch);
-    vl_free(context, w->rows);
-    vl_free(context, w->tallies);
-    vl_free(context, w->hits);
-    vl_free(context, w->features);
-    vl_free(context, w->other);
-    vl_free(context, w->lanes);
+    VL_FREE(context, w->scratch, w->batch, w->rows, w->tallies, w->hits, w->features, w->other, w->lanes);
   }
   vl_free(context, p->workers);
   for (int k = 0; k < 3; k++) vl_cryptomatte_close(context, &p->crypto[k]);

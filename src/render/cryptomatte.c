@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "base/free.h"
 #include "world/world.h"
 
 /* ---- the hash ---------------------------------------------------------------------------------------------------- */
@@ -132,9 +133,7 @@ vlResult vl_cryptomatte_open(const vlWorld *world, vlIdKind kind, vlCryptomatte 
 }
 
 void vl_cryptomatte_close(vlContext *context, vlCryptomatte *c) {
-  vl_free(context, c->hash);
-  vl_free(context, c->tries);
-  vl_free(context, (void *)c->seen);
+  VL_FREE(context, c->hash, c->tries, (void *)c->seen);
 }
 
 /* ---- the header -------------------------------------------------------------------------------------------------- */

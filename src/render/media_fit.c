@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "base/free.h"
 #include "camera/rays.h"
 #include "render/support.h"
 #include "trace/trace.h"
@@ -112,8 +113,6 @@ vlResult vl_media_differ(const vlWorld *world, const vlCamera *camera, bool *dif
   uint32_t *light_medium = vl_alloc_zero(context, world->lights.count + 1, sizeof *light_medium);
   bool good = room && scratch && light_medium;
   if (good) *differ = ask(world, camera, room, light_medium, scratch);
-  vl_free(context, room);
-  vl_free(context, scratch);
-  vl_free(context, light_medium);
+  VL_FREE(context, room, scratch, light_medium);
   return good ? VL_OK : VL_ERROR_MEMORY;
 }

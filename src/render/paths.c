@@ -8,6 +8,7 @@
 #include "base/cancel.h"
 #include "base/context.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "film/expose.h"
 #include "render/block.h"
 #include "trace/tracer/record.h"
@@ -58,14 +59,8 @@ static vlResult make_memory(Call *c, vlError *error) {
 }
 
 static void free_memory(Call *c) {
-  vl_free(c->context, c->recorder.paths);
-  vl_free(c->context, c->recorder.vertices);
-  vl_free(c->context, c->recorder.contributions);
-  vl_free(c->context, c->worker.scratch);
-  vl_free(c->context, c->worker.rows);
-  vl_free(c->context, c->paths);
-  vl_free(c->context, c->vertices);
-  vl_free(c->context, c->contributions);
+  VL_FREE(c->context, c->recorder.paths, c->recorder.vertices, c->recorder.contributions, c->worker.scratch,
+          c->worker.rows, c->paths, c->vertices, c->contributions);
   vl_film_destroy(c->film);
   vl_film_destroy(c->unlimited);
 }

@@ -7,6 +7,7 @@
 
 #include "base/context.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "film/expose.h"
 #include "math/hash.h"
 #include "render/camera_view.h"
@@ -292,9 +293,7 @@ static vlResult grow(vlTwoWayRun *run, uint64_t wanted, vlError *error) {
   if (capacity > MOST_PHOTONS) capacity = MOST_PHOTONS;
   uint32_t buckets = FIRST_PHOTONS;
   while (buckets < capacity) buckets *= 2;
-  vl_free(run->context, run->photons);
-  vl_free(run->context, run->sorted);
-  vl_free(run->context, run->start);
+  VL_FREE(run->context, run->photons, run->sorted, run->start);
   run->photons = vl_alloc_array(run->context, capacity, sizeof *run->photons);
   run->sorted = vl_alloc_array(run->context, capacity, sizeof *run->sorted);
   run->start = vl_alloc_array(run->context, (size_t)buckets + 1, sizeof *run->start);
@@ -500,22 +499,10 @@ uint64_t vl_two_way_memory(const vlWorld *world, const vlFilmDef *film, const vl
 void vl_two_way_destroy(vlTwoWayRun *run) {
   if (!run) return;
   vlContext *context = run->context;
-  vl_free(context, run->workers);
-  vl_free(context, run->memory);
-  vl_free(context, run->eyes);
-  vl_free(context, run->choice);
-  vl_free(context, run->extent);
-  vl_free(context, run->medium);
+  VL_FREE(context, run->workers, run->memory, run->eyes, run->choice, run->extent, run->medium);
   vl_splats_free(context, &run->splats);
-  vl_free(context, run->photons);
-  vl_free(context, run->sorted);
-  vl_free(context, run->start);
-  vl_free(context, run->vertices);
-  vl_free(context, run->sorted_vertices);
-  vl_free(context, run->passed);
-  vl_free(context, run->sorted_passed);
-  vl_free(context, run->counts);
-  vl_free(context, run);
+  VL_FREE(context, run->photons, run->sorted, run->start, run->vertices, run->sorted_vertices, run->passed,
+          run->sorted_passed, run->counts, run);
 }
 
 vlTwoWayCounts vl_two_way_counts(const vlTwoWayRun *run) {

@@ -1,10 +1,10 @@
 /* scene/check.c: runs the parts of the scene check; stores, sorts and names the findings. */
 #include "scene/check.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #include "base/cookie.h"
+#include "base/free.h"
 #include "base/text.h"
 
 vlCheckDef vl_default_check_def(void) {
@@ -21,10 +21,7 @@ const char *vl_finding_kind_name(vlFindingKind kind) {
 
 void vl_check_add(vlCheck *check, vlFindingKind kind, vlSeverity severity, vlSource source, const char *format, ...) {
   char text[600];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vl_make_printable(text);
   char *message = vl_strdup(check->context, text);
   vlFinding *slot = message ? VL_PUSH(check->context, &check->findings) : NULL;
@@ -102,12 +99,8 @@ void vl_check_destroy(vlCheck *check) {
     vl_free(c, block);
   }
   VL_ARRAY_FREE(c, &check->findings);
-  vl_free(c, check->texture_used);
-  vl_free(c, check->material_used);
-  vl_free(c, check->medium_used);
-  vl_free(c, check->group_used);
-  vl_free(c, check->emission_used);
-  vl_free(c, check);
+  VL_FREE(c, check->texture_used, check->material_used, check->medium_used, check->group_used, check->emission_used,
+          check);
 }
 
 uint32_t vl_check_count(const vlCheck *check) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "math/transform.h"
 #include "scene/check.h"
 #include "scene/mesh_solid.h"
@@ -244,8 +245,6 @@ void vl_check_meshes(vlCheck *c) {
     check_degenerate(c, &s->shapes.items[i]);
     check_uv(c, &s->shapes.items[i], &n);
   }
-  vl_free(c->context, n.textures);
-  vl_free(c->context, n.materials);
-  vl_free(c->context, n.culprit);
+  VL_FREE(c->context, n.textures, n.materials, n.culprit);
   if (!c->no_memory) check_solids(c);
 }

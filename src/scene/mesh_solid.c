@@ -5,14 +5,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "math/transform.h"
 #include "schema/schema.h"
 
 void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
-  vl_free(scene->context, b->points);
-  vl_free(scene->context, b->faces3);
-  vl_free(scene->context, b->part);
-  vl_free(scene->context, b->parts);
+  VL_FREE(scene->context, b->points, b->faces3, b->part, b->parts);
   *b = (vlMeshSolid){0};
 }
 
@@ -229,9 +227,7 @@ static bool weld_open(const vlScene *scene, vlMeshSolid *b, const Edges *e, bool
     const uint32_t *f = b->faces3 + 3 * (size_t)i;
     add_face(b, same[f[0]], same[f[1]], same[f[2]], false);
   }
-  vl_free(scene->context, same);
-  vl_free(scene->context, open);
-  vl_free(scene->context, table);
+  VL_FREE(scene->context, same, open, table);
   return fine;
 }
 

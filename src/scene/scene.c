@@ -1,17 +1,14 @@
 /* scene/scene.c: creates and destroys scenes; functions for a scene's first error, its defs and the numbers of its
  * objects. */
 #include "scene/scene.h"
+#include "base/text.h"
 
-#include <stdio.h>
 #include <string.h>
 
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
   if (scene->error.code != VL_OK) return scene->error.code;
   char text[sizeof scene->error.message];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   return vl_fail_at(&scene->error, code, source.file, source.line, source.column, "%s", text);
 }
 

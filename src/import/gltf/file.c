@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "base/file.h"
+#include "base/free.h"
 #include "base/json.h"
 #include "base/text.h"
 #include "import/find.h"
@@ -132,14 +133,7 @@ void vl_gltf_close(vlGltf *g) {
     vl_free(g->context, g->nodes[i].weights_close);
   }
   vl_gltf_free_labels(g);
-  vl_free(g->context, g->buffers);
-  vl_free(g->context, g->views);
-  vl_free(g->context, g->accessors);
-  vl_free(g->context, g->keys);
-  vl_free(g->context, g->nodes);
-  vl_free(g->context, g->materials);
-  vl_free(g->context, g->images);
-  vl_free(g->context, g->meshes);
+  VL_FREE(g->context, g->buffers, g->views, g->accessors, g->keys, g->nodes, g->materials, g->images, g->meshes);
 }
 
 /* ---- uris -------------------------------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
  * placed by one node is called by the node, else by the mesh; equal names get those of their parents: Hall/Chair. */
 #include <stdio.h>
 
+#include "base/free.h"
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
@@ -96,9 +97,7 @@ static bool label_nodes(vlGltf *g) {
     if (mesh_of(g, i) >= 0) list[count++] = (uint32_t)i;
   ok = ok && label_list(g, list, count, depths, paths);
   for (size_t i = 0; paths && i < count; i++) vl_free(g->context, paths[i]);
-  vl_free(g->context, list);
-  vl_free(g->context, depths);
-  vl_free(g->context, (void *)paths);
+  VL_FREE(g->context, list, depths, (void *)paths);
   return ok;
 }
 
@@ -116,11 +115,8 @@ bool vl_gltf_make_labels(vlGltf *g) {
 }
 
 void vl_gltf_free_labels(vlGltf *g) {
-  vl_free(g->context, (void *)g->node_labels);
-  vl_free(g->context, (void *)g->material_labels);
-  vl_free(g->context, g->material_names.slots);
-  vl_free(g->context, g->shape_names.slots);
-  vl_free(g->context, g->instance_names.slots);
+  VL_FREE(g->context, (void *)g->node_labels, (void *)g->material_labels, g->material_names.slots, g->shape_names.slots,
+          g->instance_names.slots);
 }
 
 /* nodes[3], or nodes[3].copies[7] where EXT_mesh_gpu_instancing places the node several times. */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "import/gltf/gltf.h"
 
 /* Reads attribute `name` as floats, `components` per vertex. VEC3 colours get alpha 1. Null when the primitive lacks
@@ -92,10 +93,7 @@ static void bake(vlGltfPrimitive *p, vlMat4 pose, vlContext *context) {
     vl_mat4_point(&pose, q, w);
     for (int k = 0; k < 3; k++) p->positions[3 * i + (size_t)k] = (float)w[k];
   }
-  vl_free(context, p->normals);
-  vl_free(context, p->tangents);
-  vl_free(context, p->positions_close);
-  vl_free(context, p->normals_close);
+  VL_FREE(context, p->normals, p->tangents, p->positions_close, p->normals_close);
   p->normals = p->tangents = p->positions_close = p->normals_close = NULL;
 }
 

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/free.h"
 #include "import/gltf/gltf.h"
 #include "math/approx_double.h"
 #include "math/hash.h"
@@ -276,11 +277,7 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
     for (int k = 0; k < 3; k++) p->tangents[4 * i + (size_t)k] = l > 0 ? (float)(s[k] / l) : 0.0f;
     p->tangents[4 * i + 3] = signs[i] < 0 ? -1.0f : 1.0f;
   }
-  vl_free(g->context, table);
-  vl_free(g->context, from);
-  vl_free(g->context, group);
-  vl_free(g->context, indices);
-  vl_free(g->context, signs);
+  VL_FREE(g->context, table, from, group, indices, signs);
   return ok;
 }
 
@@ -301,10 +298,6 @@ bool vl_gltf_make_tangents(vlGltf *g, uint32_t set, vlGltfPrimitive *p) {
   for (uint32_t c = 0; ok && c < corners; c++) m.group[c] = find(m.group, c);
   for (uint32_t c = 0; ok && c < corners; c++) add_corner(&m, c, sums);
   ok = (ok || vl_gltf_fail_memory(g)) && split(g, p, &m, sums);
-  vl_free(g->context, m.welded);
-  vl_free(g->context, m.group);
-  vl_free(g->context, m.direction);
-  vl_free(g->context, m.sign);
-  vl_free(g->context, sums);
+  VL_FREE(g->context, m.welded, m.group, m.direction, m.sign, sums);
   return ok;
 }

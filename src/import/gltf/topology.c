@@ -6,17 +6,13 @@
 
 #include "import/gltf/gltf.h"
 
+#include "base/free.h"
 #include "math/elementary.h"
 
 enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN };
 
 void vl_gltf_free_primitive(vlContext *context, vlGltfPrimitive *p) {
-  vl_free(context, p->positions);
-  vl_free(context, p->normals);
-  vl_free(context, p->positions_close);
-  vl_free(context, p->normals_close);
-  vl_free(context, p->tangents);
-  vl_free(context, p->colors);
+  VL_FREE(context, p->positions, p->normals, p->positions_close, p->normals_close, p->tangents, p->colors);
   for (int i = 0; i < 4; i++) vl_free(context, p->uvs[i]);
   vl_free(context, p->indices);
   memset(p, 0, sizeof *p);

@@ -2,8 +2,6 @@
 #include "import/obj/obj.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -19,10 +17,7 @@ enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };
 
 bool vl_obj_fail(vlObj *obj, const char *format, ...) {
   char text[500];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   uint32_t column = obj->line ? (uint32_t)(obj->at - obj->line_start) + 1 : 0;
   vl_scene_fail(obj->scene, VL_ERROR_SCENE, (vlSource){obj->path, obj->line, column}, "%s", text);
   return false;
@@ -30,10 +25,7 @@ bool vl_obj_fail(vlObj *obj, const char *format, ...) {
 
 void vl_obj_warn(vlObj *obj, vlLogLevel level, const char *format, ...) {
   char text[500];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vlError where = {.line = obj->line, .column = obj->line ? 1 : 0};
   snprintf(where.file, sizeof where.file, "%s", obj->path);
   vl_log(obj->context, level, &where, "%s", text);

@@ -5,6 +5,7 @@
 
 #include "base/array.h"
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "image/pixel.h"
 #include "import/import.h"
@@ -233,9 +234,6 @@ vlResult vl_import_off(vlScene *scene, const char *path, const vlLoadDef *load, 
   VL_ARRAY_FREE(context, &s.corners);
   VL_ARRAY_FREE(context, &s.face_colors);
   if (ok) return vl_import_plain_mesh(scene, path, load, &s.mesh, error);
-  vl_free(context, s.mesh.positions);
-  vl_free(context, s.mesh.normals);
-  vl_free(context, s.mesh.uvs);
-  vl_free(context, s.mesh.colors);
+  VL_FREE(context, s.mesh.positions, s.mesh.normals, s.mesh.uvs, s.mesh.colors);
   return vl_scene_result(scene, error);
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "math/approx_double.h"
 
 static const uint32_t NONE = UINT32_MAX;
@@ -30,11 +31,7 @@ static uint32_t before(uint32_t k) {
 }
 
 static void free_level(vlContext *context, Level *l) {
-  vl_free(context, l->p);
-  vl_free(context, l->start);
-  vl_free(context, l->border);
-  vl_free(context, l->v);
-  vl_free(context, l->next);
+  VL_FREE(context, l->p, l->start, l->border, l->v, l->next);
   *l = (Level){0};
 }
 

@@ -1,5 +1,4 @@
 /* import/pbrt/parse_params.c: tokens, errors and the parameters of a directive. */
-#include <stdio.h>
 
 #include "base/context.h"
 #include "base/text.h"
@@ -13,10 +12,7 @@ vlSource vl_parse_source(const vlParserFile *file, const vlToken *token) {
 
 bool vl_parse_fail(const vlParserFile *file, vlSource source, const char *format, ...) {
   char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   const vlParseTarget *target = file->parser->target;
   target->error(target->user, VL_ERROR_SCENE, source, text);
   return false;

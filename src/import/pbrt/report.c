@@ -1,6 +1,5 @@
 /* import/pbrt/report.c: errors and warnings with their sources (file, line, column), kept strings, paths, copies of
  * parameters. */
-#include <stdio.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -11,10 +10,7 @@
 
 bool vl_import_fail(vlImport *import, vlResult code, vlSource source, const char *format, ...) {
   char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vl_scene_fail(import->scene, code, source, "%s", text);
   return false;
 }
@@ -31,10 +27,7 @@ static void log_text(vlImport *import, vlLogLevel level, vlSource source, const 
 
 void vl_import_warn(vlImport *import, vlLogLevel level, vlSource source, const char *format, ...) {
   char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   log_text(import, level, source, text);
 }
 
@@ -51,10 +44,7 @@ bool vl_import_recover(vlImport *import) {
 void vl_import_remark(vlImport *import, vlSource source, const char *format, ...) {
   if (!import->scene->problem) return;
   char text[400];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vlError remark = {0};
   vl_fail_at(&remark, VL_OK, source.file, source.line, source.column, "%s", text);
   import->scene->problem(import->scene->problem_user, &remark);
@@ -62,10 +52,7 @@ void vl_import_remark(vlImport *import, vlSource source, const char *format, ...
 
 bool vl_import_unsupported(vlImport *import, vlSource source, const char *format, ...) {
   char text[400];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   if (!import->permissive) return vl_import_fail(import, VL_ERROR_SCENE, source, "%s", text);
   log_text(import, VL_LOG_WARNING, source, text);
   return true;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/token.h"
 #include "import/ply/ply_reader.h"
@@ -171,13 +172,8 @@ static bool fit(vlPlyReader *r, uint32_t **items, size_t capacity, size_t count)
 }
 
 void vl_ply_free(vlContext *context, vlPlyMesh *mesh) {
-  vl_free(context, mesh->positions);
-  vl_free(context, mesh->normals);
-  vl_free(context, mesh->uvs);
-  vl_free(context, mesh->colors);
-  vl_free(context, mesh->face_colors);
-  vl_free(context, mesh->triangle_indices);
-  vl_free(context, mesh->quad_indices);
+  VL_FREE(context, mesh->positions, mesh->normals, mesh->uvs, mesh->colors, mesh->face_colors, mesh->triangle_indices,
+          mesh->quad_indices);
   *mesh = (vlPlyMesh){0};
 }
 

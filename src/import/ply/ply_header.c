@@ -1,6 +1,5 @@
 /* import/ply/ply_header.c: reads the header of a PLY file into a table of elements and properties, and reports
  * errors. */
-#include <stdio.h>
 #include <strings.h>
 
 #include "base/text.h"
@@ -8,10 +7,7 @@
 
 bool vl_ply_fail(vlPlyReader *r, const char *format, ...) {
   char text[400];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vl_fail_at(r->error, VL_ERROR_SCENE, r->name, r->line, r->line ? 1 : 0, "PLY: %s", text);
   return false;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "base/free.h"
 #include "color/color.h"
 #include "math/elementary.h"
 #include "world/material/measured_lookup.h"
@@ -282,8 +283,5 @@ vlResult vl_measured_read(vlContext *context, const char *path, bool rgb, vlMeas
 
 void vl_measured_free(vlContext *context, vlMeasured *m) {
   if (!m) return;
-  vl_free(context, m->numbers);
-  vl_free(context, m->file);
-  vl_free(context, m->path);
-  vl_free(context, m);
+  VL_FREE(context, m->numbers, m->file, m->path, m);
 }

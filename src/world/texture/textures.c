@@ -8,6 +8,7 @@
 
 #include "base/digest.h"
 #include "base/error.h"
+#include "base/free.h"
 #include "image/image.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
@@ -335,9 +336,7 @@ vlResult vl_world_preload_images(vlWorld *world, const vlScene *scene, vlError *
     ok = index >= 0 && name_image(world, &world->images.items[index], job.defs[i]);
   }
   for (size_t i = 0; job.mipmaps && i < job.count; i++) vl_mipmap_destroy(job.mipmaps[i]);
-  vl_free(world->context, job.defs);
-  vl_free(world->context, job.keys);
-  vl_free(world->context, job.mipmaps);
+  VL_FREE(world->context, job.defs, job.keys, job.mipmaps);
   return ok ? vl_world_step(world, "images", 0.3, error) : vl_fail_memory(error);
 }
 

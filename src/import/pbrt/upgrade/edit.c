@@ -1,6 +1,5 @@
 /* import/pbrt/upgrade/edit.c: edits of the text, and reports. */
 #include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/context.h"
@@ -12,10 +11,7 @@
 
 bool vl_old_fail(vlOldFile *file, vlResult code, uint32_t line, uint32_t column, const char *format, ...) {
   char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   vlUpgrade *u = file->u;
   if (u->result == VL_OK) u->result = vl_fail_at(&u->error, code, file->path, line, column, "%s", text);
   return false;
@@ -36,10 +32,7 @@ static void report(const vlOldFile *file, vlUpgradeNote note, uint32_t line, con
 
 void vl_old_lose(vlOldFile *file, uint32_t line, const char *format, ...) {
   char text[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(text, sizeof text, format, args);
-  va_end(args);
+  VL_FORMAT(text, format);
   if (!file->u->quiet) file->u->lost++;
   report(file, VL_UPGRADE_LOST, line, text);
 }

@@ -10,6 +10,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/free.h"
 #include "base/text.h"
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/detect.h"
@@ -184,9 +185,7 @@ static bool same_file(const char *a, const char *b) {
 static void release(vlUpgrade *u) {
   vlContext *c = u->context;
   for (size_t i = 0; i < u->textures.count; i++) {
-    vl_free(c, u->textures.items[i].name);
-    vl_free(c, u->textures.items[i].text);
-    vl_free(c, u->textures.items[i].copy);
+    VL_FREE(c, u->textures.items[i].name, u->textures.items[i].text, u->textures.items[i].copy);
   }
   for (size_t i = 0; i < u->names.count; i++) {
     vl_free(c, u->names.items[i].old);
@@ -198,9 +197,7 @@ static void release(vlUpgrade *u) {
   }
   for (size_t i = 0; i < u->outputs.count; i++) vl_free(c, u->outputs.items[i]);
   for (size_t i = 0; i < u->maps.count; i++) {
-    vl_free(c, u->maps.items[i].from);
-    vl_free(c, u->maps.items[i].name);
-    vl_free(c, u->maps.items[i].data);
+    VL_FREE(c, u->maps.items[i].from, u->maps.items[i].name, u->maps.items[i].data);
   }
   VL_ARRAY_FREE(c, &u->textures);
   VL_ARRAY_FREE(c, &u->includes);

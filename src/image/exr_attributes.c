@@ -158,7 +158,14 @@ static exr_result_t set_strings(exr_context_t exr, const char *name, const char 
 static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) {
   const double *n = a->numbers;
   float f[16];
+  union {
+    exr_attr_v2f_t v2f;
+    exr_attr_v3f_t v3f;
+    exr_attr_m33f_t m33f;
+    exr_attr_m44f_t m44f;
+  } v;
   for (int i = 0; i < 16; i++) f[i] = (float)n[i];
+  memcpy(&v, f, sizeof f);
   switch (a->type) {
     case VL_ATTRIBUTE_FLOAT:
       if (vl_text_is(a->name, "pixelAspectRatio")) return exr_set_pixel_aspect_ratio(exr, 0, f[0]);
@@ -168,27 +175,12 @@ static exr_result_t set_attribute(exr_context_t exr, const vlImageAttribute *a) 
     case VL_ATTRIBUTE_INT: return exr_attr_set_int(exr, 0, a->name, (int32_t)n[0]);
     case VL_ATTRIBUTE_STRING: return exr_attr_set_string(exr, 0, a->name, a->string);
     case VL_ATTRIBUTE_STRINGS: return set_strings(exr, a->name, a->string);
-    case VL_ATTRIBUTE_V2F: {
-      exr_attr_v2f_t v;
-      memcpy(v.arr, f, sizeof v.arr);
-      if (vl_text_is(a->name, "screenWindowCenter")) return exr_set_screen_window_center(exr, 0, &v);
-      return exr_attr_set_v2f(exr, 0, a->name, &v);
-    }
-    case VL_ATTRIBUTE_V3F: {
-      exr_attr_v3f_t v;
-      memcpy(v.arr, f, sizeof v.arr);
-      return exr_attr_set_v3f(exr, 0, a->name, &v);
-    }
-    case VL_ATTRIBUTE_M33F: {
-      exr_attr_m33f_t m;
-      memcpy(m.m, f, sizeof m.m);
-      return exr_attr_set_m33f(exr, 0, a->name, &m);
-    }
-    case VL_ATTRIBUTE_M44F: {
-      exr_attr_m44f_t m;
-      memcpy(m.m, f, sizeof m.m);
-      return exr_attr_set_m44f(exr, 0, a->name, &m);
-    }
+    case VL_ATTRIBUTE_V2F:
+      if (vl_text_is(a->name, "screenWindowCenter")) return exr_set_screen_window_center(exr, 0, &v.v2f);
+      return exr_attr_set_v2f(exr, 0, a->name, &v.v2f);
+    case VL_ATTRIBUTE_V3F: return exr_attr_set_v3f(exr, 0, a->name, &v.v3f);
+    case VL_ATTRIBUTE_M33F: return exr_attr_set_m33f(exr, 0, a->name, &v.m33f);
+    case VL_ATTRIBUTE_M44F: return exr_attr_set_m44f(exr, 0, a->name, &v.m44f);
     case VL_ATTRIBUTE_M44D: {
       exr_attr_m44d_t m;
       memcpy(m.m, n, sizeof m.m);

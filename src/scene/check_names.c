@@ -14,28 +14,24 @@ uint32_t vl_check_texture_inputs(const vlTextureDef *t, vlTextureId inputs[VL_CH
   return vl_row_textures(vl_kind_row(&vl_texture_family, (int)t->kind), t, inputs, VL_CHECK_INPUTS);
 }
 
-vlCheckName vl_check_material_name(const vlMaterialDef *m) {
+/* "material "NAME"", "the material of line 3" or "its material". */
+static vlCheckName name_of(const char *kind, const char *name, uint32_t line) {
   vlCheckName r;
-  if (!m)
-    snprintf(r.text, sizeof r.text, "the default material");
-  else if (m->name && m->name[0])
-    snprintf(r.text, sizeof r.text, "material \"%s\"", vl_short_text(m->name).text);
-  else if (m->source.line)
-    snprintf(r.text, sizeof r.text, "the material of line %u", m->source.line);
+  if (name && name[0])
+    snprintf(r.text, sizeof r.text, "%s \"%s\"", kind, vl_short_text(name).text);
+  else if (line)
+    snprintf(r.text, sizeof r.text, "the %s of line %u", kind, line);
   else
-    snprintf(r.text, sizeof r.text, "its material");
+    snprintf(r.text, sizeof r.text, "its %s", kind);
   return r;
 }
 
+vlCheckName vl_check_material_name(const vlMaterialDef *m) {
+  return m ? name_of("material", m->name, m->source.line) : (vlCheckName){"the default material"};
+}
+
 vlCheckName vl_check_texture_name(const vlTextureDef *t) {
-  vlCheckName r;
-  if (t->name && t->name[0])
-    snprintf(r.text, sizeof r.text, "texture \"%s\"", vl_short_text(t->name).text);
-  else if (t->source.line)
-    snprintf(r.text, sizeof r.text, "the texture of line %u", t->source.line);
-  else
-    snprintf(r.text, sizeof r.text, "its texture");
-  return r;
+  return name_of("texture", t->name, t->source.line);
 }
 
 static void use(uint8_t *used, uint32_t index) {

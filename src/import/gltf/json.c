@@ -78,10 +78,20 @@ static bool wrong_kind(vlGltf *g, const vlGltfPlace *at, const char *key, const 
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must be %s, found %s", wanted, kind_of(found));
 }
 
+/* Looks up a member of this kind. *value is null if it is not there. Returns false after an error. */
+static bool member(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char *wanted,
+                   const json_t **value) {
+  *value = json_object_get(object, key);
+  if (!*value || vl_text_is(kind_of(*value), wanted)) return true;
+  wrong_kind(g, at, key, wanted, *value);
+  *value = NULL;
+  return false;
+}
+
 bool vl_gltf_number(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, double *value) {
-  const json_t *v = json_object_get(object, key);
+  const json_t *v;
+  if (!member(g, at, object, key, "a number", &v)) return false;
   if (!v) return true;
-  if (!json_is_number(v)) return wrong_kind(g, at, key, "a number", v);
   *value = json_number_value(v);
   if (isfinite(*value) && fabs(*value) <= 3e38) return true;
   return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "%g is out of range", *value);
@@ -96,9 +106,9 @@ bool vl_gltf_float(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
 
 bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, size_t count,
                      double *values) {
-  const json_t *v = json_object_get(object, key);
+  const json_t *v;
+  if (!member(g, at, object, key, "an array", &v)) return false;
   if (!v) return true;
-  if (!json_is_array(v)) return wrong_kind(g, at, key, "an array", v);
   if (json_array_size(v) != count)
     return vl_gltf_fail(g, VL_GLTF_KEY(at, key), "must hold %zu numbers, found %zu", count, json_array_size(v));
   for (size_t i = 0; i < count; i++) {
@@ -112,17 +122,17 @@ bool vl_gltf_numbers(vlGltf *g, const vlGltfPlace *at, const json_t *object, con
 }
 
 bool vl_gltf_bool(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, bool *value) {
-  const json_t *v = json_object_get(object, key);
+  const json_t *v;
+  if (!member(g, at, object, key, "true or false", &v)) return false;
   if (!v) return true;
-  if (!json_is_boolean(v)) return wrong_kind(g, at, key, "true or false", v);
   *value = json_is_true(v);
   return true;
 }
 
 bool vl_gltf_text(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const char **value) {
-  const json_t *v = json_object_get(object, key);
+  const json_t *v;
+  if (!member(g, at, object, key, "a string", &v)) return false;
   if (!v) return true;
-  if (!json_is_string(v)) return wrong_kind(g, at, key, "a string", v);
   *value = json_string_value(v);
   return true;
 }
@@ -171,24 +181,14 @@ bool vl_gltf_index(vlGltf *g, const vlGltfPlace *at, const json_t *object, const
 }
 
 bool vl_gltf_object(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value) {
-  const json_t *v = json_object_get(object, key);
-  *value = NULL;
-  if (!v) return true;
-  if (!json_is_object(v)) return wrong_kind(g, at, key, "an object", v);
-  *value = v;
-  return true;
+  return member(g, at, object, key, "an object", value);
 }
 
 bool vl_gltf_array(vlGltf *g, const vlGltfPlace *at, const json_t *object, const char *key, const json_t **value,
                    size_t *count) {
-  const json_t *v = json_object_get(object, key);
-  *value = NULL;
-  *count = 0;
-  if (!v) return true;
-  if (!json_is_array(v)) return wrong_kind(g, at, key, "an array", v);
-  *value = v;
-  *count = json_array_size(v);
-  return true;
+  const bool ok = member(g, at, object, key, "an array", value);
+  *count = json_array_size(*value);
+  return ok;
 }
 
 const json_t *vl_gltf_extension(const json_t *object, const char *name) {

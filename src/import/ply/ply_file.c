@@ -41,46 +41,31 @@ static bool read_text(vlPlyReader *r, double *value) {
 
 /* A binary value; the caller has checked that its bytes exist. */
 static double load(const char *at, vlPlyType type, vlPlyFormat format) {
-  unsigned char b[8];
+  union {
+    unsigned char bytes[8];
+    int8_t i8;
+    uint8_t u8;
+    int16_t i16;
+    uint16_t u16;
+    int32_t i32;
+    uint32_t u32;
+    float f32;
+    double f64;
+  } v;
   uint32_t n = vl_ply_type_size(type);
-  if (format == VL_PLY_BIG)
-    for (uint32_t i = 0; i < n; i++) b[i] = (unsigned char)at[n - 1 - i];
-  else
-    memcpy(b, at, n);
+  for (uint32_t i = 0; i < n; i++) v.bytes[i] = (unsigned char)at[format == VL_PLY_BIG ? n - 1 - i : i];
   switch (type) {
-    case VL_PLY_I8: return (int8_t)b[0];
-    case VL_PLY_U8: return b[0];
-    case VL_PLY_I16: {
-      int16_t v;
-      memcpy(&v, b, 2);
-      return v;
-    }
-    case VL_PLY_U16: {
-      uint16_t v;
-      memcpy(&v, b, 2);
-      return v;
-    }
-    case VL_PLY_I32: {
-      int32_t v;
-      memcpy(&v, b, 4);
-      return v;
-    }
-    case VL_PLY_U32: {
-      uint32_t v;
-      memcpy(&v, b, 4);
-      return v;
-    }
-    case VL_PLY_F32: {
-      float v;
-      memcpy(&v, b, 4);
-      return (double)v;
-    }
+    case VL_PLY_I8: return v.i8;
+    case VL_PLY_U8: return v.u8;
+    case VL_PLY_I16: return v.i16;
+    case VL_PLY_U16: return v.u16;
+    case VL_PLY_I32: return v.i32;
+    case VL_PLY_U32: return v.u32;
+    case VL_PLY_F32: return (double)v.f32;
     case VL_PLY_F64:
     case VL_PLY_TYPES: break;
   }
-  double v;
-  memcpy(&v, b, 8);
-  return v;
+  return v.f64;
 }
 
 bool vl_ply_read_value(vlPlyReader *r, vlPlyType type, double *value) {

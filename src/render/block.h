@@ -78,7 +78,8 @@ uint32_t vl_render_block_count(const vlRenderRun *r);
 typedef struct vlPilot {
   float spread;        /* vlFilmRays.spread; texture footprints are smaller by the same factor */
   uint32_t pass_seed;  /* of the wavelengths and times that all paths of a pass share */
-  uint64_t merge_work; /* result: as vlTraceBatch.merge_work */
+  const vlTails *tails; /* not null: VL_TRACER_LIGHT_PATH, and the film gets what vl_tails_measure finds */
+  uint64_t merge_work;  /* result: as vlTraceBatch.merge_work */
 } vlPilot;
 /* As vl_render. pilot may be null. In render.c. */
 vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *film, const vlRenderDef *def,

@@ -26,7 +26,8 @@ enum {
   AROUND = 2, /* pixels on each side */
   QUARTER = 4,
   MOST_LIGHT_PATHS = 1 << 20,
-  FEW_FACES = 4096
+  FEW_FACES = 4096,
+  TAIL_PATHS = 4 /* light paths per pixel and sample for the tail: few of those from the sun enter a room */
 };
 static const double SHARE = 0.03, MOST_PATHS = 1 << 19;
 /* The work of another tracer must be below that of VL_TRACER_VOLPATH times SURE, that of a biased one below that of the
@@ -35,7 +36,9 @@ static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 /* The squared relative difference that what merging blurs may make, by its wide radius in the coarse images. Seen: up
  * to 0.001, where a thin object stands on a ground (docs/tracers.md); light that is missing makes more. */
 static const double BLUR = 0.002;
-static const uint32_t seeds[2] = {0x72616365u, 0x61676169u};
+static const uint32_t seeds[2] = {0x72616365u, 0x61676169u}, tail_seed = 0x7461696cu;
+/* A sample is rare if it alone makes a coarse pixel RARE times as bright as it should be (tails.h). */
+static const double RARE = 4;
 
 /* Rays are cheap in small worlds, and the rest of the work counts more. */
 typedef enum WorldSize {
@@ -202,8 +205,8 @@ static void find_base(Race *race, uint32_t count) {
   race->least = 0.1 * mean * mean;
 }
 
-/* As the trimmed relMSE of a pair of seeds in bench/error.c. */
-static double error_of(Race *race, uint32_t t) {
+/* The squared relative differences of trial t by pixel, in race->sorted. */
+static void find_errors(Race *race, uint32_t t) {
   for (size_t i = 0; i < race->pixels; i++) {
     double sum = 0;
     for (uint32_t c = 0; c < 3; c++) {
@@ -213,7 +216,39 @@ static double error_of(Race *race, uint32_t t) {
     }
     race->sorted[i] = sum;
   }
+}
+
+/* As the trimmed relMSE of a pair of seeds in bench/error.c, of pixels whose error is at most `most`. */
+static double error_of(Race *race, uint32_t t, double most) {
+  find_errors(race, t);
+  for (size_t i = 0; i < race->pixels; i++) race->sorted[i] = fmin(race->sorted[i], most);
   return trimmed_mean(race->sorted, race->pixels, 0, (race->pixels + 999) / 1000);
+}
+
+/* The error that rare samples give an image of camera paths with the samples of the race. */
+static vlResult find_tail(Race *race, double *tail, vlError *error) {
+  vlTails tails = {race->film.width, race->film.height,        race->base,
+                   race->least,      RARE * (double)race->def.spp, (double)race->film.max_component};
+  vlPilot pilot = {.spread = 1.0f / (float)race->factor, .pass_seed = tail_seed, .tails = &tails};
+  vlFilmDef film_def = race->film;
+  vlRenderDef def = race->def;
+  vlFilm *film = NULL;
+  vlImage *image = NULL;
+  film_def.max_component = INFINITY;
+  def.seed = tail_seed;
+  def.tracer = VL_TRACER_LIGHT_PATH;
+  def.own_tracer = NULL;
+  def.light_paths = (uint32_t)(TAIL_PATHS * race->pixels);
+  vlResult result = vl_film_create(race->world->context, &film_def, &film);
+  if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");
+  result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, NULL, error);
+  if (result == VL_OK && vl_film_develop(film, NULL, &image) != VL_OK) result = vl_fail_memory(error);
+  *tail = 0;
+  for (size_t i = 0; result == VL_OK && i < race->pixels; i++) *tail += value_at(race, image, i, 0);
+  *tail /= (double)race->pixels * race->def.spp;
+  vl_image_destroy(image);
+  vl_film_destroy(film);
+  return result;
 }
 
 /* The squared relative difference of block (x0, y0) between trial t and merging, trial m. It is a product of the
@@ -249,14 +284,19 @@ static double missing_of(Race *race, uint32_t t, uint32_t m) {
   return mean > significant && mean > BLUR ? mean - BLUR : 0;
 }
 
-static void measure(Race *race, vlTracerChoice *choice) {
+static vlResult measure(Race *race, vlTracerChoice *choice, vlError *error) {
   find_base(race, choice->count);
   uint32_t last = choice->count - 1;
   bool merging = choice->trials[last].tracer == VL_TRACER_MERGING;
   for (uint32_t i = 0; i < choice->count; i++) {
-    choice->trials[i].error = error_of(race, i);
+    choice->trials[i].error = error_of(race, i, INFINITY);
     choice->trials[i].missing = merging && i != last ? missing_of(race, i, last) : 0;
   }
+  vlTracerTrial *camera = &choice->trials[0];
+  vlResult result = find_tail(race, &camera->tail, error);
+  /* What rare samples the two images have is part of the tail. */
+  camera->error = fmax(camera->error, error_of(race, 0, 0.5 * RARE * RARE) + camera->tail);
+  return result;
 }
 
 /* ---- the choice -------------------------------------------------------------------------------------------------- */
@@ -301,7 +341,7 @@ static vlResult run_race(Race *race, const vlFilmDef *film, vlTracerChoice *choi
   race->base = vl_alloc_array(context, 3 * race->pixels, sizeof *race->base);
   race->sorted = vl_alloc_array(context, 3 * race->pixels, sizeof *race->sorted);
   vlResult result = race->base && race->sorted ? run_all(race, film, choice, error) : vl_fail_memory(error);
-  if (result == VL_OK) measure(race, choice);
+  if (result == VL_OK) result = measure(race, choice, error);
   for (uint32_t i = 0; i < VL_MOST_TRIALS; i++)
     for (int half = 0; half < 2; half++) vl_image_destroy(race->images[i][half]);
   vl_free(context, race->base);

@@ -346,7 +346,10 @@ vlResult vl_render_pilot(const vlWorld *world, const vlCamera *camera, vlFilm *f
   result = make_workers(r, world->context, error);
   if (r->shares) r->reconstruction = vl_reconstruction_of(vl_film_filter(film));
   if (result == VL_OK) result = prepare_two_way(r, &focused, error);
-  if (result == VL_OK && pilot && r->two_way) vl_two_way_share(r->two_way, pilot->pass_seed);
+  if (result == VL_OK && pilot && r->two_way) {
+    vl_two_way_share(r->two_way, pilot->pass_seed);
+    vl_two_way_measure(r->two_way, pilot->tails, pilot->spread * pilot->spread / (float)def->spp);
+  }
   double correlation = r->shares ? vl_reconstruction_correlation(&r->reconstruction) : 1;
   if (result == VL_OK && vl_adaptive_create(&r->adaptive, world->context, film, def, correlation) != VL_OK)
     result = vl_fail_memory(error);

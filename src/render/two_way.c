@@ -55,6 +55,7 @@ struct vlTwoWayRun {
   vlSplats splats;
   float exposure, first_radius;
   uint32_t most_paths, paths, index;
+  const vlTails *tails;    /* null: a render */
   uint32_t pass_seed;      /* of what all paths of a pass share */
   uint32_t pixels, rounds; /* the light paths are `rounds` samples of each of `pixels` pixels of their own sampler */
   vlPhoton *photons, *sorted;
@@ -84,14 +85,21 @@ void vl_two_way_share(vlTwoWayRun *run, uint32_t seed) {
   run->pass_seed = seed;
 }
 
+void vl_two_way_measure(vlTwoWayRun *run, const vlTails *tails, float pixel) {
+  run->tails = tails;
+  if (tails) run->way.light_only = false;
+  run->way.alone = tails != NULL;
+  if (tails) run->way.pixel = pixel;
+}
+
 void vl_two_way_use(vlTwoWayRun *run, uint32_t worker, vlTraceScratch *scratch) {
   run->workers[worker].scratch = scratch;
 }
 
 /* ---- splats ------------------------------------------------------------------------------------------------------ */
 
-static void splat(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
-                  float *const inv_pdf[4]) {
+static void splat(void *user, uint32_t n, const float *x, const float *y, const float *odds, float *const value[4],
+                  float *const lambda[4], float *const inv_pdf[4]) {
   Worker *w = user;
   vlTwoWayRun *run = w->run;
   bool rgb = run->world->def.color == VL_COLOR_RGB;
@@ -107,6 +115,7 @@ static void splat(void *user, uint32_t n, const float *x, const float *y, float 
     expose.inv_pdf[c] = rgb ? NULL : inv_pdf[c];
   }
   vl_film_expose(run->film, run->trace.isa, &expose, w->color[0], w->color[1], w->color[2]);
+  if (run->tails) vl_tails_measure(run->tails, n, x, y, odds, (float *const[3]){w->color[0], w->color[1], w->color[2]});
   w->not_finite += vl_splats_add(&run->splats, n, x, y, (float *const[3]){w->color[0], w->color[1], w->color[2]});
 }
 
@@ -459,6 +468,7 @@ vlResult vl_two_way_create(const vlWorld *world, const vlCamera *camera, vlFilm 
   way->apart = def->tracer == VL_TRACER_SPPM;
   way->merge = def->tracer == VL_TRACER_MERGING || way->apart;
   way->shared = -1.0f;
+  way->pixel = 1.0f;
   run->choice = vl_alloc_zero(context, world->lights.count + 1, sizeof *run->choice);
   bool good = run->choice && find_extents(run) && vl_splats_make(context, film, &run->splats) == VL_OK;
   way->choice = run->choice;

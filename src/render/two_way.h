@@ -8,6 +8,7 @@
 #include "film/film.h"
 #include "render/film_rays.h"
 #include "render/stop.h"
+#include "render/tails.h"
 #include "trace/two_way/two_way.h"
 
 typedef struct vlTwoWayRun vlTwoWayRun;
@@ -27,6 +28,10 @@ void vl_two_way_destroy(vlTwoWayRun *run);
 const vlTwoWay *vl_two_way_of(const vlTwoWayRun *run);
 /* A worker's memory for vlTraceBatch.two_way. */
 struct vlTwoWayRows *vl_two_way_rows(const vlTwoWayRun *run, uint32_t worker);
+
+/* Light paths measure the error of camera paths instead of adding radiance (tails.h); camera paths are not traced.
+ * tails: null, or valid until the run is destroyed. pixel: vlTwoWay.pixel. Only for VL_TRACER_LIGHT_PATH. */
+void vl_two_way_measure(vlTwoWayRun *run, const vlTails *tails, float pixel);
 
 /* Seeds the wavelengths and times that all paths of a pass share. They depend on the sampler's seed otherwise. */
 void vl_two_way_share(vlTwoWayRun *run, uint32_t seed);

@@ -4,7 +4,7 @@
 #include "trace/stages.h"
 
 /* What every scene touches should fit the L2 cache of a core (1 to 2 MB). docs/performance.md has these numbers. */
-_Static_assert(sizeof(struct vlTraceScratch) <= 1900000, "a worker's memory");
+_Static_assert(sizeof(struct vlTraceScratch) <= 1920000, "a worker's memory");
 _Static_assert(sizeof(struct vlTraceScratch) - sizeof(vlVolumeScratch) - sizeof(vlSubsurfaceScratch) -
                        sizeof(((struct vlTraceScratch *)NULL)->rows) <=
                    1000000,

@@ -25,6 +25,7 @@ typedef struct vlPaths {
   VL_ROW float pdf[VL_ROW_SIZE]; /* density per solid angle with which BSDF sampling drew the direction */
   VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
       from_nz[VL_ROW_SIZE]; /* surface normal at the ray's origin; the light tree uses it */
+  VL_ROW float from_side[VL_ROW_SIZE]; /* vlSurface.side at the ray's origin */
   VL_ROW float eta_scale[VL_ROW_SIZE];
   VL_ROW float cone[VL_ROW_SIZE]; /* width of the footprint at the ray's origin */
   VL_ROW float
@@ -64,6 +65,7 @@ typedef struct vlSurface {
   VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; for triangles only if the material has a bump map (material.hot.c) */
   VL_ROW float no_cosine[VL_ROW_SIZE]; /* 1: light from all directions counts equally (in media); 0: light is weighted
                                           by the cosine to the normal */
+  VL_ROW float side[VL_ROW_SIZE]; /* 1 or -1: only light on the side of n or -n counts, the viewer's; 0: on both sides */
 } vlSurface;
 
 /* Corners of the triangles that a batch hits, one triangle per lane. */
@@ -305,7 +307,7 @@ void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
 /* Evaluates textures, bump maps, normal maps, shading frames, wo and BSDF parameters for lanes [first, last), which
  * have the same material. */
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
-void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *surface, vlShade *shade);
+void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *surface, vlShade *shade);
 /* The lanes that have chosen a light. Lanes with the same light are adjacent as far as possible, so they can be sampled
  * together. */
 typedef struct vlLanesByLight {
@@ -400,6 +402,7 @@ static inline void vl_path_copy(const vlPaths *a, uint32_t i, vlPaths *b, uint32
   b->from_nx[k] = a->from_nx[i];
   b->from_ny[k] = a->from_ny[i];
   b->from_nz[k] = a->from_nz[i];
+  b->from_side[k] = a->from_side[i];
   b->eta_scale[k] = a->eta_scale[i];
   b->cone[k] = a->cone[i];
   b->spread[k] = a->spread[i];
@@ -419,6 +422,16 @@ static inline float vl_power_heuristic(float a, float b) {
 
 static inline vlVec3 vl_lane3(const float *x, const float *y, const float *z, uint32_t i) {
   return vl_vec3(x[i], y[i], z[i]);
+}
+
+/* How surface lane i receives light, and how the point that ray i left did. */
+static inline __attribute__((always_inline)) vlReceiver vl_receiver(const vlSurface *f, uint32_t i) {
+  vlVec3 n = vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
+  return (vlReceiver){vl_vec3(f->px[i], f->py[i], f->pz[i]), n, f->side[i]};
+}
+static inline vlReceiver vl_receiver_before(const vlPaths *p, uint32_t i) {
+  vlReceiver r = {vl_lane3(p->ox, p->oy, p->oz, i), vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), p->from_side[i]};
+  return r;
 }
 static inline void vl_set_lane3(float *x, float *y, float *z, uint32_t i, vlVec3 v) {
   x[i] = v.x;

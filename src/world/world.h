@@ -143,6 +143,7 @@ typedef struct vlWorldMaterial {
   uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
   const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned by the world */
   bool no_cosine;  /* the path throughput is not multiplied by the cosine */
+  bool one_sided;  /* light only leaves on the side on which it arrives: only lights on the viewer's side count */
   int32_t reflectance, eta, k;              /* spectrum nodes, -1: not used */
   int32_t u_roughness, v_roughness, amount; /* float nodes */
   uint32_t mix[2];

@@ -71,7 +71,7 @@ static double density(void *user, const double d[3]) {
   double pdf = 0;
   for (size_t k = 0; k < f->world->infinite_lights.count; k++) {
     uint32_t index = f->world->infinite_lights.items[k];
-    pdf += (double)vl_light_pmf(&f->world->tree, f->p, f->n, index) *
+    pdf += (double)vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index) *
            vl_infinite_pdf(f->world, &f->world->lights.items[index], f->p, dir);
   }
   if (shape == VL_NONE || f->world->shapes.items[shape].first_light == VL_NONE) return pdf;
@@ -79,7 +79,7 @@ static double density(void *user, const double d[3]) {
   const vlWorldLight *light = &f->world->lights.items[index];
   vlPoint at = vl_point_at(f->world, f->p, dir, shape, prim, instance, t);
   if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
-  return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, f->p, f->n, index);
+  return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index);
 }
 
 /* The part of the light samples that falls into a cell of the sphere is the integral of the density over it. Uniform
@@ -214,7 +214,7 @@ static void many_triangles(void **state) {
     build(f, samplers[i]);
     judge(f, 11 + (unsigned)i, TESTS);
     double sum = 0;
-    for (uint32_t k = 0; k < 4; k++) sum += vl_light_pmf(&f->world->tree, f->p, f->n, k);
+    for (uint32_t k = 0; k < 4; k++) sum += vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, k);
     assert_true(fabs(sum - 1) < 1e-5);
     end(f);
   }
@@ -246,7 +246,7 @@ static void crowd(void **state) {
   f->p = vl_vec3(0.2f, 0.1f, 0);
   f->n = vl_vec3(0, 0, 1);
   build(f, VL_LIGHT_SAMPLER_UNIFORM);
-  assert_true(vl_light_pmf(&f->world->tree, f->p, f->n, 7) < 1.0f / 256);
+  assert_true(vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, 7) < 1.0f / 256);
   judge(f, 15, TESTS);
   end(f);
 }

@@ -12,7 +12,7 @@ vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, s
   vl_infinite_at(world, light, o, d, lambda, met.radiance);
   if (!p->specular[i])
     met.pdf = vl_infinite_pdf(world, light, o, d) *
-              vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), met.light);
+              vl_light_pmf(&world->tree, vl_receiver_before(p, i), met.light);
   return met;
 }
 
@@ -25,8 +25,7 @@ void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, u
     for (uint32_t j = 0; j < count; j++) {
       uint32_t i = lanes[j];
       if (p->specular[i]) continue;
-      out->pdf[j] *= vl_light_pmf(&world->tree, vl_lane3(p->ox, p->oy, p->oz, i),
-                                  vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), index);
+      out->pdf[j] *= vl_light_pmf(&world->tree, vl_receiver_before(p, i), index);
     }
     return;
   }
@@ -52,6 +51,6 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   met->pdf = 0.0f;
   if (!p->specular[i])
     met->pdf = vl_area_pdf(world, light, o, &met->at) *
-               vl_light_pmf(&world->tree, o, vl_lane3(p->from_nx, p->from_ny, p->from_nz, i), met->light);
+               vl_light_pmf(&world->tree, vl_receiver_before(p, i), met->light);
   return true;
 }

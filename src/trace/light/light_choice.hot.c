@@ -38,10 +38,6 @@ typedef struct Descent {
   VL_ROW uint32_t side[VL_ROW_SIZE];
 } Descent;
 
-/* The surface normal for the cosine of arriving light; 0 in media, where all directions count equally. */
-static inline vlVec3 facing_light(const vlSurface *f, uint32_t i) {
-  return vl_mul(vl_vec3(f->nx[i], f->ny[i], f->nz[i]), 1.0f - f->no_cosine[i]);
-}
 
 /* Lane i has arrived at its light. */
 static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, float rest) {
@@ -58,9 +54,9 @@ static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, flo
 typedef struct Step {
   float u, pmf;
 } Step;
-static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b, vlVec3 p, vlVec3 n,
-                                                            float u0, float pmf0, uint32_t *second) {
-  float ia = vl_light_importance(a, p, n), ib = vl_light_importance(b, p, n);
+static inline __attribute__((always_inline)) Step step_down(vlLightCluster a, vlLightCluster b, vlReceiver at, float u0,
+                                                            float pmf0, uint32_t *second) {
+  float ia = vl_light_importance(a, at), ib = vl_light_importance(b, at);
   float sum = ia + ib, some = sum > 0.0f ? sum : 1.0f;
   float pa = ia / some, pb = 1.0f - pa;
   *second = u0 < pa ? 0u : 1u;
@@ -78,7 +74,7 @@ static void step_together(const float *nodes, uint32_t left, uint32_t first, uin
   VL_SIMD
   for (uint32_t k = first; k < first + padded; k++) {
     uint32_t i = w->lane[k];
-    Step s = step_down(a, b, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), w->u[k], w->pmf[k], &side[k]);
+    Step s = step_down(a, b, vl_receiver(f, i), w->u[k], w->pmf[k], &side[k]);
     w->u[k] = s.u;
     w->pmf[k] = s.pmf;
   }
@@ -94,7 +90,7 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
     uint32_t left = vl_float_bits(nodes[w->node[k] * VL_LIGHT_NODE_FLOATS + LEFT_FIELD]);
     uint32_t at = left * VL_LIGHT_NODE_FLOATS;
     Step s = step_down(vl_light_cluster(nodes, at), vl_light_cluster(nodes, at + VL_LIGHT_NODE_FLOATS),
-                       vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), w->u[k], w->pmf[k], &second);
+                       vl_receiver(f, i), w->u[k], w->pmf[k], &second);
     w->node[k] = left + second;
     w->u[k] = s.u;
     w->pmf[k] = s.pmf;
@@ -106,22 +102,19 @@ static void step_apart(const float *restrict nodes, const vlSurface *restrict f,
 /* Starts the descent. Lanes that choose a light without bounds are done; the others start at the root. */
 static void start(Descent *d, uint32_t n, const float *u) {
   const vlLightTree *tree = d->tree;
-  float slots = (float)(tree->unbounded_count + 1), p_unbounded = (float)tree->unbounded_count / slots;
-  uint32_t last = tree->unbounded_count ? tree->unbounded_count - 1 : 0, count = 0;
+  uint32_t count = 0;
   Walk *w = &d->together;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t k = (uint32_t)(int32_t)(u[i] * slots);
-    k = k < last ? k : last;
-    bool beside = u[i] < p_unbounded;
-    float x = beside ? u[i] * slots - (float)k : (u[i] - p_unbounded) / (1.0f - p_unbounded);
-    x = vl_min(x, VL_ONE_MINUS_EPSILON);
+    vlLightChoice c = {VL_INNER, 1.0f, u[i]};
+    if (tree->unbounded_count) c = vl_light_choose_slot(tree, vl_receiver(d->f, i), u[i]);
+    bool beside = c.light != VL_INNER, none = !(c.pmf > 0.0f);
     d->out->light[i] = 0;
     d->out->pmf[i] = 0.0f; /* for lanes that no light reaches */
-    if (beside) choose(d, i, tree->unbounded[k], 1.0f / slots, x);
+    if (beside) choose(d, i, c.light, c.pmf, c.rest);
     w->lane[count] = i;
-    w->u[count] = x;
-    w->pmf[count] = 1.0f / slots;
-    count += !beside;
+    w->u[count] = c.rest;
+    w->pmf[count] = c.pmf;
+    count += !beside && !none;
   }
   w->count = count;
 }
@@ -204,7 +197,7 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
   by_light->count = 0;
   if (tree->kind != VL_LIGHT_SAMPLER_BVH || tree->node_count < 3) { /* no tree to descend */
     for (uint32_t i = 0; i < n; i++) {
-      vlLightChoice c = vl_light_choose(tree, vl_vec3(f->px[i], f->py[i], f->pz[i]), facing_light(f, i), u[i]);
+      vlLightChoice c = vl_light_choose(tree, vl_receiver(f, i), u[i]);
       out->light[i] = c.light;
       out->pmf[i] = c.pmf;
       rest[i] = c.rest;
@@ -226,8 +219,7 @@ void vl_stage_light_choice(const vlLightTree *tree, uint32_t n, const vlSurface 
   for (uint32_t k = 0; k < d.apart.count; k++) { /* the last few lanes one by one */
     const Walk *w = &d.apart;
     uint32_t i = w->lane[k];
-    vlLightChoice c = vl_light_walk(tree, tree->nodes + w->node[k], vl_vec3(f->px[i], f->py[i], f->pz[i]),
-                                    facing_light(f, i), w->u[k], w->pmf[k]);
+    vlLightChoice c = vl_light_walk(tree, tree->nodes + w->node[k], vl_receiver(f, i), w->u[k], w->pmf[k]);
     if (c.pmf > 0.0f) choose(&d, i, c.light, c.pmf, c.rest);
   }
 }

@@ -249,6 +249,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
   const vlWorldMaterial *m = &world->materials.items[material];
   vlTextureRun r = {.world = world, .s = s, .paths = &s->b, .surface = &s->surface, .first = first, .last = last};
   for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.no_cosine[i] = 1.0f;
+  for (uint32_t i = first; m->one_sided && i < last; i++) s->surface.side[i] = 1.0f;
   if (m->displacement >= 0) bump(&r, m->displacement);
   if (m->normal_map >= 0) normal_map(&r, m->normal_map);
   r.top = 0;
@@ -257,7 +258,7 @@ void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint
   if (m->dispersive) follow_hero(&s->b, first, last);
 }
 
-void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlShade *shade) {
+void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *shade) {
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD
@@ -276,6 +277,8 @@ void vl_stage_frames(uint32_t n, const vlPaths *paths, const vlSurface *f, vlSha
     vlVec3 wo = vl_vec3(-paths->dx[i], -paths->dy[i], -paths->dz[i]);
     shade->wo[0][i] = vl_dot(wo, t);
     shade->wo[1][i] = vl_dot(wo, b);
-    shade->wo[2][i] = vl_dot(wo, nn);
+    float wo_z = vl_dot(wo, nn);
+    shade->wo[2][i] = wo_z;
+    f->side[i] = wo_z < 0.0f ? -f->side[i] : f->side[i];
   }
 }

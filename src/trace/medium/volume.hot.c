@@ -320,12 +320,13 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
     p->oz[i] += distance * p->dz[i];
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance);
     p->spread[i] = t->def->pixel_spread;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
     s->surface.px[i] = p->ox[i];
     s->surface.py[i] = p->oy[i];
     s->surface.pz[i] = p->oz[i];
     s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* no normal: all directions count equally */
     s->surface.no_cosine[i] = 1.0f;
+    s->surface.side[i] = 0.0f;
   }
   return count;
 }

@@ -323,6 +323,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
     p->spread[i] = t->def->pixel_spread;
     vl_note_scattered(t, p->lane[i]);
     vl_set_lane3(p->from_nx, p->from_ny, p->from_nz, i, nn);
+    p->from_side[i] = f->side[i];
     for (int c = 0; c < 4; c++) {
       p->beta[c][i] *= weight;
       rows->l[c][i] = rows->u[c][i] / pdf;

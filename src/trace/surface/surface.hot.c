@@ -398,6 +398,7 @@ void vl_stage_surface(const vlWorld *world, uint32_t n, const vlPaths *paths, co
   for (uint32_t i = 0; i < padded; i++) {
     out->width[i] = vl_abs(paths->cone[i] + paths->spread[i] * out->t[i]);
     out->no_cosine[i] = 0.0f;
+    out->side[i] = 0.0f;
   }
   if (world->images.count) vl_stage_footprints(n, paths, out);
   /* This runs after the footprints, which need the point's derivatives; tangents have another length. */

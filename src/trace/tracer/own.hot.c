@@ -51,7 +51,7 @@ static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
     w->t_min[i] = r->t_min[k];
     w->t_max[i] = i < count ? r->t_max[k] : -1.0f;
     p->pdf[i] = p->eta_scale[i] = 1.0f;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
     p->cone[i] = r->width[k];
     p->spread[i] = w->t.def->pixel_spread;
     p->specular[i] = 1; /* all of a light's radiance counts */

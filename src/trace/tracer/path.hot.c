@@ -217,6 +217,7 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     p->from_nx[i] = c * f->nx[i];
     p->from_ny[i] = c * f->ny[i];
     p->from_nz[i] = c * f->nz[i];
+    p->from_side[i] = f->side[i];
   }
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {

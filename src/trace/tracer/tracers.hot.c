@@ -34,7 +34,7 @@ static void start_paths(vlTracing *t) {
     p->dy[i] = b->dy[i];
     p->dz[i] = b->dz[i];
     p->pdf[i] = 1.0f;
-    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = 0.0f;
+    p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
     p->eta_scale[i] = 1.0f;
     p->cone[i] = t->def->pixel_width;
     p->spread[i] = t->def->pixel_spread;

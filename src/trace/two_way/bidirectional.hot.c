@@ -232,6 +232,7 @@ void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
   bool media = vl_has_media(t);
+  if (way->alone) return;
   vl_measure_camera_rays(t);
   if (media) vl_volume_start(t, n, NULL);
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {

@@ -91,7 +91,7 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
     vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
     vl_set_lane3(p->dx, p->dy, p->dz, k, e.d);
     p->pdf[k] = 1.0f;
-    p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = 0.0f;
+    p->from_nx[k] = p->from_ny[k] = p->from_nz[k] = p->from_side[k] = 0.0f;
     p->eta_scale[k] = 1.0f;
     p->cone[k] = p->spread[k] = 0.0f;
     p->specular[k] = 1;
@@ -116,9 +116,10 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   return count;
 }
 
-float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w) {
+float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlReceiver to, vlVec3 w) {
+  vlVec3 p = to.p;
   const vlWorldLight *light = &world->lights.items[r->light[lane]];
-  float pmf = vl_light_pmf(&world->tree, p, n, r->light[lane]);
+  float pmf = vl_light_pmf(&world->tree, to, r->light[lane]);
   if (light->delta) return pmf;
   if (light->far) return pmf * vl_infinite_pdf(world, light, p, w);
   vlPoint at;
@@ -143,8 +144,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / vl_last_odds(t, lane) *
-                vl_light_sample_pdf(t->world, r, lane, vl_lane3(f->px, f->py, f->pz, i),
-                                    vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), 1.0f - f->no_cosine[i]), w);
+                vl_light_sample_pdf(t->world, r, lane, vl_receiver(f, i), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }

@@ -62,7 +62,7 @@ void vl_measure_camera_rays(const vlTracing *t) {
   }
 }
 
-bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, float passes[4], float *scale) {
+bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float passes[4], float *scale) {
   vlTraceScratch *s = t->s;
   float odds = 1.0f, mean = 1.0f;
   for (int c = 0; c < 4; c++) passes[c] = 1.0f;
@@ -78,7 +78,8 @@ bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, f
     mean = vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
     if (!(vl_max(vl_max(passes[0], passes[1]), vl_max(passes[2], passes[3])) > 0.0f)) return false;
   }
-  *scale = 1.0f / ((r->own[k] + odds * r->others[k]) * mean);
+  r->others[k] *= odds;
+  *scale = 1.0f / ((r->own[k] + r->others[k]) * mean);
   return true;
 }
 
@@ -103,13 +104,14 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
     uint32_t lane = q->lane[k], m = visible++;
     r->x[m] = r->x[k];
     r->y[m] = r->y[k];
+    r->others[m] = r->others[k] / r->own[k];
     for (int c = 0; c < 4; c++) {
       value[c][m] = q->radiance[c][k] * passes[c] * scale;
       lambda[c][m] = r->rows[4 + c][lane];
       inv_pdf[c][m] = r->rows[8 + c][lane];
     }
   }
-  if (visible) b->splat(b->user, visible, r->x, r->y, value, lambda, inv_pdf);
+  if (visible) b->splat(b->user, visible, r->x, r->y, r->others, value, lambda, inv_pdf);
 }
 
 /* Adds shadow ray `count` of surface lane i, to the point `target` on the lens. */
@@ -140,6 +142,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
                           uint32_t dimension) {
   const vlTwoWay *way = t->def->two_way;
   if (!way->eye.sees) return;
+  if (way->alone && depth == 0) return; /* the camera sees a highlight: no random direction leads there */
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   const vlSurface *f = &s->surface;

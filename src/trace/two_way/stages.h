@@ -115,7 +115,7 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
 void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlPaths *p, uint32_t count,
                        uint32_t depth);
 /* Density with which next-event estimation would have sampled the light that this lane's path came from. */
-float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlVec3 p, vlVec3 n, vlVec3 w);
+float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t lane, vlReceiver to, vlVec3 w);
 
 /* For perspective cameras. */
 vlCameraSample vl_sample_camera(const vlCameraView *eye, vlVec3 p, float u, float v);
@@ -158,7 +158,7 @@ float vl_emission_area_pdf(const vlWorld *world, const vlTwoWay *way, uint32_t l
 /* The number of light paths by which a point of an area light is shown to the camera itself (two_way.h), relative to
  * the camera rays that hit it: both are densities per film area. per_square: vlCameraSample; cosine: at the light. */
 static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf, float per_square, float cosine) {
-  return way->extent[light] * per_square < 1.0f ? way->paths * area_pdf / (per_square * cosine) : 0.0f;
+  return way->extent[light] * per_square < way->pixel ? way->paths * area_pdf / (per_square * cosine) : 0.0f;
 }
 /* Shows the points at which the n light paths start to the camera. */
 void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
@@ -241,7 +241,7 @@ static inline uint32_t vl_photon_bucket(int32_t x, int32_t y, int32_t z, uint32_
 
 /* What of shadow ray k arrives, after vl_volume_pass_media if there are media. passes: one factor per wavelength;
  * scale: a common factor, which includes the MIS weight. Returns false if nothing arrives. */
-bool vl_two_way_arrives(const vlTracing *t, const vlTwoWayRows *r, uint32_t k, float passes[4], float *scale);
+bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float passes[4], float *scale);
 
 /* Packs vlTraceScratch.passed of a light path into 32 bits, for a photon. Only ratios matter, so the largest value
  * counts as 1, and 2 bits give its index. The other two are stored as -512 ln(ratio) in 15 bits each, which is exact

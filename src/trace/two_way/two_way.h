@@ -24,7 +24,7 @@
  * connected to the camera, with density N p(z_0) / p(z_1), p(z_0) the density per area of such points. Only the second
  * finds lights that are much smaller than a pixel. Where a light covers several pixels every ray hits it, and has no
  * noise, but the number of light paths that start there has. So the second is used only where the shape, if it faced
- * the camera, would cover less than a pixel.
+ * the camera, would cover less than a pixel (vlTwoWay.pixel).
  *
  * In media, H = N 4/3 pi radius^3, and the medium's density at the vertex (vl_medium_extinction) replaces cos. It does
  * not depend on the wavelength, so both kinds of paths compute the same weights. The probabilities of flights are the
@@ -131,6 +131,8 @@ typedef struct vlTwoWay {
   bool merge;          /* false: light paths only connect to the camera */
   bool apart;          /* smooth vertices at the camera path's beginning do not count as bounces (as in pbrt's sppm) */
   bool light_only;     /* no next-event estimation and no merging: weights are 1 */
+  bool alone;          /* camera paths are not traced, but count in the weights */
+  float pixel;         /* lights that cover less than this part of a pixel are connected to the camera */
   float paths;         /* N: light paths of a pass */
   float merged;        /* H = N pi radius^2; 0 without merging */
   float merged_volume; /* in media: H = N 4/3 pi radius^3 */
@@ -163,9 +165,10 @@ typedef struct vlLightBatch {
   const vlCameraView *eyes; /* the camera's view by path, if the camera moves; null: vlTwoWay.eye */
   void *user;
   /* Receives radiance for the film at points x, y (pixels from the top left corner). lambda and inv_pdf: wavelengths
-   * and 1 / PDF in spectral mode, else undefined. Rows have VL_ROW_SIZE elements; the callback may write to them. */
-  void (*splat)(void *user, uint32_t n, const float *x, const float *y, float *const value[4], float *const lambda[4],
-                float *const inv_pdf[4]);
+   * and 1 / PDF in spectral mode, else undefined. odds: the density of all other strategies over that of this one. Rows
+   * have VL_ROW_SIZE elements; the callback may write to all but odds. */
+  void (*splat)(void *user, uint32_t n, const float *x, const float *y, const float *odds, float *const value[4],
+                float *const lambda[4], float *const inv_pdf[4]);
   void (*store)(void *user, uint32_t n, const vlPhoton *photons);
   /* passed: vlPhoton.passed of each vertex, undefined without vlWorld.by_channel */
   void (*leave)(void *user, uint32_t n, const vlLightVertex *vertices, const uint32_t *passed);

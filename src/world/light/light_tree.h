@@ -1,6 +1,7 @@
 /* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node, a branch is chosen
  * in proportion to its importance for the point that receives light (Conty Estevez and Kulla 2018; pbrt book 12.6.3).
- * Lights without bounds (distant, infinite) are outside the tree; each has one slot. light_tree_build.c builds the
+ * Lights without bounds (distant, infinite) are outside the tree; each that reaches the point has one slot, and so has
+ * the tree. light_tree_build.c builds the
  * tree; traversal is inline, for the hot loops. */
 #ifndef WORLD_LIGHT_LIGHT_TREE_H
 #define WORLD_LIGHT_LIGHT_TREE_H
@@ -39,6 +40,7 @@ typedef struct vlLightTree {
   uint32_t light_count;
   uint32_t *unbounded; /* lights outside the tree */
   uint32_t unbounded_count;
+  float (*towards)[3]; /* per light outside the tree: the one direction from which it shines; zero: from all */
   uint32_t *slot; /* per light: index in unbounded, or VL_INNER */
   float *cdf;     /* for selection by power and uniform selection: cumulative distribution, light_count + 1 values */
 } vlLightTree;
@@ -56,9 +58,17 @@ static inline vlLightCluster vl_light_cluster(const float *nodes, uint32_t at) {
                           nodes[at + 6], nodes[at + 7], nodes[at + 8], nodes[at + 9], nodes[at + 10], nodes[at + 11]};
 }
 
-/* Importance of a node for a point p with normal n (zero vector: none). Free of branches, so that loops over batches
- * vectorise. */
-static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b, vlVec3 p, vlVec3 n) {
+/* What receives light: a point, and which lights count there. The same numbers must describe a point where a light is
+ * chosen and where the probability of the choice is computed. */
+typedef struct vlReceiver {
+  vlVec3 p;
+  vlVec3 n;   /* normal; zero vector: none, light from all directions counts equally */
+  float side; /* 1 or -1: only light on the side of n or -n counts; 0: on both (vlSurface.side) */
+} vlReceiver;
+
+/* Importance of a node for a receiver. Free of branches, so that loops over batches vectorise. */
+static inline __attribute__((always_inline)) float vl_light_importance(vlLightCluster b, vlReceiver at) {
+  vlVec3 p = at.p, n = at.n;
   vlVec3 to = vl_sub(p, vl_vec3(b.cx, b.cy, b.cz));
   float d2 = vl_length2(to);
   float r = b.half_diagonal;
@@ -82,7 +92,8 @@ static inline __attribute__((always_inline)) float vl_light_importance(vlLightCl
   cos_p = cos_x > cos_b ? 1.0f : cos_p;
   float importance = b.power * cos_p / d2_limited;
   float has_n = vl_abs(n.x) + vl_abs(n.y) + vl_abs(n.z);
-  float cos_i = vl_abs(vl_dot(wi, n));
+  float cos_n = vl_dot(wi, n);
+  float cos_i = at.side != 0.0f ? -at.side * cos_n : vl_abs(cos_n);
   float sin_i = __builtin_sqrtf(vl_max(0.0f, 1.0f - cos_i * cos_i));
   float turned = vl_max(0.0f, cos_i * cos_b + sin_i * sin_b);
   turned = cos_i > cos_b ? 1.0f : turned;
@@ -90,8 +101,8 @@ static inline __attribute__((always_inline)) float vl_light_importance(vlLightCl
   importance = cos_p > b.cos_e ? importance : 0.0f;
   return importance > 0.0f && importance < VL_INFINITY ? importance : 0.0f;
 }
-static inline float vl_light_node_importance(const vlLightNode *node, vlVec3 p, vlVec3 n) {
-  return vl_light_importance(vl_light_cluster((const float *)node, 0), p, n);
+static inline float vl_light_node_importance(const vlLightNode *node, vlReceiver at) {
+  return vl_light_importance(vl_light_cluster((const float *)node, 0), at);
 }
 
 typedef struct vlLightChoice {
@@ -115,11 +126,11 @@ static inline vlLightChoice vl_light_choose_cdf(const vlLightTree *tree, float u
 
 /* Traverses the tree from an inner node that was reached with probability pmf; the random number u in [0, 1) is
  * rescaled and reused at each level. */
-static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLightNode *node, vlVec3 p, vlVec3 n, float u,
+static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLightNode *node, vlReceiver at, float u,
                                           float pmf) {
   while (node->light == VL_INNER) {
     const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
-    float ia = vl_light_node_importance(a, p, n), ib = vl_light_node_importance(b, p, n);
+    float ia = vl_light_node_importance(a, at), ib = vl_light_node_importance(b, at);
     if (!(ia + ib > 0.0f)) return (vlLightChoice){VL_INNER, 0.0f, 0.0f};
     float pa = ia / (ia + ib);
     bool left = u < pa;
@@ -131,37 +142,64 @@ static inline vlLightChoice vl_light_walk(const vlLightTree *tree, const vlLight
   return (vlLightChoice){node->light, pmf, u};
 }
 
-static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlVec3 p, vlVec3 n, float u) {
+/* Whether light k of those outside the tree can count at a receiver. Directions that lie on the surface may count: the
+ * BSDF rounds their cosine in another way. */
+static inline bool vl_light_reaches(const vlLightTree *tree, uint32_t k, vlReceiver at) {
+  const float *w = tree->towards[k];
+  bool everywhere = w[0] == 0.0f && w[1] == 0.0f && w[2] == 0.0f;
+  return everywhere || at.side == 0.0f || at.side * vl_dot(at.n, vl_vec3(w[0], w[1], w[2])) > -0x1p-12f;
+}
+
+/* The lights outside the tree that reach a receiver, and the tree if any of its lights does: each has the same chance. */
+typedef struct vlLightSlots {
+  uint32_t outside;
+  bool tree;
+} vlLightSlots;
+static inline vlLightSlots vl_light_slots(const vlLightTree *tree, vlReceiver at) {
+  vlLightSlots r = {0, tree->node_count > 0};
+  for (uint32_t k = 0; k < tree->unbounded_count; k++) r.outside += vl_light_reaches(tree, k, at);
+  if (tree->unbounded_count && r.tree) r.tree = vl_light_node_importance(tree->nodes, at) > 0.0f;
+  return r;
+}
+
+/* Chooses a light outside the tree, or the tree (light: VL_INNER). pmf 0: no light counts. */
+static inline vlLightChoice vl_light_choose_slot(const vlLightTree *tree, vlReceiver at, float u) {
+  vlLightSlots slots = vl_light_slots(tree, at);
+  uint32_t count = slots.outside + slots.tree, wanted, last = count ? count - 1 : 0;
+  if (count == 0) return (vlLightChoice){VL_INNER, 0.0f, 0.0f};
+  wanted = (uint32_t)(int32_t)(u * (float)count);
+  wanted = wanted < last ? wanted : last;
+  vlLightChoice r = {VL_INNER, 1.0f / (float)count, vl_min(u * (float)count - (float)wanted, VL_ONE_MINUS_EPSILON)};
+  for (uint32_t k = 0, seen = 0; wanted < slots.outside && k < tree->unbounded_count; k++)
+    if (vl_light_reaches(tree, k, at) && seen++ == wanted) r.light = tree->unbounded[k];
+  return r;
+}
+
+static inline vlLightChoice vl_light_choose(const vlLightTree *tree, vlReceiver at, float u) {
   vlLightChoice none = {VL_INNER, 0.0f, 0.0f};
   if (tree->light_count == 0) return none;
   if (tree->kind != VL_LIGHT_SAMPLER_BVH) return vl_light_choose_cdf(tree, u);
-  uint32_t slots = tree->unbounded_count + (tree->node_count ? 1 : 0);
-  float p_unbounded = (float)tree->unbounded_count / (float)slots;
-  if (u < p_unbounded) {
-    uint32_t i = (uint32_t)(u * (float)slots);
-    i = i < tree->unbounded_count ? i : tree->unbounded_count - 1;
-    return (vlLightChoice){tree->unbounded[i], 1.0f / (float)slots,
-                           vl_min(u * (float)slots - (float)i, VL_ONE_MINUS_EPSILON)};
-  }
-  if (!tree->node_count) return none;
-  u = vl_min((u - p_unbounded) / (1.0f - p_unbounded), VL_ONE_MINUS_EPSILON);
+  vlLightChoice slot = vl_light_choose_slot(tree, at, u);
+  if (slot.light != VL_INNER || !(slot.pmf > 0.0f)) return slot;
   const vlLightNode *root = tree->nodes;
-  if (root->light != VL_INNER && !(vl_light_node_importance(root, p, n) > 0.0f)) return none;
-  return vl_light_walk(tree, root, p, n, u, 1.0f / (float)slots);
+  if (root->light != VL_INNER && !(vl_light_node_importance(root, at) > 0.0f)) return none;
+  return vl_light_walk(tree, root, at, slot.rest, slot.pmf);
 }
 
 /* Probability with which vl_light_choose picks this light. */
-static inline float vl_light_pmf(const vlLightTree *tree, vlVec3 p, vlVec3 n, uint32_t light) {
+static inline float vl_light_pmf(const vlLightTree *tree, vlReceiver at, uint32_t light) {
   if (tree->kind != VL_LIGHT_SAMPLER_BVH) return tree->cdf[light + 1] - tree->cdf[light];
-  uint32_t slots = tree->unbounded_count + (tree->node_count ? 1 : 0);
-  float pmf = 1.0f / (float)slots;
-  if (tree->slot[light] != VL_INNER) return pmf;
+  vlLightSlots slots = vl_light_slots(tree, at);
+  uint32_t count = slots.outside + slots.tree;
+  float pmf = count ? 1.0f / (float)count : 0.0f;
+  if (tree->slot[light] != VL_INNER) return vl_light_reaches(tree, tree->slot[light], at) ? pmf : 0.0f;
+  if (!slots.tree) return 0.0f;
   uint64_t trail = tree->trails[light];
   const vlLightNode *node = tree->nodes;
-  if (node->light != VL_INNER) return vl_light_node_importance(node, p, n) > 0.0f ? pmf : 0.0f;
+  if (node->light != VL_INNER) return vl_light_node_importance(node, at) > 0.0f ? pmf : 0.0f;
   while (node->light == VL_INNER) {
     const vlLightNode *a = tree->nodes + node->left, *b = a + 1;
-    float ia = vl_light_node_importance(a, p, n), ib = vl_light_node_importance(b, p, n);
+    float ia = vl_light_node_importance(a, at), ib = vl_light_node_importance(b, at);
     float pa = ia + ib > 0.0f ? ia / (ia + ib) : 0.0f;
     float pb = ia + ib > 0.0f ? 1.0f - pa : 0.0f;
     pmf *= trail & 1 ? pb : pa;

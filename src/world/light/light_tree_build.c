@@ -251,9 +251,10 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
   uint32_t n = tree->light_count;
   tree->trails = vl_world_block(world, n, sizeof(uint64_t));
   tree->unbounded = vl_world_block(world, n, sizeof(uint32_t));
+  tree->towards = vl_world_block(world, n, sizeof *tree->towards);
   tree->slot = vl_world_block(world, n, sizeof(uint32_t));
   Item *items = vl_alloc_array(world->context, n, sizeof *items);
-  if (!tree->trails || !tree->unbounded || !tree->slot || !items) {
+  if (!tree->trails || !tree->unbounded || !tree->towards || !tree->slot || !items) {
     vl_free(world->context, items);
     return vl_fail_memory(error);
   }
@@ -264,6 +265,8 @@ vlResult vl_light_tree_build(vlWorld *world, vlError *error) {
     tree->trails[i] = 0;
     if (light->far) {
       tree->slot[i] = tree->unbounded_count;
+      bool one_way = light->kind == VL_WL_DISTANT;
+      for (int k = 0; k < 3; k++) tree->towards[tree->unbounded_count][k] = one_way ? light->direction[k] : 0;
       tree->unbounded[tree->unbounded_count++] = i;
     } else {
       light_bounds(world, light, &items[bounded].bounds);

@@ -283,6 +283,7 @@ static vlResult add_material(vlWorld *world, const vlScene *scene, const vlMater
   memset(&m, 0, sizeof m);
   m.kind = def->kind;
   m.traits = vl_kind_row(&vl_material_family, (int)def->kind)->traits;
+  m.one_sided = (m.traits & (VL_MATERIAL_OPAQUE | VL_MATERIAL_REFRACTS)) == VL_MATERIAL_OPAQUE;
   m.reflectance = m.eta = m.k = m.u_roughness = m.v_roughness = m.amount = m.presence = -1;
   m.displacement = m.normal_map = m.transmittance = -1;
   m.remap = def->remap_roughness;

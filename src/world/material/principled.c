@@ -92,6 +92,7 @@ vlResult vl_compile_principled_material(const vlMaterialBuild *b) {
   p->has_film = !is_zero(d->iridescence);
   p->has_anisotropy = !is_zero(d->anisotropy);
   p->has_transmission = !is_zero(d->diffuse_transmission);
+  b->m->one_sided = !p->has_transmission && is_zero(d->transmission);
   const vlSpectrum *sheen = &d->sheen_color.value;
   float grey;
   bool no_sheen = (vl_spectrum_is_constant(sheen, &grey) && !(grey > 0.0f)) ||

@@ -18,12 +18,12 @@ typedef struct vlTracerTrial {
   uint32_t light_paths; /**< for vlRenderDef.light_paths */
   double error;         /**< relative squared error of an image with the samples of the race, from the difference of two
                            seeds, without the worst 0.1 % of pixels; with `tail`, where that is more */
-  double tail;          /**< relative squared error by samples that are too rare and bright for the race to see them all,
-                           estimated by light paths; 0 for tracers that have light paths */
-  double missing;       /**< relative squared error of the light that merging finds and this tracer does not; 0 without
-                           merging in the race, and for merging itself */
-  double cost;          /**< rays of the race, each times its mean time relative to a ray of VL_TRACER_VOLPATH */
-  double work;          /**< error times cost, over that of the first trial, VL_TRACER_VOLPATH */
+  double tail;    /**< relative squared error by samples that are too rare and bright for the race to see them all,
+                     estimated by light paths; 0 for tracers that have light paths */
+  double missing; /**< relative squared error of the light that merging finds and this tracer does not; 0 without
+                     merging in the race, and for merging itself */
+  double cost;    /**< rays of the race, each times its mean time relative to a ray of VL_TRACER_VOLPATH */
+  double work;    /**< error times cost, over that of the first trial, VL_TRACER_VOLPATH */
 } vlTracerTrial;
 
 /** The result of a race. */

@@ -249,9 +249,9 @@ static PyObject *trial_list(const vlKindFamily *tracers, const vlTracerChoice *c
   PyObject *list = PyList_New(0);
   for (uint32_t i = 0; list && i < choice->count; i++) {
     const vlTracerTrial *t = &choice->trials[i];
-    PyObject *trial =
-        Py_BuildValue("{s:s,s:I,s:d,s:d,s:d,s:d}", "tracer", tracers->rows[t->tracer]->name, "light_paths",
-                      t->light_paths, "error", t->error, "missing", t->missing, "cost", t->cost, "work", t->work);
+    PyObject *trial = Py_BuildValue("{s:s,s:I,s:d,s:d,s:d,s:d,s:d}", "tracer", tracers->rows[t->tracer]->name,
+                                    "light_paths", t->light_paths, "error", t->error, "tail", t->tail, "missing",
+                                    t->missing, "cost", t->cost, "work", t->work);
     if (!trial || PyList_Append(list, trial) < 0) Py_CLEAR(list);
     Py_XDECREF(trial);
   }

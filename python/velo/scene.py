@@ -400,7 +400,7 @@ class Scene(_velo.Scene):
     def choose_tracer(self, *, camera: AnyCamera = None, resolution: Optional[tuple[int, int]] = None,
                       **keywords: Any) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         """A short race of tracers (docs/tracers.md): (the keywords of render with which it has the least error for the same
-        time, the trials). A trial has tracer, light_paths, error, missing, cost, and work: error times cost over that of the
+        time, the trials). A trial has tracer, light_paths, error, tail, missing, cost, and work: error times cost over that of the
         first. Without trials the image is too small for a race. camera, resolution, further keywords: as render."""
         settings, view = self._prepare(camera, resolution, None, (), None, False, keywords)
         return _velo.choose_tracer(self._build(settings), view, settings, min(settings.get("spp"), _MOST_RACED))

@@ -227,8 +227,12 @@ static double error_of(Race *race, uint32_t t, double most) {
 
 /* The error that rare samples give an image of camera paths with the samples of the race. */
 static vlResult find_tail(Race *race, double *tail, vlError *error) {
-  vlTails tails = {race->film.width, race->film.height,        race->base,
-                   race->least,      RARE * (double)race->def.spp, (double)race->film.max_component};
+  vlTails tails = {race->film.width,
+                   race->film.height,
+                   race->base,
+                   race->least,
+                   RARE * (double)race->def.spp,
+                   (double)race->film.max_component};
   vlPilot pilot = {.spread = 1.0f / (float)race->factor, .pass_seed = tail_seed, .tails = &tails};
   vlFilmDef film_def = race->film;
   vlRenderDef def = race->def;

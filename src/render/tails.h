@@ -1,12 +1,12 @@
 /* render/tails.h: the error that rare, very bright samples give camera paths, measured by light paths.
  *
- * A short render of camera paths does not contain its own rare samples: a path that is found once in 10^5 samples, and is
- * then 10^3 times as bright as its pixel, is in few coarse images and in most renders. A light path that is connected
- * to the camera (two_way.h, strategy 3) finds many such paths easily, and its weight tells with which density camera
- * paths find them. Let f be the radiance of a path, q the density with which light paths find it and p that of camera
- * paths (a ray that hits the light, or a light sample). The second moment of the camera paths' samples is the integral
- * of f^2 / p, which is the mean over light paths of (f / q) (f / p), with f / p = (f / q) / (p / q). So one path of the
- * tracer without the tail measures the tail of the other. */
+ * A short render of camera paths does not contain its own rare samples: a path that is found once in 10^5 samples, and
+ * is then 10^3 times as bright as its pixel, is in few coarse images and in most renders. A light path that is
+ * connected to the camera (two_way.h, strategy 3) finds many such paths easily, and its weight tells with which density
+ * camera paths find them. Let f be the radiance of a path, q the density with which light paths find it and p that of
+ * camera paths (a ray that hits the light, or a light sample). The second moment of the camera paths' samples is the
+ * integral of f^2 / p, which is the mean over light paths of (f / q) (f / p), with f / p = (f / q) / (p / q). So one
+ * path of the tracer without the tail measures the tail of the other. */
 #ifndef RENDER_TAILS_H
 #define RENDER_TAILS_H
 

@@ -24,7 +24,7 @@ typedef struct vlPaths {
   VL_ROW float lambda[4][VL_ROW_SIZE];
   VL_ROW float pdf[VL_ROW_SIZE]; /* density per solid angle with which BSDF sampling drew the direction */
   VL_ROW float from_nx[VL_ROW_SIZE], from_ny[VL_ROW_SIZE],
-      from_nz[VL_ROW_SIZE]; /* surface normal at the ray's origin; the light tree uses it */
+      from_nz[VL_ROW_SIZE];            /* surface normal at the ray's origin; the light tree uses it */
   VL_ROW float from_side[VL_ROW_SIZE]; /* vlSurface.side at the ray's origin */
   VL_ROW float eta_scale[VL_ROW_SIZE];
   VL_ROW float cone[VL_ROW_SIZE]; /* width of the footprint at the ray's origin */
@@ -65,7 +65,8 @@ typedef struct vlSurface {
   VL_ROW float dn[6][VL_ROW_SIZE]; /* dndu, dndv; for triangles only if the material has a bump map (material.hot.c) */
   VL_ROW float no_cosine[VL_ROW_SIZE]; /* 1: light from all directions counts equally (in media); 0: light is weighted
                                           by the cosine to the normal */
-  VL_ROW float side[VL_ROW_SIZE]; /* 1 or -1: only light on the side of n or -n counts, the viewer's; 0: on both sides */
+  VL_ROW float
+      side[VL_ROW_SIZE]; /* 1 or -1: only light on the side of n or -n counts, the viewer's; 0: on both sides */
 } vlSurface;
 
 /* Corners of the triangles that a batch hits, one triangle per lane. */

@@ -23,6 +23,7 @@ typedef struct Fixture {
   vlScene *scene;
   vlWorld *world;
   vlVec3 p, n;
+  float side;
   vlTraceScratch *scratch;
 } Fixture;
 
@@ -79,7 +80,8 @@ static double density(void *user, const double d[3]) {
   const vlWorldLight *light = &f->world->lights.items[index];
   vlPoint at = vl_point_at(f->world, f->p, dir, shape, prim, instance, t);
   if (vl_dot(at.g, dir) >= 0 && !f->world->emitted.items[light->emitted].two_sided) return pdf;
-  return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) * vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index);
+  return pdf + (double)vl_area_pdf(f->world, light, f->p, &at) *
+                   vl_light_pmf(&f->world->tree, (vlReceiver){f->p, f->n, f->side}, index);
 }
 
 /* The part of the light samples that falls into a cell of the sphere is the integral of the density over it. Uniform
@@ -119,13 +121,14 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
   for (; done < TRIES; done += VL_BATCH) {
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       s->surface.px[i] = f->p.x, s->surface.py[i] = f->p.y, s->surface.pz[i] = f->p.z;
+      s->surface.side[i] = f->side;
       s->surface.nx[i] = f->n.x, s->surface.ny[i] = f->n.y, s->surface.nz[i] = f->n.z;
       s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
     }
     vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u1, s->shade.u2, s->shade.u0, &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
-      if (!(l->pdf[i] > 0)) continue;
+      if (!(l->pdf[i] > 0) || l->delta[i]) continue;
       double d[3] = {l->wx[i], l->wy[i], l->wz[i]}, told = density(f, d);
       if (!(told > 0)) continue; /* at the very edge a ray may just miss, or another light stands before it */
       /* The density that comes with a sample is the one that a hit is given. */
@@ -218,6 +221,45 @@ static void many_triangles(void **state) {
     assert_true(fabs(sum - 1) < 1e-5);
     end(f);
   }
+}
+
+/* A sun and triangles on all sides of a surface that light leaves on both sides (side 0) or only on one. What cannot
+ * count is not chosen, and the others have its share. */
+static void one_side(void **state) {
+  (void)state;
+  const float p[27] = {-3, -1, 2, -2, -1, 2,  -3, 1, 2.5f, 2,  -1, 2,  3, -1,
+                       2,  2,  1, 2,  -1, -3, -2, 1, -3,   -2, 0,  -3, -1};
+  for (int side = -1; side <= 1; side++)
+    for (int sky = 0; sky <= 1; sky++) {
+      Fixture *f = begin();
+      add_triangles(f, p, 3, true);
+      vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
+      sun.from[0] = 0.4f, sun.from[1] = 0.2f, sun.from[2] = 1;
+      sun.to[0] = sun.to[1] = sun.to[2] = 0;
+      assert_int_not_equal(vl_scene_add_light(f->scene, &sun).index, 0);
+      vlLightDef even = vl_default_light_def(VL_LIGHT_INFINITE);
+      if (sky) assert_int_not_equal(vl_scene_add_light(f->scene, &even).index, 0);
+      f->p = vl_vec3(0.1f, 0.2f, 0);
+      f->n = vl_vec3(0, 0, 1);
+      f->side = (float)side;
+      build(f, VL_LIGHT_SAMPLER_BVH);
+      const vlLightTree *tree = &f->world->tree;
+      vlReceiver at = {f->p, f->n, f->side};
+      double sum = 0, slots = (side < 0 ? 1 : 2) + sky;
+      size_t count = f->world->lights.count;
+      for (uint32_t k = 0; k < count; k++) {
+        float pmf = vl_light_pmf(tree, at, k);
+        bool distant = f->world->lights.items[k].kind == VL_WL_DISTANT;
+        if (f->world->lights.items[k].far)
+          assert_true(fabs((double)pmf - (distant && side < 0 ? 0 : 1 / slots)) < 1e-6);
+        else
+          assert_true((pmf > 0) == (side == 0 || (side < 0) == (f->world->lights.items[k].corners[2] < 0)));
+        sum += (double)pmf;
+      }
+      assert_true(fabs(sum - 1) < 1e-5);
+      if (!sky) judge(f, 51 + (unsigned)(side + 1), TESTS);
+      end(f);
+    }
 }
 
 /* So many lights that the choice leaves few bits for the point. */
@@ -367,10 +409,15 @@ static void portals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(triangles),    cmocka_unit_test(many_triangles),
-      cmocka_unit_test(round_lights), cmocka_unit_test(sphere_from_inside),
-      cmocka_unit_test(patch),        cmocka_unit_test(sky),
-      cmocka_unit_test(crowd),        cmocka_unit_test(portals),
+      cmocka_unit_test(triangles),
+      cmocka_unit_test(many_triangles),
+      cmocka_unit_test(one_side),
+      cmocka_unit_test(round_lights),
+      cmocka_unit_test(sphere_from_inside),
+      cmocka_unit_test(patch),
+      cmocka_unit_test(sky),
+      cmocka_unit_test(crowd),
+      cmocka_unit_test(portals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,8 +11,7 @@ vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, s
   vl_path_lambda(p, i, lambda);
   vl_infinite_at(world, light, o, d, lambda, met.radiance);
   if (!p->specular[i])
-    met.pdf = vl_infinite_pdf(world, light, o, d) *
-              vl_light_pmf(&world->tree, vl_receiver_before(p, i), met.light);
+    met.pdf = vl_infinite_pdf(world, light, o, d) * vl_light_pmf(&world->tree, vl_receiver_before(p, i), met.light);
   return met;
 }
 
@@ -50,7 +49,7 @@ bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   vl_emitted_at(world, e, lambda, uv.x, 1.0f - uv.y, false, met->radiance);
   met->pdf = 0.0f;
   if (!p->specular[i])
-    met->pdf = vl_area_pdf(world, light, o, &met->at) *
-               vl_light_pmf(&world->tree, vl_receiver_before(p, i), met->light);
+    met->pdf =
+        vl_area_pdf(world, light, o, &met->at) * vl_light_pmf(&world->tree, vl_receiver_before(p, i), met->light);
   return true;
 }

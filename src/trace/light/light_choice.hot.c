@@ -38,7 +38,6 @@ typedef struct Descent {
   VL_ROW uint32_t side[VL_ROW_SIZE];
 } Descent;
 
-
 /* Lane i has arrived at its light. */
 static inline void choose(Descent *d, uint32_t i, uint32_t light, float pmf, float rest) {
   d->out->light[i] = light;

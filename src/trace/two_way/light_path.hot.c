@@ -143,8 +143,7 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
     if (depth == 0) {
       float density = vl_light_density(t, r, lane, f->t[i]);
       inv = density > 0.0f ? inv / density : 0.0f;
-      r->b[i] = inv / vl_last_odds(t, lane) *
-                vl_light_sample_pdf(t->world, r, lane, vl_receiver(f, i), w);
+      r->b[i] = inv / vl_last_odds(t, lane) * vl_light_sample_pdf(t->world, r, lane, vl_receiver(f, i), w);
     }
     r->a[i] = r->carry[lane] * inv;
   }

@@ -111,7 +111,8 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
       vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
       inv = density > 0.0f ? inv / density : 0.0f;
       r->b[i] = inv / v->odds[lane] *
-                vl_light_sample_pdf(t->world, r, lane, (vlReceiver){vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), 0.0f}, w);
+                vl_light_sample_pdf(t->world, r, lane,
+                                    (vlReceiver){vl_lane3(p->ox, p->oy, p->oz, i), vl_vec3(0, 0, 0), 0.0f}, w);
     }
     r->a[i] = r->carry[lane] * inv;
   }

@@ -41,8 +41,8 @@ typedef struct vlLightTree {
   uint32_t *unbounded; /* lights outside the tree */
   uint32_t unbounded_count;
   float (*towards)[3]; /* per light outside the tree: the one direction from which it shines; zero: from all */
-  uint32_t *slot; /* per light: index in unbounded, or VL_INNER */
-  float *cdf;     /* for selection by power and uniform selection: cumulative distribution, light_count + 1 values */
+  uint32_t *slot;      /* per light: index in unbounded, or VL_INNER */
+  float *cdf; /* for selection by power and uniform selection: cumulative distribution, light_count + 1 values */
 } vlLightTree;
 
 vlResult vl_light_tree_build(struct vlWorld *world, vlError *error);
@@ -150,7 +150,8 @@ static inline bool vl_light_reaches(const vlLightTree *tree, uint32_t k, vlRecei
   return everywhere || at.side == 0.0f || at.side * vl_dot(at.n, vl_vec3(w[0], w[1], w[2])) > -0x1p-12f;
 }
 
-/* The lights outside the tree that reach a receiver, and the tree if any of its lights does: each has the same chance. */
+/* The lights outside the tree that reach a receiver, and the tree if any of its lights does: each has the same chance.
+ */
 typedef struct vlLightSlots {
   uint32_t outside;
   bool tree;

@@ -19,7 +19,7 @@ typedef struct vlTracerTrial {
   double error;         /**< relative squared error of an image with the samples of the race, from the difference of two
                            seeds, without the worst 0.1 % of pixels; with `tail`, where that is more */
   double tail;    /**< relative squared error by samples that are too rare and bright for the race to see them all,
-                     estimated by light paths; 0 for tracers that have light paths */
+                     as light paths find it, less two standard errors; 0 for tracers that have light paths */
   double missing; /**< relative squared error of the light that merging finds and this tracer does not; 0 without
                      merging in the race, and for merging itself */
   double cost;    /**< rays of the race, each times its mean time relative to a ray of VL_TRACER_VOLPATH */
@@ -41,7 +41,7 @@ typedef struct vlTracerChoice {
  * errors are the differences of the two; the costs are counted in rays. So the choice has the same result for any
  * number of threads, on every machine, and for every crop, seed and range of samples of the same image.
  *
- * film, def: as for vl_render; def->spp is the number of samples of the whole image. The race costs about 3 % of the
+ * film, def: as for vl_render; def->spp is the number of samples of the whole image. The race costs about 4 % of the
  * work of spp samples by VL_TRACER_VOLPATH, at most as much as 2^19 paths. There is no race for images so small that
  * this does not suffice, for films with spectra, and where VL_TRACER_VOLPATH replaces the tracers with light paths.
  * Nor is there one where def->tracer looks past media or subsurface materials of the world (VL_TRACER_TRAIT_NO_MEDIA):

@@ -38,7 +38,7 @@ static const double SURE = 0.85, BIASED = 2.0 / 3.0;
 static const double BLUR = 0.002;
 static const uint32_t seeds[2] = {0x72616365u, 0x61676169u}, tail_seed = 0x7461696cu;
 /* A sample is rare if it alone makes a coarse pixel RARE times as bright as it should be (tails.h). */
-static const double RARE = 4;
+static const double RARE = 4, DOUBT = 2;
 
 /* Rays are cheap in small worlds, and the rest of the work counts more. */
 typedef enum WorldSize {
@@ -225,7 +225,8 @@ static double error_of(Race *race, uint32_t t, double most) {
   return trimmed_mean(race->sorted, race->pixels, 0, (race->pixels + 999) / 1000);
 }
 
-/* The error that rare samples give an image of camera paths with the samples of the race. */
+/* The error that rare samples give an image of camera paths with the samples of the race, less DOUBT standard errors:
+ * few light paths find some of them. */
 static vlResult find_tail(Race *race, double *tail, vlError *error) {
   vlTails tails = {race->film.width,
                    race->film.height,
@@ -247,9 +248,12 @@ static vlResult find_tail(Race *race, double *tail, vlError *error) {
   if (result != VL_OK) return vl_fail(error, result, "the race of the tracers has no film");
   result = vl_render_pilot(race->world, &race->camera, film, &def, &pilot, NULL, error);
   if (result == VL_OK && vl_film_develop(film, NULL, &image) != VL_OK) result = vl_fail_memory(error);
-  *tail = 0;
-  for (size_t i = 0; result == VL_OK && i < race->pixels; i++) *tail += value_at(race, image, i, 0);
-  *tail /= (double)race->pixels * race->def.spp;
+  double sum = 0, squares = 0, samples = (double)race->pixels * race->def.spp;
+  for (size_t i = 0; result == VL_OK && i < race->pixels; i++) {
+    sum += value_at(race, image, i, 0) * race->def.spp;
+    squares += value_at(race, image, i, 1) * race->def.spp / VL_TAIL_SQUARES;
+  }
+  *tail = fmax(sum - DOUBT * sqrt(fmax(squares, 0)), 0) / (samples * race->def.spp);
   vl_image_destroy(image);
   vl_film_destroy(film);
   return result;

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stddef.h>
 
-/* The largest result: sums of colors are exact below 2^35 (splats.c). */
-static const double MOST = 0x1p30;
+/* Sums of colors are exact from 2^-50 to 2^35 (splats.c). */
+static const double MOST = 0x1p30, SQUARES = VL_TAIL_SQUARES;
 
 static uint32_t pixel_at(float x, uint32_t size) {
   return x > 0.0f ? ((double)x < size ? (uint32_t)x : size - 1) : 0;
@@ -29,7 +29,9 @@ void vl_tails_measure(const vlTails *tails, uint32_t n, const float *x, const fl
                       float *const color[3]) {
   for (uint32_t i = 0; i < n; i++) {
     const double rgb[3] = {(double)color[0][i], (double)color[1][i], (double)color[2][i]};
-    float result = (float)measure(tails, x[i], y[i], (double)odds[i], rgb);
-    for (int c = 0; c < 3; c++) color[c][i] = result;
+    double moment = measure(tails, x[i], y[i], (double)odds[i], rgb);
+    color[0][i] = (float)moment;
+    color[1][i] = (float)(moment * moment * SQUARES);
+    color[2][i] = 0.0f;
   }
 }

@@ -22,8 +22,9 @@ typedef struct vlTails {
 
 /* The squared relative error, as a variance per sample and the mean of three channels, that camera paths have by n
  * light paths that are connected to the camera at film points x, y. color: their radiance, weighted by the balance
- * heuristic against camera paths alone. odds: density of the camera paths over that of the light paths. The results
- * replace each of the three colors. */
+ * heuristic against camera paths alone. odds: density of the camera paths over that of the light paths. It
+ * replaces the first color, and its square times VL_TAIL_SQUARES the second; the third becomes 0. */
+#define VL_TAIL_SQUARES 0x1p-40
 void vl_tails_measure(const vlTails *tails, uint32_t n, const float *x, const float *y, const float *odds,
                       float *const color[3]);
 

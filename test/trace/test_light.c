@@ -256,7 +256,8 @@ static void one_side(void **state) {
           assert_true((pmf > 0) == (side == 0 || (side < 0) == (f->world->lights.items[k].corners[2] < 0)));
         sum += (double)pmf;
       }
-      assert_true(fabs(sum - 1) < 1e-5);
+      /* A branch may promise light that neither of its children has: such samples find none. */
+      assert_true(sum < 1 + 1e-5 && sum > (side ? 0 : 1 - 1e-5));
       if (!sky) judge(f, 51 + (unsigned)(side + 1), TESTS);
       end(f);
     }

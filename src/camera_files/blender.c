@@ -21,15 +21,13 @@ static vlResult read_blender(const vlCameraFile *file, const json_t *tree, vlCam
       VL_READ_FIELDS(file, tree, VL_FIELD_SIDE("resolution_x", &d->width), VL_FIELD_SIDE("resolution_y", &d->height));
   if (result == VL_OK)
     result = flat ? vl_camera_number(file, tree, "ortho_scale", &ortho) : vl_camera_number(file, tree, "lens", &lens);
-  const struct {
-    const char *key;
-    double *value;
-  } fields[] = {{"sensor_width", &sensor_width}, {"sensor_height", &sensor_height}, {"shift_x", &shift_x},
-                {"shift_y", &shift_y},           {"pixel_aspect_x", &aspect_x},     {"pixel_aspect_y", &aspect_y},
-                {"clip_start", &d->near_plane},  {"clip_end", &d->far_plane}};
-  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL(fields[i].key, fields[i].value),
-                            VL_FIELD_LIST("matrix_world", m, 16));
+  if (result == VL_OK)
+    result =
+        VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("sensor_width", &sensor_width),
+                       VL_FIELD_OPTIONAL("sensor_height", &sensor_height), VL_FIELD_OPTIONAL("shift_x", &shift_x),
+                       VL_FIELD_OPTIONAL("shift_y", &shift_y), VL_FIELD_OPTIONAL("pixel_aspect_x", &aspect_x),
+                       VL_FIELD_OPTIONAL("pixel_aspect_y", &aspect_y), VL_FIELD_OPTIONAL("clip_start", &d->near_plane),
+                       VL_FIELD_OPTIONAL("clip_end", &d->far_plane), VL_FIELD_LIST("matrix_world", m, 16));
   if (result != VL_OK) return result;
   if (!(lens > 0.0 && sensor_width > 0.0 && sensor_height > 0.0 && ortho > 0.0 && aspect_x > 0.0 && aspect_y > 0.0))
     return vl_camera_wrong(file, "blender: lens, sensor, scale and pixel aspect must be above zero");

@@ -20,8 +20,9 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *calibration
     result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("cx", &c[0]), VL_FIELD_OPTIONAL("cy", &c[1]),
                               VL_FIELD_OPTIONAL("b1", &b[0]), VL_FIELD_OPTIONAL(old ? "skew" : "b2", &b[1]));
   for (int i = 0; i < 6 && result == VL_OK; i++)
-    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL(names[i], &k[i]), VL_FIELD_OPTIONAL("p3", &more[0]),
-                              VL_FIELD_OPTIONAL("p4", &more[1]));
+    result = vl_camera_child_number(file, calibration, names[i], false, &k[i]);
+  if (result == VL_OK)
+    result = VL_READ_CHILDREN(file, calibration, VL_FIELD_OPTIONAL("p3", &more[0]), VL_FIELD_OPTIONAL("p4", &more[1]));
   if (result != VL_OK) return result;
   if (more[0] != 0.0 || more[1] != 0.0)
     return vl_camera_wrong_element(file, calibration, "p3 and p4 are no terms of velo's distortion");

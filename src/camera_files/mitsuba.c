@@ -7,7 +7,7 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -240,6 +240,25 @@ static vlResult read_fov(const Scene *scene, const json_t *sensor, const double 
                             vl_short_text(axis).text);
 }
 
+/* The numbers of a sensor, each optional. */
+static vlResult read_numbers(const Scene *scene, const json_t *sensor, const vlCameraField *rows) {
+  vlResult result = VL_OK;
+  for (; rows->key && result == VL_OK; rows++) result = number(scene, sensor, rows->key, rows->values);
+  return result;
+}
+
+/* The image is 2 units wide in camera space, scaled by the matrix, which loses its scale. */
+static void set_orthographic(double width, vlMat4 *m, vlCameraDef *d) {
+  double length[3];
+  for (int k = 0; k < 3; k++) {
+    length[k] = sqrt(m->m[k] * m->m[k] + m->m[4 + k] * m->m[4 + k] + m->m[8 + k] * m->m[8 + k]);
+    for (int i = 0; i < 12; i += 4) m->m[i + k] /= length[k];
+  }
+  d->projection = VL_PROJECTION_ORTHOGRAPHIC;
+  d->fx = 0.5 * width / length[0];
+  d->fy = 0.5 * width / length[1];
+}
+
 static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDef *d) {
   static const char *const types[] = {"perspective", "thinlens", "orthographic"};
   const vlCameraFile *file = scene->file;
@@ -247,7 +266,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   vlResult result = attribute(scene, sensor, "type", &type);
   if (result != VL_OK) return result;
   int kind = 0;
-  while (kind < 3 && !(vl_text_is(type, types[kind]))) kind++;
+  while (kind < 3 && !vl_text_is(type, types[kind])) kind++;
   if (kind == 3) {
     char known[300];
     vl_tell_names(known, sizeof known, type ? type : "", types, 3);
@@ -259,11 +278,11 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
   result = read_film(scene, sensor, size, crop);
   if (result == VL_OK && kind < 2) result = read_fov(scene, sensor, size, &f);
   if (result == VL_OK) result = to_world(scene, sensor, &m);
-  if (result == VL_OK) result = number(scene, sensor, "near_clip", &d->near_plane);
-  if (result == VL_OK) result = number(scene, sensor, "far_clip", &d->far_plane);
-  if (result == VL_OK) result = number(scene, sensor, "focus_distance", &d->focus_distance);
-  if (result == VL_OK) result = number(scene, sensor, "shutter_open", &d->shutter_open);
-  if (result == VL_OK) result = number(scene, sensor, "shutter_close", &d->shutter_close);
+  const vlCameraField fields[] = {
+      VL_FIELD("near_clip", &d->near_plane),          VL_FIELD("far_clip", &d->far_plane),
+      VL_FIELD("focus_distance", &d->focus_distance), VL_FIELD("shutter_open", &d->shutter_open),
+      VL_FIELD("shutter_close", &d->shutter_close),   {.key = NULL}};
+  if (result == VL_OK) result = read_numbers(scene, sensor, fields);
   if (result == VL_OK && kind == 0) result = number(scene, sensor, "principal_point_offset_x", &offset[0]);
   if (result == VL_OK && kind == 0) result = number(scene, sensor, "principal_point_offset_y", &offset[1]);
   if (result == VL_OK && kind == 1) result = number(scene, sensor, "aperture_radius", &d->lens_radius);
@@ -272,16 +291,7 @@ static vlResult read_sensor(const Scene *scene, const json_t *sensor, vlCameraDe
     return vl_camera_wrong_at(file, line_of(sensor), 0, "mitsuba: a thinlens needs its aperture_radius");
   if (kind == 1 && vl_is_unset(d->focus_distance)) d->focus_distance = isinf(d->far_plane) ? 1e4 : d->far_plane;
   d->fx = d->fy = f;
-  if (kind == 2) { /* orthographic: the image is 2 units wide in camera space, scaled by the matrix */
-    double length[3];
-    for (int k = 0; k < 3; k++) {
-      length[k] = sqrt(m.m[k] * m.m[k] + m.m[4 + k] * m.m[4 + k] + m.m[8 + k] * m.m[8 + k]);
-      for (int i = 0; i < 12; i += 4) m.m[i + k] /= length[k];
-    }
-    d->projection = VL_PROJECTION_ORTHOGRAPHIC;
-    d->fx = 0.5 * size[0] / length[0];
-    d->fy = 0.5 * size[0] / length[1];
-  }
+  if (kind == 2) set_orthographic(size[0], &m, d);
   d->cx = size[0] * (0.5 - offset[0]) - crop[0];
   d->cy = size[1] * (0.5 - offset[1]) - crop[1];
   d->width = (uint32_t)crop[2];

@@ -22,16 +22,32 @@ static vlResult read_value(const vlCameraFile *file, const json_t *parameters, c
   return vl_camera_number(file, field, "val", value);
 }
 
+/* Camera from world: a rotation vector and a translation; the origin without a transform. */
+static vlResult read_transform(const vlCameraFile *file, const json_t *transform, vlCameraDef *d) {
+  static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
+  const json_t *rotation = json_object_get(transform, "rotation");
+  const json_t *translation = json_object_get(transform, "translation");
+  double v[3] = {0.0}, t[3] = {0.0}, r[9];
+  vlResult result = VL_OK;
+  for (int i = 0; i < 3 && transform && result == VL_OK; i++) {
+    result = vl_camera_number(file, rotation, turns[i], &v[i]);
+    if (result == VL_OK) result = vl_camera_number(file, translation, shifts[i], &t[i]);
+  }
+  if (result != VL_OK) return result;
+  vl_rotation_from_vector(v, r);
+  vl_camera_set_pose(d, r, t);
+  return VL_OK;
+}
+
 static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCameraRecord *record) {
   static const char *const lens[] = {"k1", "k2", "p1", "p2", "k3", "k4",   "k5",
                                      "k6", "s1", "s2", "s3", "s4", "tauX", "tauY"};
-  static const char *const turns[] = {"rx", "ry", "rz"}, *const shifts[] = {"x", "y", "z"};
   const json_t *list = json_object_get(json_object_get(tree, "Calibration"), "cameras"),
                *camera = vl_camera_choose(file, list, NULL, record);
   vlCameraDef *d = &record->camera;
-  double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0}, v[3] = {0.0}, t[3] = {0.0}, r[9];
+  double f = 0.0, aspect = 1.0, cx = 0.0, cy = 0.0, k[14] = {0.0};
   if (!camera) return vl_camera_no_frame(file, "camera", record->frames);
-  const json_t *model, *parameters, *transform = json_object_get(camera, "transform");
+  const json_t *model, *parameters;
   vlResult result = vl_camera_field(file, camera, "model", &model);
   if (result != VL_OK) return result;
   const char *name = vl_camera_text(model, "polymorphic_name");
@@ -48,15 +64,10 @@ static vlResult read_calibio(const vlCameraFile *file, const json_t *tree, vlCam
   if (result == VL_OK) result = read_value(file, parameters, "cx", true, &cx);
   if (result == VL_OK) result = read_value(file, parameters, "cy", true, &cy);
   for (int i = 0; i < 14 && result == VL_OK; i++) result = read_value(file, parameters, lens[i], false, &k[i]);
-  for (int i = 0; i < 3 && transform && result == VL_OK; i++) {
-    result = vl_camera_number(file, json_object_get(transform, "rotation"), turns[i], &v[i]);
-    if (result == VL_OK) result = vl_camera_number(file, json_object_get(transform, "translation"), shifts[i], &t[i]);
-  }
+  if (result == VL_OK) result = read_transform(file, json_object_get(camera, "transform"), d);
   if (result != VL_OK) return result;
   vl_camera_set_centred(d, f, f * aspect, cx, cy);
   set_lens(k, 14, d);
-  vl_rotation_from_vector(v, r);
-  vl_camera_set_pose(d, r, t);
   return VL_OK;
 }
 

@@ -5,7 +5,7 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "camera_files/files.h"
+#include "camera_files/fields.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -156,22 +156,12 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
   vlCameraDef *d = &record->camera;
   double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0, stop = 0.0, focus = 0.0;
   double range[2], size[2], exposure = 0.0, rate = 24.0;
-  const struct {
-    const char *key;
-    double *value;
-  } fields[] = {{"focalLength", &focal},
-                {"horizontalAperture", &across},
-                {"verticalAperture", &down},
-                {"horizontalApertureOffset", &offset_x},
-                {"verticalApertureOffset", &offset_y},
-                {"fStop", &stop},
-                {"focusDistance", &focus},
-                {"exposure", &exposure},
-                {"shutter:open", &d->shutter_open},
-                {"shutter:close", &d->shutter_close}};
-  vlResult result = VL_OK;
-  for (size_t i = 0; i < VL_LENGTH(fields) && result == VL_OK; i++)
-    result = vl_camera_optional(file, prim, fields[i].key, fields[i].value);
+  vlResult result = VL_READ_FIELDS(
+      file, prim, VL_FIELD_OPTIONAL("focalLength", &focal), VL_FIELD_OPTIONAL("horizontalAperture", &across),
+      VL_FIELD_OPTIONAL("verticalAperture", &down), VL_FIELD_OPTIONAL("horizontalApertureOffset", &offset_x),
+      VL_FIELD_OPTIONAL("verticalApertureOffset", &offset_y), VL_FIELD_OPTIONAL("fStop", &stop),
+      VL_FIELD_OPTIONAL("focusDistance", &focus), VL_FIELD_OPTIONAL("exposure", &exposure),
+      VL_FIELD_OPTIONAL("shutter:open", &d->shutter_open), VL_FIELD_OPTIONAL("shutter:close", &d->shutter_close));
   if (result == VL_OK) result = vl_camera_optional(file, root, "timeCodesPerSecond", &rate);
   if (result == VL_OK && json_object_get(prim, "clippingRange")) {
     result = vl_camera_numbers(file, prim, "clippingRange", range, 2, 2, NULL);
@@ -282,11 +272,12 @@ static vlResult write_usd(const vlCameraFile *file, const vlCameraRecord *record
   if (timed) vl_camera_put(text, "    timeCodesPerSecond = 1\n");
   vl_camera_put(text, "    upAxis = \"Y\"\n)\n\ndef Camera \"");
   put_name(text, record->name);
-  vl_camera_put(text, "\"\n{\n    token projection = \"%s\"\n", flat ? "orthographic" : "perspective");
-  vl_camera_put(text, "    float focalLength = %.17g\n    float horizontalAperture = %.17g\n", focal, across);
-  vl_camera_put(text, "    float verticalAperture = %.17g\n", down);
-  vl_camera_put(text, "    float horizontalApertureOffset = %.17g\n", (0.5 * w - c.cx) * (across / w) + 0.0);
-  vl_camera_put(text, "    float verticalApertureOffset = %.17g\n", (c.cy - 0.5 * h) * (down / h) + 0.0);
+  const double film[] = {focal, across, down, (0.5 * w - c.cx) * (across / w), (c.cy - 0.5 * h) * (down / h)};
+  VL_PUT_FORM(text, record, &c,
+              "\"\n{\n    token projection = \"$kind\"\n    float focalLength = $film@0\n"
+              "    float horizontalAperture = $film@1\n    float verticalAperture = $film@2\n"
+              "    float horizontalApertureOffset = $film@3\n    float verticalApertureOffset = $film@4\n",
+              VL_WORD("kind", flat ? "orthographic" : "perspective"), VL_VALUES("film", film, 5));
   if (c.near_plane > 0.0 || !isinf(c.far_plane))
     vl_camera_put(text, "    float2 clippingRange = (%.17g, %.17g)\n", c.near_plane,
                   isinf(c.far_plane) ? 1e38 : c.far_plane);

@@ -271,8 +271,8 @@ VL_API vlResult vl_write_file(vlContext *context, const char *path, const void *
  * symbolic link, in the folder of its target. Files of running processes are kept. */
 VL_API void vl_remove_leftovers(const char *path);
 
-/** The value of a double in a def that is not given. */
-#define VL_UNSET ((double)__builtin_nanf(""))
+/** The value of a double in a def that is not given: a NaN with bits of its own. Other NaN are errors. */
+#define VL_UNSET ((double)__builtin_nanf("0x5e7"))
 
 #ifdef __cplusplus
 }

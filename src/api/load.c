@@ -1,5 +1,6 @@
 /* api/load.c: vl_scene_load: chooses the importer by the name of the scene file, and reads the camera that velo
  * wrote into a glTF file. */
+#include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
 
@@ -7,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/unset.h"
 #include "import/import.h"
 #include "scene/scene.h"
 #include "velo/camera_file.h"
@@ -47,6 +49,10 @@ static vlResult check_load(const vlScene *scene, const char *path, const vlLoadD
   vl_error_clear(error);
   if (!scene || !path) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: scene or path is null");
   if (def && def->cookie != VL_COOKIE_LOAD) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: " VL_BAD_COOKIE);
+  const double times[2] = {def ? def->time : VL_UNSET, def ? def->time_close : VL_UNSET};
+  for (int i = 0; i < 2; i++)
+    if (!vl_is_unset(times[i]) && !isfinite(times[i]))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: time is %g; it must be finite", times[i]);
   return vl_scene_result(scene, error);
 }
 

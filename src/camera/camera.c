@@ -63,8 +63,61 @@ static vlResult check_vector(const char *name, const double v[3], vlError *error
   return VL_OK;
 }
 
+/* Optional numbers may be left out, but a NaN is not left out. */
+static vlResult check_optional(const vlCameraDef *d, vlError *error) {
+  const vlLensDef *lens = &d->lens;
+  const struct {
+    const char *name;
+    double value;
+  } numbers[] = {
+      {"fov", d->fov},
+      {"view distance", d->view_distance},
+      {"zoom", d->zoom},
+      {"pixel size", d->pixel_size},
+      {"focal_mm", d->focal_mm},
+      {"sensor_width_mm", d->sensor_width_mm},
+      {"fx", d->fx},
+      {"fy", d->fy},
+      {"skew", d->skew},
+      {"cx", d->cx},
+      {"cy", d->cy},
+      {"screen_min_x", d->screen_min_x},
+      {"screen_max_x", d->screen_max_x},
+      {"screen_min_y", d->screen_min_y},
+      {"screen_max_y", d->screen_max_y},
+      {"focus distance", d->focus_distance},
+      {"f-number", lens->f_number},
+      {"unit_mm", lens->unit_mm},
+      {"focus_point", lens->focus_point[0]},
+      {"focus_point", lens->focus_point[1]},
+      {"focus_point", lens->focus_point[2]},
+      {"focus_pixel", lens->focus_pixel[0]},
+      {"focus_pixel", lens->focus_pixel[1]},
+      {"iso", lens->iso},
+      {"seconds", lens->seconds},
+      {"roll_close", d->roll_close},
+      {"pose_times", d->pose_times[0]},
+      {"pose_times", d->pose_times[1]},
+      {"shape", d->shape[0]},
+      {"shape", d->shape[1]},
+      {"max_angle", d->max_angle},
+      {"convergence", d->stereo.convergence},
+  };
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+    if (isnan(numbers[i].value) && !vl_is_unset(numbers[i].value))
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is NaN; it must be a number or VL_UNSET", numbers[i].name);
+  if (isinf(d->stereo.convergence) || !isfinite(d->stereo.interocular))
+    return vl_fail(error, VL_ERROR_ARGUMENT,
+                   "camera: the interocular distance is %g and the convergence %g; both must "
+                   "be finite",
+                   d->stereo.interocular, d->stereo.convergence);
+  return VL_OK;
+}
+
 /* Checks all parameters except intrinsics and pose. */
 static vlResult check_rest(const vlCameraDef *d, vlError *error) {
+  vlResult optional = check_optional(d, error);
+  if (optional != VL_OK) return optional;
   if (!vl_projection_row(d->projection))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
   if ((uint32_t)d->fov_axis > VL_FOV_LARGER)

@@ -3,12 +3,8 @@
 #ifndef CAMERA_PARTS_H
 #define CAMERA_PARTS_H
 
+#include "base/unset.h"
 #include "velo/camera.h"
-
-/* Returns whether a value of a def is VL_UNSET (not given). */
-static inline bool vl_is_unset(double value) {
-  return value != value;
-}
 
 /* Sets shape, and the distortion's coefficients and tilt. Checks their ranges and counts. */
 vlResult vl_camera_model(const vlCameraDef *def, vlCamera *camera, vlError *error);

@@ -94,7 +94,8 @@ vlResult vl_autofocus(const vlWorld *world, const vlCamera *camera, double x, do
 vlResult vl_camera_autofocus(const vlWorld *world, vlCamera *camera, vlError *error) {
   vl_error_clear(error);
   if (!world || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "camera autofocus: world or camera is null");
-  double *pixel = camera->lens.focus_pixel, distance;
+  double *pixel = camera->lens.focus_pixel;
+  double distance = 0;
   if (vl_is_unset(pixel[0]) || vl_is_unset(pixel[1])) return VL_OK;
   vlResult result = vl_autofocus(world, camera, pixel[0], pixel[1], &distance, error);
   if (result != VL_OK) return result;

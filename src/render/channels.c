@@ -9,6 +9,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/free.h"
+#include "base/unset.h"
 #include "render/channel_pass.h"
 
 /* ---- which channels there are ------------------------------------------------------------------------------------ */
@@ -93,6 +94,8 @@ static vlResult check(const vlWorld *world, const vlCamera *camera, const vlChan
                       vlImage **ids, vlError *error) {
   if (!world || !camera || !def) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: world, camera or def is null");
   if (def->cookie != VL_COOKIE_CHANNELS) return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: " VL_BAD_COOKIE);
+  if (!vl_is_unset(def->time) && !isfinite(def->time))
+    return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: time is %g; it must be finite", def->time);
   if (def->channels == 0 || def->channels >> VL_CHANNEL_COUNT)
     return vl_fail(error, VL_ERROR_ARGUMENT, "ground truth: no such channels: %#x", def->channels);
   const uint32_t *c = def->crop;

@@ -12,6 +12,7 @@
 #include "base/context.h"
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/unset.h"
 #include "render/block.h"
 #include "render/support.h"
 #include "velo/camera.h"
@@ -386,7 +387,7 @@ vlResult vl_choose_tracer(const vlWorld *world, const vlCamera *camera, const vl
   race.pixels = (size_t)race.film.width * race.film.height;
   race.def.first_sample = race.def.sequence = 0;
   race.def.noise = race.def.time_limit = 0;
-  race.def.merge_radius *= race.factor; /* as many photons within it as in the image; unset stays unset */
+  if (!vl_is_unset(race.def.merge_radius)) race.def.merge_radius *= race.factor; /* as many photons within it */
   if (vl_camera_coarse(camera, race.factor, &race.camera) != VL_OK)
     return vl_fail(error, VL_ERROR_ARGUMENT, "choose: the camera has no coarse image");
   vlResult result = run_race(&race, film, choice, error);

@@ -95,7 +95,7 @@ vlResult vl_render_check(const vlWorld *world, const vlCamera *camera, vlFilm *f
                    def->noise);
   if (def->max_depth > 4096)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: max_depth %u is above 4096", def->max_depth);
-  if (def->merge_radius <= 0 || def->merge_radius > 3e38)
+  if (!vl_is_unset(def->merge_radius) && !(def->merge_radius > 0 && def->merge_radius <= 3e38))
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: merge_radius %g is not a radius", def->merge_radius);
   if (def->light_paths != VL_AS_MANY_AS_PIXELS && def->light_paths > VL_MOST_LIGHT_PATHS)
     return vl_fail(error, VL_ERROR_ARGUMENT, "render: light_paths %u is above %u", def->light_paths,

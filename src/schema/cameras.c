@@ -129,8 +129,9 @@ VL_KIND_ROW(realistic, .name = "realistic", .description = "a lens of many eleme
                 "natural vignetting: the image darkens with cos^4 of the angle from the axis")
 #define LENS                                                                                                           \
   NUMBER("lensradius", lens_radius, "radius of the lens, scene units; 0: a pinhole", VL_FROM(0)),                      \
-      OPTIONAL("focusdistance", focus_distance, "distance to the plane in focus, scene units; unset: infinity",        \
-               .alias = "focaldistance"),                                                                              \
+      PARAMETER(DOUBLE, "focusdistance", focus_distance,                                                               \
+                "distance to the plane in focus, scene units; unset: infinity", .alias = "focaldistance",              \
+                .flags = VL_PARAMETER_UNSET | VL_PARAMETER_INFINITE),                                                  \
       OPTIONAL("fnumber", lens.f_number, "f-number: focal length divided by the lens's diameter; replaces lensradius", \
                .unit = NULL),                                                                                          \
       NUMBER("unitmm", lens.unit_mm, "length of one scene unit", VL_DEFAULT(1000), .unit = "mm"),                      \

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/unset.h"
 #include "schema/schema.h"
 
 static bool has_range(const vlParameter *p) {
@@ -27,7 +28,7 @@ static void put_range(const vlParameter *p, char *text, size_t size) {
 }
 
 static bool check_number(const vlParameter *p, double x, const char *what, char message[200]) {
-  if ((p->flags & VL_PARAMETER_UNSET) && isnan(x)) return true;
+  if ((p->flags & VL_PARAMETER_UNSET) && vl_is_unset(x)) return true;
   bool finite = isfinite(x) || ((p->flags & VL_PARAMETER_INFINITE) && isinf(x));
   if (!finite) {
     snprintf(message, 200, "%s: parameter \"%s\" is not finite", what, vl_parameter_label(p));
@@ -53,6 +54,11 @@ bool vl_parameter_check(const vlParameter *p, const void *def, const char *what,
   if (p->type == VL_PARAMETER_FLOAT3) {
     for (int i = 0; i < 3; i++)
       if (!check_number(p, (double)((const float *)(const void *)at)[i], what, message)) return false;
+    return true;
+  }
+  if (p->type == VL_PARAMETER_DOUBLE3) {
+    for (int i = 0; i < 3; i++)
+      if (!check_number(p, ((const double *)(const void *)at)[i], what, message)) return false;
     return true;
   }
   if (p->type == VL_PARAMETER_CHOICE) {

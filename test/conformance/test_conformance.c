@@ -3,6 +3,7 @@
 #include "cameras.h"
 #include "conformance.h"
 #include "files.h"
+#include "hostile.h"
 #include "lights.h"
 #include "materials.h"
 #include "parameters.h"
@@ -44,6 +45,8 @@ int main(void) {
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(laws_of_media),
       cmocka_unit_test(laws_of_tracers),
+      cmocka_unit_test(hostile_defs),
+      cmocka_unit_test(hostile_files),
   };
   return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -98,6 +98,19 @@ static Mean mean_medium(const char *kind, const MediumCase *c, const char *param
   return mean_image(text, NULL, spp);
 }
 
+/* The light that passes without being scattered, where the medium scatters what it absorbs by `absorbs`: no bounce. */
+static Mean mean_unscattered(const char *kind, const MediumCase *c) {
+  static char text[TEXT];
+  char all[2000];
+  snprintf(all, sizeof all, "%s%s", c->shape, c->absorbs);
+  for (char *at = all; (at = strstr(at, "sigma_")); at += 7) at[6] = at[6] == 'a' ? 's' : 'a';
+  scene_text(text, medium_form, kind, all);
+  char *depth = strstr(text, "maxdepth\" 200");
+  assert_non_null(depth);
+  memcpy(strstr(depth, "200"), "  0", 3);
+  return mean_image(text, NULL, 32);
+}
+
 static void laws_of_media(void **state) {
   (void)state;
   const vlKindFamily *family = vl_kind_family_find("media");
@@ -114,6 +127,10 @@ static void laws_of_media(void **state) {
     Mean passes = mean_medium(name, c, c->absorbs, 16);
     if (c->transmittance > 0 && !mean_is(&passes, c->transmittance, 2e-3))
       broken("media", name, "lets %.4f of the light pass, not %.4f", mean_of(&passes), c->transmittance);
+    Mean unscattered = mean_unscattered(name, c);
+    if (!mean_agrees(&unscattered, &passes, 2e-3))
+      broken("media", name, "absorbs 1 - %.4f of the light, but scatters 1 - %.4f", mean_of(&passes),
+             mean_of(&unscattered));
     if (!(mean_of(&passes) < 0.98 && mean_of(&passes) > 0.001))
       broken("media", name, "lets %.4f of the light pass", mean_of(&passes));
   }
@@ -149,7 +166,7 @@ static const TracerCase volpath_tracer = TRANSPORT;
 static const TracerCase bidirectional_tracer = TRANSPORT;
 static const TracerCase merging_tracer = TRANSPORT;
 static const TracerCase sppm_tracer = TRANSPORT;
-static const TracerCase light_path_tracer = TRANSPORT;
+static const TracerCase light_path_tracer = {.sky = 0.5, .lamp = 0.125, .spp = 512};
 static const TracerCase random_walk_tracer = {.sky = 0.5, .lamp = 0.125, .spp = 1024};
 
 #define TRACER_CASE(NAME, name) &name##_tracer,

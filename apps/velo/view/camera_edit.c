@@ -100,7 +100,7 @@ static bool set_s(Edit *e, const MessageField *f) {
 static bool set_fov(Edit *e, const MessageField *f) {
   drop_focal(e->def);
   if (!one(f, &e->def->fov)) return false;
-  e->def->fov *= degree;
+  if (!f->null) e->def->fov *= degree;
   return true;
 }
 static bool set_fov_axis(Edit *e, const MessageField *f) {
@@ -199,7 +199,7 @@ static bool set_shape(Edit *e, const MessageField *f) {
 }
 static bool set_max_angle(Edit *e, const MessageField *f) {
   if (!one(f, &e->def->max_angle)) return false;
-  e->def->max_angle *= degree;
+  if (!f->null) e->def->max_angle *= degree;
   return true;
 }
 static bool set_distortion(Edit *e, const MessageField *f) {

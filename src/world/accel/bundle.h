@@ -11,11 +11,9 @@ bool vl_accel_bundled(const vlWorldShape *shape);
 uint32_t vl_accel_find_bundle(const vlWorld *world, const vlWorldGroup *group, vlAccelBundle *bundle,
                               uint32_t *members);
 
-/* The shape of a hit with Embree's numbers, and its primitive. inst: number of the instance, or VL_NONE. *prim is that
- * of the geometry and becomes that of the shape. */
-static inline const vlWorldShape *vl_accel_shape(const vlWorld *world, uint32_t inst, uint32_t geometry,
-                                                 uint32_t *prim) {
-  uint32_t group = inst == VL_NONE ? 0 : world->instances.items[inst - world->groups.items[0].count].group;
+/* The shape of a geometry of a group. *prim is that of the geometry and becomes that of the shape. */
+static inline const vlWorldShape *vl_accel_group_shape(const vlWorld *world, uint32_t group, uint32_t geometry,
+                                                       uint32_t *prim) {
   const vlAccelBundle *bundle = &world->accel.bundles[group];
   uint32_t index = world->groups.items[group].shapes[geometry];
   if (bundle->members && geometry == bundle->geometry) {
@@ -23,6 +21,13 @@ static inline const vlWorldShape *vl_accel_shape(const vlWorld *world, uint32_t 
     *prim = 0;
   }
   return &world->shapes.items[index];
+}
+
+/* The shape of a hit with Embree's numbers, and its primitive. inst: number of the instance, or VL_NONE. */
+static inline const vlWorldShape *vl_accel_shape(const vlWorld *world, uint32_t inst, uint32_t geometry,
+                                                 uint32_t *prim) {
+  uint32_t group = inst == VL_NONE ? 0 : world->instances.items[inst - world->groups.items[0].count].group;
+  return vl_accel_group_shape(world, group, geometry, prim);
 }
 
 #endif

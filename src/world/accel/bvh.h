@@ -9,6 +9,7 @@
 
 #include "base/isa.h"
 #include "world/accel/accel.h"
+#include "world/shape/moving.h"
 
 enum {
   VL_BVH_WIDTH = 8, /* children of a node */
@@ -48,11 +49,20 @@ typedef struct vlBvhItem {
   uint32_t geometry, primitive;
 } vlBvhItem;
 
-/* Triangles at rest, as a structure of arrays. Places without a triangle have three equal corners. */
+/* Triangles, as a structure of arrays. Of moving ones, with their corners at time 0. The last fills places that are
+ * left over. */
 typedef struct vlBvhFour {
   float corner[3][3][VL_BVH_FOUR]; /* [corner][axis] */
   uint32_t geometry[VL_BVH_FOUR], primitive[VL_BVH_FOUR];
 } vlBvhFour;
+/* Puts the corners of a triangle at `time` into place k. */
+static inline void vl_bvh_place(const vlWorldShape *s, uint32_t prim, float time, vlBvhFour *four, uint32_t k) {
+  for (size_t c = 0; c < 3; c++) {
+    float room[3];
+    const float *at = vl_vertex_at(s, s->indices[3 * (size_t)prim + c], time, room);
+    for (size_t i = 0; i < 3; i++) four->corner[c][i][k] = at[i];
+  }
+}
 /* Added to `geometry` of triangles of which a ray may pass: they have an alpha, one side, or an interface. */
 #define VL_BVH_ASKS 0x80000000u
 
@@ -67,16 +77,15 @@ typedef struct vlBvh {
   atomic_uint users;
   bool moves;
   uintptr_t root;
-  float low[3], high[3]; /* box of all primitives over all times; empty: low > high */
-  float reach;           /* largest coordinate of the box, without sign */
-  vlBvhBlock *blocks;    /* nodes and leaves */
+  float low[3], high[3];             /* box of all primitives over all times; empty: low > high */
+  float reach;                       /* largest coordinate of the box, without sign */
+  struct vlBvhBlock *_Atomic blocks; /* nodes and leaves */
   float (*maps)[12]; /* of a tree of instances: group from world, as Embree computes it; unused for moving instances */
 } vlBvh;
 
-/* Builds the tree of group k, and that of all instances of a world whose groups are built. *tree is null after an
- * error: MEMORY, CANCELLED. */
-vlResult vl_bvh_make_group(const struct vlWorld *world, uint32_t k, vlBvh **tree, vlError *error);
-vlResult vl_bvh_make_instances(const struct vlWorld *world, vlBvh **tree, vlError *error);
+/* Builds the tree of a group or, for VL_NONE, that of all instances of a world whose groups are built. *tree is null
+ * after an error: MEMORY, CANCELLED. */
+vlResult vl_bvh_make(const struct vlWorld *world, uint32_t group, vlBvh **tree, vlError *error);
 void vl_bvh_release(vlContext *context, vlBvh *tree); /* null is allowed */
 
 /* Group from world for an instance, and for a moving one at `time`, by the operations of Embree: a ray is in the same

@@ -14,12 +14,6 @@
 
 enum { W = VL_BVH_WIDTH, F = VL_BVH_FOUR };
 
-/* The nearest hit so far. instance: index; VL_NONE for none. */
-typedef struct Hit {
-  float t;
-  uint32_t instance, geometry, primitive;
-} Hit;
-
 /* A ray in the space of a tree. */
 typedef struct Ray {
   float o[3], d[3];
@@ -36,7 +30,7 @@ typedef struct Query {
   uint32_t id;       /* of the ray */
   uint32_t instance; /* in which the ray is; VL_NONE: in none */
   float t_min, limit, time;
-  Hit hit;
+  vlNearest nearest; /* its instance is an index; VL_NONE for none */
 } Query;
 
 /* A place of the stack: the tree below `child` begins at the distance `near`. */
@@ -112,6 +106,18 @@ static inline float dot(float ax, float ay, float az, float bx, float by, float 
   return ax * bx + (ay * by + az * bz);
 }
 
+/* Twice the volume of the origin, the edge from q to p, and the direction. */
+static inline float side(float px, float py, float pz, float qx, float qy, float qz, float dx, float dy, float dz) {
+  float ex = px - qx, ey = py - qy, ez = pz - qz, sx = px + qx, sy = py + qy, sz = pz + qz;
+  return dot(ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx, dx, dy, dz);
+}
+
+/* A component of the normal: of two cross products of edges a, b, c that with the smaller products. */
+static inline float normal(float ay, float az, float by, float bz, float cy, float cz) {
+  float ab = az * by, bc = bz * cy;
+  return fabsf(ab) < fabsf(bc) ? ay * bz - ab : by * cz - bc;
+}
+
 /* Which of four triangles the ray meets between low and high, one bit each. t: where. */
 static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low, float high, float t[F]) {
   float ox = r->o[0], oy = r->o[1], oz = r->o[2], dx = r->d[0], dy = r->d[1], dz = r->d[2];
@@ -121,26 +127,14 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
     float ax = c[0][0][k] - ox, ay = c[0][1][k] - oy, az = c[0][2][k] - oz;
     float bx = c[1][0][k] - ox, by = c[1][1][k] - oy, bz = c[1][2][k] - oz;
     float cx = c[2][0][k] - ox, cy = c[2][1][k] - oy, cz = c[2][2][k] - oz;
-    float e0x = cx - ax, e0y = cy - ay, e0z = cz - az;
-    float e1x = ax - bx, e1y = ay - by, e1z = az - bz;
-    float e2x = bx - cx, e2y = by - cy, e2z = bz - cz;
-    float sx = cx + ax, sy = cy + ay, sz = cz + az;
-    float u = dot(e0y * sz - e0z * sy, e0z * sx - e0x * sz, e0x * sy - e0y * sx, dx, dy, dz);
-    sx = ax + bx;
-    sy = ay + by;
-    sz = az + bz;
-    float v = dot(e1y * sz - e1z * sy, e1z * sx - e1x * sz, e1x * sy - e1y * sx, dx, dy, dz);
-    sx = bx + cx;
-    sy = by + cy;
-    sz = bz + cz;
-    float w = dot(e2y * sz - e2z * sy, e2z * sx - e2x * sz, e2x * sy - e2y * sx, dx, dy, dz);
+    float u = side(cx, cy, cz, ax, ay, az, dx, dy, dz);
+    float v = side(ax, ay, az, bx, by, bz, dx, dy, dz);
+    float w = side(bx, by, bz, cx, cy, cz, dx, dy, dz);
     float wide = 0x1p-23f * fabsf(u + v + w);
     float least = smaller(smaller(u, v), w), most = larger(larger(u, v), w);
-    /* the normal: of two cross products of edges, per axis that with the smaller products */
-    float abx = e0z * e1y, aby = e0x * e1z, abz = e0y * e1x, bcx = e1z * e2y, bcy = e1x * e2z, bcz = e1y * e2x;
-    float nx = fabsf(abx) < fabsf(bcx) ? e0y * e1z - abx : e1y * e2z - bcx;
-    float ny = fabsf(aby) < fabsf(bcy) ? e0z * e1x - aby : e1z * e2x - bcy;
-    float nz = fabsf(abz) < fabsf(bcz) ? e0x * e1y - abz : e1x * e2y - bcz;
+    float nx = normal(cy - ay, cz - az, ay - by, az - bz, by - cy, bz - cz);
+    float ny = normal(cz - az, cx - ax, az - bz, ax - bx, bz - cz, bx - cx);
+    float nz = normal(cx - ax, cy - ay, ax - bx, ay - by, bx - cx, by - cy);
     float speed = dot(nx, ny, nz, dx, dy, dz), height = dot(ax, ay, az, nx, ny, nz), at = height / speed;
     t[k] = at;
     int inside = (least >= -wide) | (most <= wide), crosses = (speed != 0.0f) & (fabsf(speed) < 0x1p127f);
@@ -151,69 +145,55 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
 
-/* The rule of nearest.h. */
 static inline void offer(Query *q, float t, uint32_t geometry, uint32_t primitive) {
-  const Hit *b = &q->hit;
-  if (t > b->t) return;
-  if (t == b->t && (q->instance != b->instance ? q->instance > b->instance
-                    : geometry != b->geometry  ? geometry > b->geometry
-                                               : primitive >= b->primitive))
-    return;
-  q->hit = (Hit){t, q->instance, geometry, primitive};
-  q->limit = t * VL_NEAREST_WINDOW;
+  vlNearest hit = {.t = t, .instance = q->instance, .geometry = geometry, .primitive = primitive};
+  if (vl_nearest_offer(&q->nearest, &hit)) q->limit = t * VL_NEAREST_WINDOW;
 }
 
 /* The shape of a primitive where the ray is; *prim becomes that of the shape. */
 static const vlWorldShape *shape_of(const Query *q, uint32_t geometry, uint32_t *prim) {
-  uint32_t own = q->world->groups.items[0].count;
-  return vl_accel_shape(q->world, q->instance == VL_NONE ? VL_NONE : own + q->instance, geometry, prim);
+  uint32_t group = q->instance == VL_NONE ? 0 : q->world->instances.items[q->instance].group;
+  return vl_accel_group_shape(q->world, group, geometry, prim);
 }
 
-/* Takes the hit of a triangle. any: returns whether it blocks the ray; else false. */
-static inline bool take(Query *q, uint32_t geometry, uint32_t primitive, float t, bool asks, bool learns, bool any) {
+/* Takes the hit of a triangle. Returns whether it blocks the ray, if any does. */
+static inline bool take(Query *q, uint32_t geometry, uint32_t primitive, float t, bool moving, bool any) {
+  bool asks = (geometry & VL_BVH_ASKS) != 0;
+  geometry &= ~VL_BVH_ASKS;
   if (asks) {
     uint32_t prim = primitive;
     const vlWorldShape *shape = shape_of(q, geometry, &prim);
     if (vl_triangle_lets_pass(q->world, q->rays, q->id, q->instance, shape, prim, any)) return false;
   }
-  if (any) {
-    if (learns && q->occluders && q->instance == VL_NONE) vl_occluders_learn(q->occluders, geometry, primitive);
-    return true;
-  }
-  offer(q, t, geometry, primitive);
-  return false;
+  if (!any)
+    offer(q, t, geometry, primitive);
+  else if (q->occluders && !asks && !moving && q->instance == VL_NONE)
+    vl_occluders_learn(q->occluders, geometry, primitive);
+  return any;
 }
 
-static inline bool meet_fours(Query *q, const vlBvhFour *f, uint32_t count, const Ray *r, bool any) {
-  for (; count > 0; count--, f++) {
+/* Moves triangles to the ray's time. */
+static __attribute__((noinline)) void move(const Query *q, vlBvhFour *f) {
+  for (uint32_t k = 0; k < F; k++) {
+    uint32_t prim = f->primitive[k];
+    const vlWorldShape *s = shape_of(q, f->geometry[k] & ~VL_BVH_ASKS, &prim);
+    vl_bvh_place(s, prim, q->time, f, k);
+  }
+}
+
+static inline bool meet_fours(Query *q, const vlBvhFour *f, uint32_t count, bool moving, const Ray *r, bool any) {
+  for (uint32_t i = 0; i < count; i++) {
+    const vlBvhFour *at = &f[i];
+    vlBvhFour now;
     float t[F];
-    for (uint32_t met = meet_four(f->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
-      int k = __builtin_ctz(met);
-      bool asks = (f->geometry[k] & VL_BVH_ASKS) != 0;
-      if (take(q, f->geometry[k] & ~VL_BVH_ASKS, f->primitive[k], t[k], asks, !asks, any)) return true;
+    if (moving) {
+      now = *at;
+      move(q, &now);
+      at = &now;
     }
-  }
-  return false;
-}
-
-/* Four at a time; places that are left over have three equal corners. */
-static bool meet_moving(Query *q, const vlBvhItem *items, uint32_t count, const Ray *r, bool any) {
-  for (uint32_t first = 0; first < count; first += F) {
-    float corners[3][3][F] = {0}, t[F];
-    for (uint32_t k = 0; k < F && first + k < count; k++) {
-      uint32_t prim = items[first + k].primitive;
-      const vlWorldShape *s = shape_of(q, items[first + k].geometry & ~VL_BVH_ASKS, &prim);
-      for (int c = 0; c < 3; c++) {
-        float room[3];
-        const float *at = vl_vertex_at(s, s->indices[3 * (size_t)prim + (size_t)c], q->time, room);
-        for (int i = 0; i < 3; i++) corners[c][i][k] = at[i];
-      }
-    }
-    for (uint32_t met = meet_four(corners, r, q->t_min, q->limit, t); met; met &= met - 1) {
+    for (uint32_t met = meet_four(at->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
       int k = __builtin_ctz(met);
-      vlBvhItem at = items[first + (uint32_t)k];
-      if (take(q, at.geometry & ~VL_BVH_ASKS, at.primitive, t[k], (at.geometry & VL_BVH_ASKS) != 0, false, any))
-        return true;
+      if (take(q, at->geometry[k], at->primitive[k], t[k], moving, any)) return true;
     }
   }
   return false;
@@ -263,9 +243,9 @@ static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray
 
 static inline bool meet_leaf(Query *q, const vlBvh *tree, uintptr_t child, const Ray *r, bool any) {
   uint32_t count = vl_bvh_count(child);
-  if (vl_bvh_kind(child) == VL_BVH_FOURS) return meet_fours(q, vl_bvh_at(child), count, r, any);
+  vlBvhKind kind = vl_bvh_kind(child);
+  if (kind != VL_BVH_OTHERS) return meet_fours(q, vl_bvh_at(child), count, kind == VL_BVH_MOVING, r, any);
   const vlBvhItem *items = vl_bvh_at(child);
-  if (vl_bvh_kind(child) == VL_BVH_MOVING) return meet_moving(q, items, count, r, any);
   for (uint32_t k = 0; k < count; k++)
     if (tree->maps ? meet_instance(q, tree, items[k].geometry, r, any) : meet_shape(q, items[k], any)) return true;
   return false;
@@ -285,7 +265,7 @@ static inline Place *push(Place *top, const vlBvhNode *node, uint32_t met, const
 
 static inline __attribute__((always_inline)) bool walk(Query *q, const vlBvh *tree, const Ray *r, bool any) {
   Place stack[VL_BVH_STACK], *top = stack;
-  *top++ = (Place){tree->root, 0.0f};
+  if (tree->root) *top++ = (Place){tree->root, 0.0f};
   while (top > stack) {
     Place at = *--top;
     if (!any && at.near > q->limit) continue;
@@ -328,7 +308,7 @@ static bool trace(Query *q, uint32_t i, bool any) {
   q->t_min = rays->t_min ? rays->t_min[i] : 0.0f;
   q->limit = rays->t_max ? rays->t_max[i] : __builtin_inff();
   q->time = rays->time ? rays->time[i] : 0.0f;
-  q->hit = (Hit){__builtin_inff(), VL_NONE, VL_NONE, VL_NONE};
+  q->nearest = (vlNearest){.t = __builtin_inff(), .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
   if (!is_usual(o, d, 1.8e18f)) return false;
   const vlBvh *trees[2] = {a->groups[0], a->scene};
   for (int k = 0; k < 2 && trees[k]; k++) {
@@ -344,12 +324,12 @@ static void closest(const vlWorld *world, uint32_t n, const vlRays *rays, uint32
   for (uint32_t i = 0; i < n; i++) {
     trace(&q, i, false);
     shape[i] = VL_NONE;
-    prim[i] = q.hit.primitive;
-    instance[i] = q.hit.instance;
-    t[i] = q.hit.t;
-    if (q.hit.geometry == VL_NONE) continue;
-    q.instance = q.hit.instance;
-    shape[i] = (uint32_t)(shape_of(&q, q.hit.geometry, &prim[i]) - world->shapes.items);
+    prim[i] = q.nearest.primitive;
+    instance[i] = q.nearest.instance;
+    t[i] = q.nearest.t;
+    if (q.nearest.geometry == VL_NONE) continue;
+    q.instance = q.nearest.instance;
+    shape[i] = (uint32_t)(shape_of(&q, q.nearest.geometry, &prim[i]) - world->shapes.items);
   }
 }
 

@@ -36,6 +36,7 @@ static vlBvhItem item_of(const Primitive *p) {
 /* Primitives begin to end - 1. axis -1: split in the middle. */
 typedef struct Range {
   uint32_t begin, end, depth;
+  uint32_t kinds;   /* one bit each */
   Box box, centers; /* centers: of the sums low + high */
   bool leaf;
   int axis;
@@ -43,39 +44,24 @@ typedef struct Range {
   int bin;          /* the first of the right half */
 } Range;
 
-/* What is built from a range. */
-typedef struct Built {
-  uintptr_t child;
-  Box box[2]; /* at times 0 and 1 */
-} Built;
-
-/* A range that is built in parallel. */
+/* A range that is built in parallel, and where its address belongs. */
 typedef struct Part {
   Range range;
-  Built built;
+  uintptr_t *child;
 } Part;
-
-/* A node above the parts. Children are nodes of this kind, or parts, counted from PARTS. */
-enum { PARTS = 1 << 30 };
-typedef struct Upper {
-  uint32_t count, child[VL_BVH_WIDTH];
-} Upper;
 
 /* A worker's memory for nodes and leaves: the rest of a block. */
 typedef struct Arena {
   char *at, *end;
-  vlBvhBlock *blocks;
 } Arena;
 
 typedef struct Builder {
   const vlWorld *world;
-  const vlWorldGroup *group; /* null: the world's instances */
-  const vlAccelBundle *bundle;
+  uint32_t group; /* VL_NONE: the world's instances */
   vlBvh *tree;
   uint32_t count, part_size;
   Primitive *primitives;
   Arena *arenas; /* one per worker */
-  VL_ARRAY(Upper) uppers;
   VL_ARRAY(Part) parts;
   atomic_bool failed; /* no memory */
 } Builder;
@@ -88,8 +74,8 @@ static void *take(Builder *b, Arena *arena, size_t size) {
     size_t room = b->count < BLOCK / 256 ? 1024 + 128 * (size_t)b->count : BLOCK;
     vlBvhBlock *block = vl_alloc(b->world->context, sizeof *block + VL_BVH_ALIGN + room);
     if (!block) return NULL;
-    block->next = arena->blocks;
-    arena->blocks = block;
+    block->next = atomic_load(&b->tree->blocks);
+    while (!atomic_compare_exchange_weak(&b->tree->blocks, &block->next, block)) continue;
     arena->at = (char *)(block + 1);
     arena->at += VL_BVH_ALIGN - (uintptr_t)arena->at % VL_BVH_ALIGN;
     arena->end = arena->at + room;
@@ -102,12 +88,8 @@ static void *take(Builder *b, Arena *arena, size_t size) {
 /* ---- boxes ------------------------------------------------------------------------------------------------------- */
 
 static Box empty_box(void) {
-  Box b;
-  for (int i = 0; i < 4; i++) {
-    b.low[i] = INFINITY;
-    b.high[i] = -INFINITY;
-  }
-  return b;
+  const float most = INFINITY;
+  return (Box){{most, most, most, most}, {-most, -most, -most, -most}};
 }
 
 static inline void extend(Box *b, const Box *other) {
@@ -122,52 +104,16 @@ static inline void extend_point(Box *b, const float p[3]) {
   }
 }
 
-static inline void extend_center(Box *b, const Box *other) {
-  for (int i = 0; i < 3; i++) {
-    float c = other->low[i] + other->high[i];
-    b->low[i] = c < b->low[i] ? c : b->low[i];
-    b->high[i] = c > b->high[i] ? c : b->high[i];
-  }
-}
-
 static float area(const Box *b) {
   float x = b->high[0] - b->low[0], y = b->high[1] - b->low[1], z = b->high[2] - b->low[2];
   return x < 0 ? 0 : x * y + y * z + z * x;
 }
 
-/* Makes the two boxes wide enough that the box between them at `time` contains `at`. */
-static void contain(Box box[2], float time, const Box *at) {
-  for (int i = 0; i < 3; i++) {
-    float low = box[0].low[i] * (1 - time) + box[1].low[i] * time - at->low[i];
-    float high = at->high[i] - (box[0].high[i] * (1 - time) + box[1].high[i] * time);
-    for (int k = 0; k < 2; k++) {
-      box[k].low[i] -= fmaxf(low, 0);
-      box[k].high[i] += fmaxf(high, 0);
-    }
-  }
-}
-
-/* By several rounding errors: of the sums above, and of positions and boxes between two times. */
-static void widen(Box box[2]) {
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 2; k++) {
-      float most =
-          fmaxf(fmaxf(fabsf(box[0].low[i]), fabsf(box[0].high[i])), fmaxf(fabsf(box[1].low[i]), fabsf(box[1].high[i])));
-      box[k].low[i] -= 0x1p-20f * most;
-      box[k].high[i] += 0x1p-20f * most;
-    }
-}
-
 /* ---- primitives -------------------------------------------------------------------------------------------------- */
 
-/* Box of a triangle at one of its steps. */
-static Box triangle_box(const vlWorldShape *s, uint32_t prim, uint32_t step) {
-  Box b = empty_box();
-  for (int k = 0; k < 3; k++) {
-    size_t vertex = (size_t)step * s->vertices + s->indices[3 * (size_t)prim + (size_t)k];
-    extend_point(&b, s->positions + 3 * vertex);
-  }
-  return b;
+/* The shape of a primitive, whose number becomes that in the shape. */
+static const vlWorldShape *shape_of(const Builder *b, vlBvhItem *item) {
+  return vl_accel_group_shape(b->world, b->group, item->geometry & ~VL_BVH_ASKS, &item->primitive);
 }
 
 /* Box of an instance with a pose. A ray in the group's space may be off by the instance's error. */
@@ -191,52 +137,64 @@ static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const
   return b;
 }
 
-static const vlWorldShape *shape_of(const Builder *b, vlBvhItem item, uint32_t *prim) {
-  uint32_t geometry = item.geometry & ~VL_BVH_ASKS;
-  bool bundled = b->bundle->members && geometry == b->bundle->geometry;
-  *prim = bundled ? 0 : item.primitive;
-  return &b->world->shapes.items[bundled ? b->bundle->members[item.primitive] : b->group->shapes[geometry]];
-}
-
 /* Box of a primitive at one of its steps or keys. */
 static Box item_box(const Builder *b, vlBvhItem item, uint32_t step) {
-  if (!b->group) {
-    const vlWorldInstance *q = &b->world->instances.items[item.geometry];
-    return placed_box(q, b->world->accel.groups[q->group], q->keys ? q->path + 12 * (size_t)step : q->from_group);
-  }
-  uint32_t prim;
-  const vlWorldShape *s = shape_of(b, item, &prim);
-  if (s->kind == VL_SHAPE_TRIANGLES) return triangle_box(s, prim, step);
+  const vlWorldInstance *q = b->group == VL_NONE ? &b->world->instances.items[item.geometry] : NULL;
+  if (q) return placed_box(q, b->world->accel.groups[q->group], q->keys ? q->path + 12 * (size_t)step : q->from_group);
+  const vlWorldShape *s = shape_of(b, &item);
   Box box = empty_box();
-  vl_world_prim_bounds(s, prim, box.low, box.high);
+  for (size_t k = 0; k < 3 && s->kind == VL_SHAPE_TRIANGLES; k++) {
+    size_t vertex = (size_t)step * s->vertices + s->indices[3 * (size_t)item.primitive + k];
+    extend_point(&box, s->positions + 3 * vertex);
+  }
+  if (s->kind != VL_SHAPE_TRIANGLES) vl_world_prim_bounds(s, item.primitive, box.low, box.high);
   return box;
 }
 
-/* Boxes of a primitive at times 0 and 1. */
+/* Boxes of a primitive at times 0 and 1. They are so wide that a box between them contains the primitive at its time,
+ * and by several rounding errors wider: of the sums here, and of positions and boxes between two times. */
 static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
-  uint32_t prim, keys = b->group ? shape_of(b, item, &prim)->steps : b->world->instances.items[item.geometry].keys;
+  vlBvhItem own = item;
+  bool placed = b->group == VL_NONE;
+  uint32_t keys = placed ? b->world->instances.items[item.geometry].keys : shape_of(b, &own)->steps;
+  float beside[3] = {0};
   box[0] = item_box(b, item, 0);
   box[1] = keys > 1 ? item_box(b, item, keys - 1) : box[0];
   for (uint32_t k = 1; k + 1 < keys; k++) {
     Box at = item_box(b, item, k);
-    contain(box, (float)k / (float)(keys - 1), &at);
+    float time = (float)k / (float)(keys - 1);
+    for (int i = 0; i < 3; i++) {
+      float low = box[0].low[i] * (1 - time) + box[1].low[i] * time,
+            high = box[0].high[i] * (1 - time) + box[1].high[i] * time;
+      beside[i] = fmaxf(beside[i], fmaxf(low - at.low[i], at.high[i] - high));
+    }
   }
-  if (keys > 1 || !b->group) widen(box);
+  for (int i = 0; i < 3 && (placed || keys > 1); i++) {
+    Box all = box[0];
+    extend(&all, &box[1]);
+    float wide = beside[i] + 0x1p-20f * (beside[i] + fmaxf(fabsf(all.low[i]), fabsf(all.high[i])));
+    for (int k = 0; k < 2; k++) {
+      box[k].low[i] -= wide;
+      box[k].high[i] += wide;
+    }
+  }
 }
 
 /* Lists all primitives, without their boxes. */
 static void list_primitives(Builder *b) {
-  uint32_t count = 0;
-  for (size_t g = 0; g < (b->group ? b->group->count : b->count); g++) {
-    const vlWorldShape *s = b->group ? &b->world->shapes.items[b->group->shapes[g]] : NULL;
-    bool bundled = s && b->bundle->members && vl_accel_bundled(s), triangles = s && s->kind == VL_SHAPE_TRIANGLES;
-    uint32_t n = !s ? 1 : !bundled ? s->faces : g == b->bundle->geometry ? b->bundle->count : 0;
+  Primitive *to = b->primitives;
+  const vlWorldGroup *group = b->group == VL_NONE ? NULL : &b->world->groups.items[b->group];
+  for (size_t g = 0; g < (group ? group->count : b->count); g++) {
+    const vlWorldShape *s = group ? &b->world->shapes.items[group->shapes[g]] : NULL;
+    const vlAccelBundle *bundle = s && vl_accel_bundled(s) ? &b->world->accel.bundles[b->group] : NULL;
+    uint32_t n = !s ? 1 : !bundle || !bundle->members ? s->faces : g == bundle->geometry ? bundle->count : 0;
+    bool triangles = s && s->kind == VL_SHAPE_TRIANGLES;
+    bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
     vlBvhKind kind = !triangles ? VL_BVH_OTHERS : s->steps > 1 ? VL_BVH_MOVING : VL_BVH_FOURS;
     b->tree->moves |= kind == VL_BVH_MOVING || (!s && b->world->instances.items[g].keys > 0);
-    bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
-    for (uint32_t i = 0; i < n; i++, count++) {
-      b->primitives[count].geometry = (uint32_t)g | (uint32_t)kind << KIND | (asks ? VL_BVH_ASKS : 0);
-      b->primitives[count].primitive = i;
+    for (uint32_t i = 0; i < n; i++, to++) {
+      to->geometry = (uint32_t)g | (uint32_t)kind << KIND | (asks ? VL_BVH_ASKS : 0);
+      to->primitive = i;
     }
   }
 }
@@ -250,18 +208,15 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
   Builder *b = user;
   (void)worker;
   uint32_t i = index * CHUNK, end = b->count - i < CHUNK ? b->count : i + CHUNK;
-  for (; i < end && !(i % 1024 == 0 && is_stopped(b)); i++) {
+  for (; i < end && !is_stopped(b); i++) {
     Primitive *p = &b->primitives[i];
     Box box[2];
     item_boxes(b, item_of(p), box);
     extend(&box[0], &box[1]);
-    bool near = true;
-    for (int k = 0; k < 3; k++) {
-      p->low[k] = box[0].low[k];
-      p->high[k] = box[0].high[k];
-      near = near && p->low[k] > -1.8e18f && p->high[k] < 1.8e18f;
-    }
-    if (!near) p->low[0] = INFINITY;
+    memcpy(p->low, box[0].low, sizeof p->low);
+    memcpy(p->high, box[0].high, sizeof p->high);
+    for (int k = 0; k < 3; k++)
+      if (!(p->low[k] > -1.8e18f) || !(p->high[k] < 1.8e18f)) p->low[0] = INFINITY;
   }
 }
 
@@ -270,12 +225,6 @@ static void find_boxes(void *user, uint32_t index, uint32_t worker) {
 static inline int bin_at(const Primitive *p, int axis, float low, float scale) {
   int bin = (int)((p->low[axis] + p->high[axis] - low) * scale);
   return bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
-}
-
-static bool is_alike(const Builder *b, const Range *r) {
-  for (uint32_t i = r->begin + 1; i < r->end; i++)
-    if (kind_of(&b->primitives[i]) != kind_of(&b->primitives[r->begin])) return false;
-  return true;
 }
 
 static float tests(uint32_t count) {
@@ -287,91 +236,66 @@ typedef struct Bin {
   uint32_t count;
 } Bin;
 
-/* The best plane between bins along an axis. Returns area times tests of both halves. */
-static float best_plane(const Bin bins[BINS], int *plane) {
-  float right[BINS], least = INFINITY;
-  Box box = empty_box();
-  uint32_t count = 0;
-  for (int k = BINS - 1; k > 0; k--) {
-    extend(&box, &bins[k].box);
-    count += bins[k].count;
-    right[k] = count ? area(&box) * tests(count) : INFINITY;
-  }
-  box = empty_box();
-  count = 0;
-  for (int k = 1; k < BINS; k++) {
-    extend(&box, &bins[k - 1].box);
-    count += bins[k - 1].count;
-    float cost = count ? area(&box) * tests(count) + right[k] : INFINITY;
-    if (cost < least) {
-      least = cost;
-      *plane = k;
-    }
-  }
-  return least;
+/* Returns area times tests of the sum. */
+static float add_bin(Bin *sum, const Bin *bin) {
+  extend(&sum->box, &bin->box);
+  sum->count += bin->count;
+  return sum->count ? area(&sum->box) * tests(sum->count) : INFINITY;
 }
 
-/* Decides whether a range becomes a leaf, and otherwise how it is split. */
+/* Decides whether a range becomes a leaf, and otherwise how it is split: along the axis along which centres differ
+ * most. */
 static void decide(const Builder *b, Range *r) {
   uint32_t n = r->end - r->begin;
-  bool small = n <= FACES && is_alike(b, r), faces = small && kind_of(&b->primitives[r->begin]) != VL_BVH_OTHERS;
+  bool faces = n <= FACES && (r->kinds == 1 << VL_BVH_FOURS || r->kinds == 1 << VL_BVH_MOVING);
+  int axis = 0;
+  for (int i = 1; i < 3; i++)
+    if (r->centers.high[i] - r->centers.low[i] > r->centers.high[axis] - r->centers.low[axis]) axis = i;
+  float extent = r->centers.high[axis] - r->centers.low[axis], right[BINS], least = INFINITY;
   r->axis = -1;
-  r->leaf = n == 1 || (faces && n <= VL_BVH_FOUR);
-  if (r->leaf || r->depth >= VL_BVH_DEPTH) return;
-  Bin bins[3][BINS];
-  float scale[3];
-  for (int i = 0; i < 3; i++) {
-    float extent = r->centers.high[i] - r->centers.low[i];
-    scale[i] = extent > 0x1p-100f && extent < 0x1p100f ? 0.9999f * BINS / extent : 0;
-    for (int k = 0; k < BINS; k++) bins[i][k] = (Bin){empty_box(), 0};
-  }
-  for (uint32_t k = r->begin; k < r->end; k++) {
-    const Primitive *p = &b->primitives[k];
-    for (int i = 0; i < 3; i++) {
-      Bin *bin = &bins[i][bin_at(p, i, r->centers.low[i], scale[i])];
-      extend(&bin->box, &p->box);
-      bin->count++;
-    }
-  }
-  float least = INFINITY;
-  for (int i = 0; i < 3; i++) {
-    int plane = 0;
-    float cost = scale[i] > 0 ? best_plane(bins[i], &plane) : INFINITY;
-    if (cost < least) {
-      least = cost;
-      r->axis = i;
-      r->bin = plane;
-      r->low = r->centers.low[i];
-      r->scale = scale[i];
-    }
+  r->leaf = n == 1 || (faces && (n <= VL_BVH_FOUR || extent < 0x1p-100f));
+  if (r->leaf || r->depth >= VL_BVH_DEPTH || !(extent >= 0x1p-100f)) return;
+  Bin bins[BINS + 1], sum = {empty_box(), 0};
+  for (int k = 0; k <= BINS; k++) bins[k] = sum;
+  r->low = r->centers.low[axis];
+  r->scale = 0.9999f * BINS / extent;
+  for (uint32_t i = r->begin; i < r->end; i++)
+    add_bin(&bins[bin_at(&b->primitives[i], axis, r->low, r->scale)], &(Bin){b->primitives[i].box, 1});
+  for (int k = BINS - 1; k > 0; k--) right[k] = add_bin(&sum, &bins[k]);
+  sum = bins[BINS];
+  for (int k = 1; k < BINS; k++) {
+    float cost = add_bin(&sum, &bins[k - 1]) + right[k];
+    if (!(cost < least)) continue;
+    least = cost;
+    r->bin = k;
+    r->axis = axis;
   }
   float whole = area(&r->box); /* the test of a node counts as that of a block */
   r->leaf = faces && whole * tests(n) <= whole + least;
 }
 
 static void add(Range *r, const Primitive *p) {
+  Box center;
+  for (int i = 0; i < 4; i++) center.low[i] = center.high[i] = p->box.low[i] + p->box.high[i];
   extend(&r->box, &p->box);
-  extend_center(&r->centers, &p->box);
+  extend(&r->centers, &center);
+  r->kinds |= 1u << kind_of(p);
 }
 
 static void split(const Builder *b, const Range *r, Range half[2]) {
   Primitive *p = b->primitives;
-  uint32_t i = r->begin, j = r->end;
+  uint32_t i = r->begin, j = r->end, middle = i + (j - i) / 2;
   for (int k = 0; k < 2; k++) half[k] = (Range){.depth = r->depth + 1, .box = empty_box(), .centers = empty_box()};
-  if (r->axis < 0) {
-    i = r->begin + (r->end - r->begin) / 2;
-    for (uint32_t k = r->begin; k < r->end; k++) add(&half[k >= i], &p[k]);
-  } else {
-    while (i < j) {
-      if (bin_at(&p[i], r->axis, r->low, r->scale) < r->bin) {
-        add(&half[0], &p[i++]);
-        continue;
-      }
-      Primitive other = p[--j];
-      p[j] = p[i];
-      p[i] = other;
-      add(&half[1], &p[j]);
+  while (i < j) {
+    bool left = r->axis < 0 ? i < middle : bin_at(&p[i], r->axis, r->low, r->scale) < r->bin;
+    Primitive next = p[i];
+    add(&half[!left], &next);
+    if (left) {
+      i++;
+      continue;
     }
+    p[i] = p[--j];
+    p[j] = next;
   }
   half[0].begin = r->begin;
   half[0].end = half[1].begin = i;
@@ -405,198 +329,120 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
 
 /* ---- nodes ------------------------------------------------------------------------------------------------------- */
 
-static void set_box(vlBvhBoxes *boxes, uint32_t k, const Box *box) {
-  for (int i = 0; i < 3; i++) {
-    (*boxes)[2 * i][k] = box->low[i];
-    (*boxes)[2 * i + 1][k] = box->high[i];
+/* Sets the boxes of child k. No ray meets the box of a null range; it is finite, for products with 0. */
+static void set_boxes(const Builder *b, vlBvhNode *node, uint32_t k, const Range *r) {
+  bool moves = b->tree->moves;
+  Box box[2] = {moves || !r ? empty_box() : r->box, empty_box()};
+  for (uint32_t i = r ? r->begin : 0; moves && r && i < r->end; i++) {
+    Box at[2];
+    item_boxes(b, item_of(&b->primitives[i]), at);
+    for (int time = 0; time < 2; time++) extend(&box[time], &at[time]);
+  }
+  for (int time = 0; time <= moves; time++) {
+    vlBvhBoxes *boxes = time ? node->later : &node->boxes;
+    for (int i = 0; i < 3; i++) {
+      (*boxes)[2 * i][k] = fminf(box[time].low[i], 0x1p126f);
+      (*boxes)[2 * i + 1][k] = fmaxf(box[time].high[i], -0x1p126f);
+    }
   }
 }
 
-static bool make_node(Builder *b, Arena *arena, const Built *children, uint32_t count, Built *built) {
-  vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
-  if (!node) return false;
-  Box none; /* so large that no ray meets it, and finite, for products with 0 */
-  for (int i = 0; i < 4; i++) {
-    none.low[i] = 0x1p126f;
-    none.high[i] = -0x1p126f;
-  }
-  built->child = vl_bvh_child(VL_BVH_NODE, 1, node);
-  built->box[0] = built->box[1] = empty_box();
-  for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
-    node->child[k] = k < count ? children[k].child : 0;
-    set_box(&node->boxes, k, k < count ? &children[k].box[0] : &none);
-    if (b->tree->moves) set_box(&node->later[0], k, k < count ? &children[k].box[1] : &none);
-    for (int i = 0; i < 2 && k < count; i++) extend(&built->box[i], &children[k].box[i]);
-  }
-  return true;
-}
-
-static void put_face(const Builder *b, vlBvhItem item, vlBvhFour *four, uint32_t k) {
-  uint32_t prim;
-  const vlWorldShape *s = shape_of(b, item, &prim);
-  for (size_t c = 0; c < 3; c++)
-    for (size_t i = 0; i < 3; i++)
-      four->corner[c][i][k] = s->positions[3 * (size_t)s->indices[3 * (size_t)prim + c] + i];
-  four->geometry[k] = item.geometry;
-  four->primitive[k] = item.primitive;
-}
-
-static bool make_leaf(Builder *b, Arena *arena, const Range *r, Built *built) {
+static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child) {
   const Primitive *p = b->primitives + r->begin;
   uint32_t n = r->end - r->begin, blocks = (n + VL_BVH_FOUR - 1) / VL_BVH_FOUR;
-  vlBvhKind kind = kind_of(p);
-  size_t size = kind == VL_BVH_FOURS ? blocks * sizeof(vlBvhFour) : n * sizeof(vlBvhItem);
-  void *leaf = take(b, arena, size);
+  bool faces = kind_of(p) != VL_BVH_OTHERS;
+  void *leaf = take(b, arena, faces ? blocks * sizeof(vlBvhFour) : n * sizeof(vlBvhItem));
   if (!leaf) return false;
-  memset(leaf, 0, size);
-  built->child = vl_bvh_child(kind, kind == VL_BVH_FOURS ? blocks : n, leaf);
-  built->box[0] = built->box[1] = empty_box();
-  for (uint32_t i = 0; i < n; i++) {
-    vlBvhItem item = item_of(&p[i]);
-    Box box[2] = {p[i].box, p[i].box};
-    if (b->tree->moves) item_boxes(b, item, box);
-    for (int k = 0; k < 2; k++) extend(&built->box[k], &box[k]);
-    if (kind == VL_BVH_FOURS)
-      put_face(b, item, (vlBvhFour *)leaf + i / VL_BVH_FOUR, i % VL_BVH_FOUR);
-    else
-      ((vlBvhItem *)leaf)[i] = item;
+  *child = vl_bvh_child(kind_of(p), faces ? blocks : n, leaf);
+  for (uint32_t i = 0; !faces && i < n; i++) ((vlBvhItem *)leaf)[i] = item_of(&p[i]);
+  for (uint32_t i = 0; faces && i < blocks * VL_BVH_FOUR; i++) {
+    vlBvhFour *four = (vlBvhFour *)leaf + i / VL_BVH_FOUR;
+    vlBvhItem item = item_of(&p[i < n ? i : n - 1]);
+    four->geometry[i % VL_BVH_FOUR] = item.geometry;
+    four->primitive[i % VL_BVH_FOUR] = item.primitive;
+    const vlWorldShape *s = shape_of(b, &item);
+    vl_bvh_place(s, item.primitive, 0, four, i % VL_BVH_FOUR);
   }
   return true;
 }
 
-static bool make_tree(Builder *b, Arena *arena, const Range *range, Built *built) {
-  if (range->leaf) return make_leaf(b, arena, range, built);
+/* Makes the tree of a range. apart: its small ranges become parts, whose trees are made later. */
+static bool make_tree(Builder *b, Arena *arena, const Range *range, bool apart, uintptr_t *child) {
+  if (apart && (is_stopped(b) || !VL_RESERVE(b->world->context, &b->parts, 1))) return false;
+  if (apart && (range->leaf || range->end - range->begin <= b->part_size)) {
+    b->parts.items[b->parts.count++] = (Part){*range, child};
+    return true;
+  }
+  if (range->leaf) return make_leaf(b, arena, range, child);
   Range ranges[VL_BVH_WIDTH];
-  Built children[VL_BVH_WIDTH];
-  uint32_t count = split_often(b, range, 1, ranges);
-  for (uint32_t k = 0; k < count; k++)
-    if (!make_tree(b, arena, &ranges[k], &children[k])) return false;
-  return make_node(b, arena, children, count, built);
+  uint32_t count = split_often(b, range, apart ? b->part_size : 1, ranges);
+  vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
+  if (!node) return false;
+  *child = vl_bvh_child(VL_BVH_NODE, 1, node);
+  for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
+    node->child[k] = 0;
+    set_boxes(b, node, k, k < count ? &ranges[k] : NULL);
+    if (k < count && !make_tree(b, arena, &ranges[k], apart, &node->child[k])) return false;
+  }
+  return true;
 }
 
 static void make_part(void *user, uint32_t index, uint32_t worker) {
   Builder *b = user;
-  Part *part = &b->parts.items[index];
-  if (!is_stopped(b) && !make_tree(b, &b->arenas[worker], &part->range, &part->built)) atomic_store(&b->failed, true);
-}
-
-/* Splits a range until the parts are small. *child: as in Upper. */
-static bool split_upper(Builder *b, const Range *range, uint32_t *child) {
-  vlContext *c = b->world->context;
-  if (is_stopped(b) || !VL_RESERVE(c, &b->parts, 1) || !VL_RESERVE(c, &b->uppers, 1)) return false;
-  if (range->leaf || range->end - range->begin <= b->part_size) {
-    *child = PARTS + (uint32_t)b->parts.count;
-    b->parts.items[b->parts.count++].range = *range;
-    return true;
-  }
-  Range ranges[VL_BVH_WIDTH];
-  Upper upper = {.count = split_often(b, range, b->part_size, ranges)};
-  uint32_t index = *child = (uint32_t)b->uppers.count++;
-  for (uint32_t k = 0; k < upper.count; k++)
-    if (!split_upper(b, &ranges[k], &upper.child[k])) return false;
-  b->uppers.items[index] = upper;
-  return true;
-}
-
-/* Makes an upper node and those below it. */
-static bool join(Builder *b, uint32_t child, Built *built) {
-  if (child >= PARTS) {
-    *built = b->parts.items[child - PARTS].built;
-    return true;
-  }
-  const Upper *upper = &b->uppers.items[child];
-  Built children[VL_BVH_WIDTH];
-  for (uint32_t k = 0; k < upper->count; k++)
-    if (!join(b, upper->child[k], &children[k])) return false;
-  return make_node(b, &b->arenas[0], children, upper->count, built);
+  const Part *part = &b->parts.items[index];
+  if (!is_stopped(b) && !make_tree(b, &b->arenas[worker], &part->range, false, part->child))
+    atomic_store(&b->failed, true);
 }
 
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
-
-/* The range of all primitives with a box. */
-static Range all_primitives(Builder *b) {
-  Range all = {.box = empty_box(), .centers = empty_box()};
-  for (uint32_t i = 0; i < b->count; i++) {
-    if (!(b->primitives[i].low[0] <= b->primitives[i].high[0])) continue;
-    b->primitives[all.end] = b->primitives[i];
-    add(&all, &b->primitives[all.end++]);
-  }
-  if (all.end) decide(b, &all);
-  return all;
-}
 
 /* False: out of memory, or stopped. */
 static bool build(Builder *b) {
   vlContext *c = b->world->context;
   b->primitives = vl_alloc_array(c, (size_t)b->count + 1, sizeof *b->primitives);
   b->arenas = vl_alloc_zero(c, vl_context_threads(c), sizeof *b->arenas);
-  if (atomic_load(&b->failed) || !b->primitives || !b->arenas) return false;
+  if (!b->primitives || !b->arenas) return false;
   vlLoopDef loop = vl_loop_def(0, b->world->task->cancel);
   list_primitives(b);
   vl_parallel_for_at(c, &loop, (b->count + CHUNK - 1) / CHUNK, find_boxes, b);
   if (is_stopped(b)) return false;
-  Range all = all_primitives(b);
-  Built root = {0};
-  uint32_t top;
+  Range all = {.box = empty_box(), .centers = empty_box()};
+  for (uint32_t i = 0; i < b->count; i++) {
+    if (!(b->primitives[i].low[0] <= b->primitives[i].high[0])) continue;
+    b->primitives[all.end] = b->primitives[i];
+    add(&all, &b->primitives[all.end++]);
+  }
+  if (all.end == 0) return true;
+  decide(b, &all);
   b->part_size = all.end / 256 < CHUNK ? CHUNK : all.end / 256;
-  if (all.end == 0) {
-    if (!make_node(b, &b->arenas[0], NULL, 0, &root)) return false;
-  } else {
-    if (!split_upper(b, &all, &top)) return false;
-    vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);
-    if (is_stopped(b) || !join(b, top, &root)) return false;
-  }
-  extend(&root.box[0], &root.box[1]);
-  b->tree->root = root.child;
   for (int i = 0; i < 3; i++) {
-    float low = b->tree->low[i] = root.box[0].low[i], high = b->tree->high[i] = root.box[0].high[i];
-    if (all.end) b->tree->reach = fmaxf(b->tree->reach, fmaxf(fabsf(low), fabsf(high)));
+    float low = b->tree->low[i] = all.box.low[i], high = b->tree->high[i] = all.box.high[i];
+    b->tree->reach = fmaxf(b->tree->reach, fmaxf(fabsf(low), fabsf(high)));
   }
-  return true;
+  if (!make_tree(b, &b->arenas[0], &all, true, &b->tree->root)) return false;
+  vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);
+  return !is_stopped(b);
 }
 
-static vlResult finish(Builder *b, vlBvh **tree, vlError *error) {
-  vlContext *c = b->world->context;
-  bool built = b->tree && build(b);
-  for (uint32_t k = 0; b->arenas && k < vl_context_threads(c); k++)
-    for (vlBvhBlock *block = b->arenas[k].blocks, *next; block; block = next) {
-      next = block->next;
-      block->next = b->tree->blocks;
-      b->tree->blocks = block;
-    }
-  vl_free(c, b->arenas);
-  vl_free(c, b->primitives);
-  VL_ARRAY_FREE(c, &b->parts);
-  VL_ARRAY_FREE(c, &b->uppers);
-  *tree = b->tree;
-  if (built) return VL_OK;
-  vl_bvh_release(c, b->tree);
-  *tree = NULL;
-  vlResult r = vl_world_step(b->world, NULL, 0, error);
-  return r == VL_OK ? vl_fail_memory(error) : r;
-}
-
-static vlBvh *new_tree(const vlWorld *world) {
-  vlBvh *tree = vl_alloc_zero(world->context, 1, sizeof *tree);
-  if (tree) atomic_init(&tree->users, 1);
-  return tree;
-}
-
-vlResult vl_bvh_make_group(const vlWorld *world, uint32_t k, vlBvh **tree, vlError *error) {
-  const vlWorldGroup *group = &world->groups.items[k];
-  Builder b = {.world = world, .group = group, .bundle = &world->accel.bundles[k], .tree = new_tree(world)};
-  uint64_t count = 0; /* members of a bundle have one face each */
-  for (uint32_t i = 0; i < group->count; i++) count += world->shapes.items[group->shapes[i]].faces;
+vlResult vl_bvh_make(const vlWorld *world, uint32_t group, vlBvh **tree, vlError *error) {
+  vlContext *c = world->context;
+  vlBvh *made = *tree = vl_alloc_zero(c, 1, sizeof *made);
+  if (!made) return vl_fail_memory(error);
+  atomic_init(&made->users, 1);
+  Builder b = {.world = world, .group = group, .tree = made};
+  uint64_t count = group == VL_NONE ? world->instances.count : 0;
+  const vlWorldGroup *shapes = group == VL_NONE ? NULL : &world->groups.items[group];
+  for (uint32_t i = 0; shapes && i < shapes->count; i++) count += world->shapes.items[shapes->shapes[i]].faces;
+  if (!shapes) made->maps = vl_alloc_array(c, (size_t)count, sizeof *made->maps);
+  for (uint64_t i = 0; made->maps && i < count; i++) vl_bvh_map(world->instances.items[i].from_group, made->maps[i]);
   b.count = (uint32_t)count;
-  if (count >= UINT32_MAX) atomic_store(&b.failed, true);
-  return finish(&b, tree, error);
-}
-
-vlResult vl_bvh_make_instances(const vlWorld *world, vlBvh **tree, vlError *error) {
-  Builder b = {.world = world, .tree = new_tree(world), .count = (uint32_t)world->instances.count};
-  if (b.tree) b.tree->maps = vl_alloc_array(world->context, b.count, sizeof *b.tree->maps);
-  if (b.tree && !b.tree->maps) atomic_store(&b.failed, true);
-  for (uint32_t i = 0; b.tree && b.tree->maps && i < b.count; i++)
-    vl_bvh_map(world->instances.items[i].from_group, b.tree->maps[i]);
-  return finish(&b, tree, error);
+  bool built = count < UINT32_MAX && (shapes || made->maps) && build(&b);
+  vl_free(c, b.arenas);
+  vl_free(c, b.primitives);
+  VL_ARRAY_FREE(c, &b.parts);
+  if (built) return VL_OK;
+  vl_bvh_release(c, made);
+  *tree = NULL;
+  vlResult r = vl_world_step(world, NULL, 0, error);
+  return r == VL_OK ? vl_fail_memory(error) : r;
 }

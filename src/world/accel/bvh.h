@@ -20,20 +20,14 @@ enum {
   VL_BVH_ALIGN = 32
 };
 
-/* What a child is: its address, with the kind in the lowest 2 bits, and for leaves count - 1 in the 3 bits above: of
- * vlBvhFour, or of vlBvhItem, which are moving triangles, or other primitives or instances. */
-typedef enum vlBvhKind { VL_BVH_NODE, VL_BVH_FOURS, VL_BVH_MOVING, VL_BVH_OTHERS } vlBvhKind;
-static inline uintptr_t vl_bvh_child(vlBvhKind kind, uint32_t count, const void *at) {
-  return (uintptr_t)at | (uintptr_t)(count - 1) << 2 | (uintptr_t)kind;
-}
+/* What a child is: its address, with the kind in the lowest bits. FOUR, MOVING: vlBvhFour. OTHER: vlBvhItem, another
+ * primitive, or an instance. 0: an empty tree. */
+typedef enum vlBvhKind { VL_BVH_NODE, VL_BVH_FOUR_STILL, VL_BVH_FOUR_MOVING, VL_BVH_OTHER } vlBvhKind;
 static inline vlBvhKind vl_bvh_kind(uintptr_t child) {
   return (vlBvhKind)(child & 3);
 }
-static inline uint32_t vl_bvh_count(uintptr_t child) {
-  return (uint32_t)(child >> 2 & 7) + 1;
-}
 static inline const void *vl_bvh_at(uintptr_t child) {
-  return (const void *)(child & ~(uintptr_t)(VL_BVH_ALIGN - 1));
+  return (const void *)(child & ~(uintptr_t)3);
 }
 
 /* Boxes of the children: rows low x, high x, low y, high y, low z, high z. Places without a child have low > high. */
@@ -77,7 +71,7 @@ typedef struct vlBvh {
   atomic_uint users;
   bool moves;
   uintptr_t root;
-  float low[3], high[3];             /* box of all primitives over all times; empty: low > high */
+  float low[3], high[3];             /* box of all primitives over all times; empty: 0 */
   float reach;                       /* largest coordinate of the box, without sign */
   struct vlBvhBlock *_Atomic blocks; /* nodes and leaves */
   float (*maps)[12]; /* of a tree of instances: group from world, as Embree computes it; unused for moving instances */

@@ -181,20 +181,17 @@ static __attribute__((noinline)) void move(const Query *q, vlBvhFour *f) {
   }
 }
 
-static inline bool meet_fours(Query *q, const vlBvhFour *f, uint32_t count, bool moving, const Ray *r, bool any) {
-  for (uint32_t i = 0; i < count; i++) {
-    const vlBvhFour *at = &f[i];
-    vlBvhFour now;
-    float t[F];
-    if (moving) {
-      now = *at;
-      move(q, &now);
-      at = &now;
-    }
-    for (uint32_t met = meet_four(at->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
-      int k = __builtin_ctz(met);
-      if (take(q, at->geometry[k], at->primitive[k], t[k], moving, any)) return true;
-    }
+static inline bool meet_triangles(Query *q, const vlBvhFour *f, bool moving, const Ray *r, bool any) {
+  vlBvhFour now;
+  float t[F];
+  if (moving) {
+    now = *f;
+    move(q, &now);
+    f = &now;
+  }
+  for (uint32_t met = meet_four(f->corner, r, q->t_min, q->limit, t); met; met &= met - 1) {
+    int k = __builtin_ctz(met);
+    if (take(q, f->geometry[k], f->primitive[k], t[k], moving, any)) return true;
   }
   return false;
 }
@@ -242,13 +239,10 @@ static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray
 }
 
 static inline bool meet_leaf(Query *q, const vlBvh *tree, uintptr_t child, const Ray *r, bool any) {
-  uint32_t count = vl_bvh_count(child);
   vlBvhKind kind = vl_bvh_kind(child);
-  if (kind != VL_BVH_OTHERS) return meet_fours(q, vl_bvh_at(child), count, kind == VL_BVH_MOVING, r, any);
-  const vlBvhItem *items = vl_bvh_at(child);
-  for (uint32_t k = 0; k < count; k++)
-    if (tree->maps ? meet_instance(q, tree, items[k].geometry, r, any) : meet_shape(q, items[k], any)) return true;
-  return false;
+  if (kind != VL_BVH_OTHER) return meet_triangles(q, vl_bvh_at(child), kind == VL_BVH_FOUR_MOVING, r, any);
+  const vlBvhItem *item = vl_bvh_at(child);
+  return tree->maps ? meet_instance(q, tree, item->geometry, r, any) : meet_shape(q, *item, any);
 }
 
 /* Puts the children that are met on the stack, the nearest last. */

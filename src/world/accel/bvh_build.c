@@ -10,7 +10,7 @@
 #include "world/accel/bundle.h"
 #include "world/accel/bvh.h"
 
-enum { BINS = 16, FACES = 8 /* most triangles of a leaf */, CHUNK = 4096 };
+enum { BINS = 16, CHUNK = 4096 };
 
 /* The fourth lane of a box fills a vector. That of a primitive's box has its numbers instead. */
 typedef struct Box {
@@ -190,8 +190,8 @@ static void list_primitives(Builder *b) {
     uint32_t n = !s ? 1 : !bundle || !bundle->members ? s->faces : g == bundle->geometry ? bundle->count : 0;
     bool triangles = s && s->kind == VL_SHAPE_TRIANGLES;
     bool asks = triangles && (s->alpha >= 0 || s->one_sided || s->pass_shadow);
-    vlBvhKind kind = !triangles ? VL_BVH_OTHERS : s->steps > 1 ? VL_BVH_MOVING : VL_BVH_FOURS;
-    b->tree->moves |= kind == VL_BVH_MOVING || (!s && b->world->instances.items[g].keys > 0);
+    vlBvhKind kind = !triangles ? VL_BVH_OTHER : s->steps > 1 ? VL_BVH_FOUR_MOVING : VL_BVH_FOUR_STILL;
+    b->tree->moves |= kind == VL_BVH_FOUR_MOVING || (!s && b->world->instances.items[g].keys > 0);
     for (uint32_t i = 0; i < n; i++, to++) {
       to->geometry = (uint32_t)g | (uint32_t)kind << KIND | (asks ? VL_BVH_ASKS : 0);
       to->primitive = i;
@@ -227,10 +227,6 @@ static inline int bin_at(const Primitive *p, int axis, float low, float scale) {
   return bin < 0 ? 0 : bin < BINS ? bin : BINS - 1;
 }
 
-static float tests(uint32_t count) {
-  return (float)((count + VL_BVH_FOUR - 1) / VL_BVH_FOUR);
-}
-
 typedef struct Bin {
   Box box;
   uint32_t count;
@@ -240,20 +236,19 @@ typedef struct Bin {
 static float add_bin(Bin *sum, const Bin *bin) {
   extend(&sum->box, &bin->box);
   sum->count += bin->count;
-  return sum->count ? area(&sum->box) * tests(sum->count) : INFINITY;
+  return sum->count ? area(&sum->box) * (float)((sum->count + VL_BVH_FOUR - 1) / VL_BVH_FOUR) : INFINITY;
 }
 
 /* Decides whether a range becomes a leaf, and otherwise how it is split: along the axis along which centres differ
  * most. */
 static void decide(const Builder *b, Range *r) {
-  uint32_t n = r->end - r->begin;
-  bool faces = n <= FACES && (r->kinds == 1 << VL_BVH_FOURS || r->kinds == 1 << VL_BVH_MOVING);
+  bool faces = r->kinds == 1 << VL_BVH_FOUR_STILL || r->kinds == 1 << VL_BVH_FOUR_MOVING;
   int axis = 0;
   for (int i = 1; i < 3; i++)
     if (r->centers.high[i] - r->centers.low[i] > r->centers.high[axis] - r->centers.low[axis]) axis = i;
   float extent = r->centers.high[axis] - r->centers.low[axis], right[BINS], least = INFINITY;
   r->axis = -1;
-  r->leaf = n == 1 || (faces && (n <= VL_BVH_FOUR || extent < 0x1p-100f));
+  r->leaf = r->end - r->begin <= (faces ? VL_BVH_FOUR : 1);
   if (r->leaf || r->depth >= VL_BVH_DEPTH || !(extent >= 0x1p-100f)) return;
   Bin bins[BINS + 1], sum = {empty_box(), 0};
   for (int k = 0; k <= BINS; k++) bins[k] = sum;
@@ -270,8 +265,6 @@ static void decide(const Builder *b, Range *r) {
     r->bin = k;
     r->axis = axis;
   }
-  float whole = area(&r->box); /* the test of a node counts as that of a block */
-  r->leaf = faces && whole * tests(n) <= whole + least;
 }
 
 static void add(Range *r, const Primitive *p) {
@@ -349,19 +342,18 @@ static void set_boxes(const Builder *b, vlBvhNode *node, uint32_t k, const Range
 
 static bool make_leaf(Builder *b, Arena *arena, const Range *r, uintptr_t *child) {
   const Primitive *p = b->primitives + r->begin;
-  uint32_t n = r->end - r->begin, blocks = (n + VL_BVH_FOUR - 1) / VL_BVH_FOUR;
-  bool faces = kind_of(p) != VL_BVH_OTHERS;
-  void *leaf = take(b, arena, faces ? blocks * sizeof(vlBvhFour) : n * sizeof(vlBvhItem));
+  vlBvhKind kind = kind_of(p);
+  void *leaf = take(b, arena, kind == VL_BVH_OTHER ? sizeof(vlBvhItem) : sizeof(vlBvhFour));
   if (!leaf) return false;
-  *child = vl_bvh_child(kind_of(p), faces ? blocks : n, leaf);
-  for (uint32_t i = 0; !faces && i < n; i++) ((vlBvhItem *)leaf)[i] = item_of(&p[i]);
-  for (uint32_t i = 0; faces && i < blocks * VL_BVH_FOUR; i++) {
-    vlBvhFour *four = (vlBvhFour *)leaf + i / VL_BVH_FOUR;
-    vlBvhItem item = item_of(&p[i < n ? i : n - 1]);
-    four->geometry[i % VL_BVH_FOUR] = item.geometry;
-    four->primitive[i % VL_BVH_FOUR] = item.primitive;
+  *child = (uintptr_t)leaf | kind;
+  if (kind == VL_BVH_OTHER) *(vlBvhItem *)leaf = item_of(p);
+  for (uint32_t k = 0; k < VL_BVH_FOUR && kind != VL_BVH_OTHER; k++) {
+    vlBvhFour *four = leaf;
+    vlBvhItem item = item_of(r->begin + k < r->end ? p + k : p);
+    four->geometry[k] = item.geometry;
+    four->primitive[k] = item.primitive;
     const vlWorldShape *s = shape_of(b, &item);
-    vl_bvh_place(s, item.primitive, 0, four, i % VL_BVH_FOUR);
+    vl_bvh_place(s, item.primitive, 0, four, k);
   }
   return true;
 }
@@ -378,7 +370,7 @@ static bool make_tree(Builder *b, Arena *arena, const Range *range, bool apart, 
   uint32_t count = split_often(b, range, apart ? b->part_size : 1, ranges);
   vlBvhNode *node = take(b, arena, sizeof *node + (b->tree->moves ? sizeof node->later[0] : 0));
   if (!node) return false;
-  *child = vl_bvh_child(VL_BVH_NODE, 1, node);
+  *child = (uintptr_t)node;
   for (uint32_t k = 0; k < VL_BVH_WIDTH; k++) {
     node->child[k] = 0;
     set_boxes(b, node, k, k < count ? &ranges[k] : NULL);

@@ -33,24 +33,25 @@ void vl_bvh_release(vlContext *context, vlBvh *tree) {
   vl_free(context, tree);
 }
 
-static vlBvh *share(vlBvh *tree) {
-  if (tree) atomic_fetch_add(&tree->users, 1);
-  return tree;
-}
-
 vlResult vl_bvh_build(vlWorld *world, vlError *error) {
   vlAccel *a = &world->accel;
   vlResult r = VL_OK;
   for (uint32_t k = a->group_count; r == VL_OK && k-- > 0;) {
-    vlBvh *tree = share(vl_accel_find_group(world, k));
-    if (!tree) r = vl_bvh_make(world, k, &tree, error);
+    vlBvh *tree = vl_accel_find_group(world, k);
+    if (tree)
+      atomic_fetch_add(&tree->users, 1);
+    else
+      r = vl_bvh_make(world, k, &tree, error);
     a->groups[k] = tree;
     if (r == VL_OK) r = vl_world_step(world, "accelerator", 0.5 + 0.5 / (k + 1), error);
   }
   if (r != VL_OK || world->instances.count == 0) return r;
   a->split = true;
-  vlBvh *tree = vl_accel_same_whole(world) ? share(world->previous->accel.scene) : NULL;
-  if (!tree) r = vl_bvh_make(world, VL_NONE, &tree, error);
+  vlBvh *tree = vl_accel_same_whole(world) ? world->previous->accel.scene : NULL;
+  if (tree)
+    atomic_fetch_add(&tree->users, 1);
+  else
+    r = vl_bvh_make(world, VL_NONE, &tree, error);
   a->scene = tree;
   return r;
 }

@@ -92,9 +92,9 @@ static inline uint32_t meet(const vlBvhBoxes *boxes, const Ray *r, float low, fl
   return met;
 }
 
-/* Boxes at a time. They are wider than the rounding errors here (bvh_build.c). */
-static inline void interpolate(const vlBvhBoxes *a, const vlBvhBoxes *b, float time, vlBvhBoxes *to) {
-  const float *from = (*a)[0], *later = (*b)[0];
+/* Boxes of a node at a time. They are wider than the rounding errors here (bvh_build.c). */
+static inline void interpolate(const vlBvhNode *node, float time, vlBvhBoxes *to) {
+  const float *from = node->boxes[0], *later = node->later[0][0];
   float *at = (*to)[0];
   /* must vectorise */
   VL_SIMD for (uint32_t k = 0; k < 6 * W; k++) at[k] = from[k] * (1.0f - time) + later[k] * time;
@@ -142,8 +142,6 @@ static inline uint32_t meet_four(const float c[3][3][F], const Ray *r, float low
   }
   return met;
 }
-
-/* ---- hits -------------------------------------------------------------------------------------------------------- */
 
 static inline void offer(Query *q, float t, uint32_t geometry, uint32_t primitive) {
   vlNearest hit = {.t = t, .instance = q->instance, .geometry = geometry, .primitive = primitive};
@@ -209,8 +207,7 @@ static bool meet_shape(Query *q, vlBvhItem at, bool any) {
 
 /* ---- trees ------------------------------------------------------------------------------------------------------- */
 
-static bool nearest_in(Query *q, const vlBvh *tree, const Ray *r);
-static bool any_in(Query *q, const vlBvh *tree, const Ray *r);
+static bool walk(Query *q, const vlBvh *tree, const float o[3], const float d[3], bool any);
 
 /* The ray in an instance, by the operations of Embree. */
 static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray *r, bool any) {
@@ -229,11 +226,8 @@ static bool meet_instance(Query *q, const vlBvh *tree, uint32_t index, const Ray
     o[i] = r->o[0] * m[0] + (r->o[1] * m[1] + (r->o[2] * m[2] + m[3]));
     d[i] = r->d[0] * m[0] + (r->d[1] * m[1] + r->d[2] * m[2]);
   }
-  if (!is_usual(o, d, __builtin_inff())) return false;
-  const vlBvh *group = q->world->accel.groups[instance->group];
-  Ray inner = ray_of(group, o, d);
   q->instance = index;
-  bool blocked = any ? any_in(q, group, &inner) : nearest_in(q, group, &inner);
+  bool blocked = is_usual(o, d, __builtin_inff()) && walk(q, q->world->accel.groups[instance->group], o, d, any);
   q->instance = VL_NONE;
   return blocked;
 }
@@ -257,39 +251,26 @@ static inline Place *push(Place *top, const vlBvhNode *node, uint32_t met, const
   return top;
 }
 
-static inline __attribute__((always_inline)) bool walk(Query *q, const vlBvh *tree, const Ray *r, bool any) {
+/* A ray through a tree. Returns whether it is blocked, if any hit blocks it. */
+static bool walk(Query *q, const vlBvh *tree, const float o[3], const float d[3], bool any) {
   Place stack[VL_BVH_STACK], *top = stack;
+  Ray r = ray_of(tree, o, d);
   if (tree->root) *top++ = (Place){tree->root, 0.0f};
   while (top > stack) {
     Place at = *--top;
     if (!any && at.near > q->limit) continue;
-    while (vl_bvh_kind(at.child) == VL_BVH_NODE) {
-      const vlBvhNode *node = vl_bvh_at(at.child);
-      const vlBvhBoxes *boxes = &node->boxes;
-      vlBvhBoxes now;
-      float begin[W];
-      if (tree->moves) {
-        interpolate(boxes, node->later, q->time, &now);
-        boxes = &now;
-      }
-      uint32_t met = meet(boxes, r, q->t_min, q->limit, begin);
-      if (!met) goto next;
-      if (met & (met - 1))
-        at = *(top = push(top, node, met, begin, any) - 1);
-      else
-        at.child = node->child[__builtin_ctz(met)];
+    if (vl_bvh_kind(at.child) != VL_BVH_NODE) {
+      if (meet_leaf(q, tree, at.child, &r, any)) return true;
+      continue;
     }
-    if (meet_leaf(q, tree, at.child, r, any)) return true;
-  next:;
+    const vlBvhNode *node = vl_bvh_at(at.child);
+    vlBvhBoxes now;
+    float begin[W];
+    if (tree->moves) interpolate(node, q->time, &now);
+    uint32_t met = meet(tree->moves ? &now : &node->boxes, &r, q->t_min, q->limit, begin);
+    top = push(top, node, met, begin, any);
   }
   return false;
-}
-
-static bool nearest_in(Query *q, const vlBvh *tree, const Ray *r) {
-  return walk(q, tree, r, false);
-}
-static bool any_in(Query *q, const vlBvh *tree, const Ray *r) {
-  return walk(q, tree, r, true);
 }
 
 /* Ray i through the shapes outside of groups, then through the instances. */
@@ -305,10 +286,8 @@ static bool trace(Query *q, uint32_t i, bool any) {
   q->nearest = (vlNearest){.t = __builtin_inff(), .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
   if (!is_usual(o, d, 1.8e18f)) return false;
   const vlBvh *trees[2] = {a->groups[0], a->scene};
-  for (int k = 0; k < 2 && trees[k]; k++) {
-    Ray r = ray_of(trees[k], o, d);
-    if (any ? any_in(q, trees[k], &r) : nearest_in(q, trees[k], &r)) return true;
-  }
+  for (int k = 0; k < 2 && trees[k]; k++)
+    if (walk(q, trees[k], o, d, any)) return true;
   return false;
 }
 

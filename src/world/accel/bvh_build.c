@@ -85,8 +85,6 @@ static void *take(Builder *b, Arena *arena, size_t size) {
   return taken;
 }
 
-/* ---- boxes ------------------------------------------------------------------------------------------------------- */
-
 static Box empty_box(void) {
   const float most = INFINITY;
   return (Box){{most, most, most, most}, {-most, -most, -most, -most}};
@@ -109,8 +107,6 @@ static float area(const Box *b) {
   return x < 0 ? 0 : x * y + y * z + z * x;
 }
 
-/* ---- primitives -------------------------------------------------------------------------------------------------- */
-
 /* The shape of a primitive, whose number becomes that in the shape. */
 static const vlWorldShape *shape_of(const Builder *b, vlBvhItem *item) {
   return vl_accel_group_shape(b->world, b->group, item->geometry & ~VL_BVH_ASKS, &item->primitive);
@@ -121,18 +117,16 @@ static Box placed_box(const vlWorldInstance *instance, const vlBvh *group, const
   Box b = empty_box();
   float error = instance->error[3];
   for (int i = 0; i < 3; i++) error += instance->error[i] * fmaxf(fabsf(group->low[i]), fabsf(group->high[i]));
-  for (int c = 0; c < 8; c++) {
-    float p[3];
-    for (int i = 0; i < 3; i++) {
-      double x = (double)pose[4 * i + 3];
-      for (int j = 0; j < 3; j++) x += (double)pose[4 * i + j] * (double)(c >> j & 1 ? group->high[j] : group->low[j]);
-      p[i] = (float)x;
-    }
-    extend_point(&b, p);
-  }
   for (int i = 0; i < 3; i++) {
-    b.low[i] -= error;
-    b.high[i] += error;
+    double low = (double)pose[4 * i + 3], high = low;
+    for (int j = 0; j < 3; j++) {
+      double one = (double)pose[4 * i + j] * (double)group->low[j],
+             other = (double)pose[4 * i + j] * (double)group->high[j];
+      low += fmin(one, other);
+      high += fmax(one, other);
+    }
+    b.low[i] = (float)low - error;
+    b.high[i] = (float)high + error;
   }
   return b;
 }
@@ -170,9 +164,8 @@ static void item_boxes(const Builder *b, vlBvhItem item, Box box[2]) {
     }
   }
   for (int i = 0; i < 3 && (placed || keys > 1); i++) {
-    Box all = box[0];
-    extend(&all, &box[1]);
-    float wide = beside[i] + 0x1p-20f * (beside[i] + fmaxf(fabsf(all.low[i]), fabsf(all.high[i])));
+    float most = fmaxf(fmaxf(-box[0].low[i], box[0].high[i]), fmaxf(-box[1].low[i], box[1].high[i]));
+    float wide = beside[i] + 0x1p-20f * (beside[i] + most);
     for (int k = 0; k < 2; k++) {
       box[k].low[i] -= wide;
       box[k].high[i] += wide;
@@ -302,19 +295,12 @@ static uint32_t split_often(const Builder *b, const Range *range, uint32_t small
   uint32_t count = 1;
   to[0] = *range;
   while (count < VL_BVH_WIDTH) {
-    uint32_t largest = VL_BVH_WIDTH;
-    float most = -1;
-    for (uint32_t k = 0; k < count; k++) {
-      float size = area(&to[k].box);
-      if (!to[k].leaf && to[k].end - to[k].begin > small && (size > most || largest == VL_BVH_WIDTH)) {
-        most = size;
-        largest = k;
-      }
-    }
-    if (largest == VL_BVH_WIDTH) break;
-    Range half[2];
-    split(b, &to[largest], half);
-    to[largest] = half[0];
+    Range *largest = NULL, half[2];
+    for (Range *r = to; r < to + count; r++)
+      if (!r->leaf && r->end - r->begin > small && (!largest || area(&r->box) > area(&largest->box))) largest = r;
+    if (!largest) break;
+    split(b, largest, half);
+    *largest = half[0];
     to[count++] = half[1];
   }
   return count;
@@ -386,8 +372,6 @@ static void make_part(void *user, uint32_t index, uint32_t worker) {
     atomic_store(&b->failed, true);
 }
 
-/* ---- the whole --------------------------------------------------------------------------------------------------- */
-
 /* False: out of memory, or stopped. */
 static bool build(Builder *b) {
   vlContext *c = b->world->context;
@@ -409,7 +393,7 @@ static bool build(Builder *b) {
   b->part_size = all.end / 256 < CHUNK ? CHUNK : all.end / 256;
   for (int i = 0; i < 3; i++) {
     float low = b->tree->low[i] = all.box.low[i], high = b->tree->high[i] = all.box.high[i];
-    b->tree->reach = fmaxf(b->tree->reach, fmaxf(fabsf(low), fabsf(high)));
+    b->tree->reach = fmaxf(b->tree->reach, fmaxf(-low, high));
   }
   if (!make_tree(b, &b->arenas[0], &all, true, &b->tree->root)) return false;
   vl_parallel_for_at(c, &loop, (uint32_t)b->parts.count, make_part, b);

@@ -276,7 +276,6 @@ static bool walk(Query *q, const vlBvh *tree, const float o[3], const float d[3]
 /* Ray i through the shapes outside of groups, then through the instances. */
 static bool trace(Query *q, uint32_t i, bool any) {
   const vlRays *rays = q->rays;
-  const vlAccel *a = &q->world->accel;
   float o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
   q->id = i;
   q->instance = VL_NONE;
@@ -285,7 +284,7 @@ static bool trace(Query *q, uint32_t i, bool any) {
   q->time = rays->time ? rays->time[i] : 0.0f;
   q->nearest = (vlNearest){.t = __builtin_inff(), .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
   if (!is_usual(o, d, 1.8e18f)) return false;
-  const vlBvh *trees[2] = {a->groups[0], a->scene};
+  const vlBvh *trees[2] = {q->world->accel.groups[0], q->world->accel.scene};
   for (int k = 0; k < 2 && trees[k]; k++)
     if (walk(q, trees[k], o, d, any)) return true;
   return false;
@@ -298,10 +297,9 @@ static void closest(const vlWorld *world, uint32_t n, const vlRays *rays, uint32
     trace(&q, i, false);
     shape[i] = VL_NONE;
     prim[i] = q.nearest.primitive;
-    instance[i] = q.nearest.instance;
+    q.instance = instance[i] = q.nearest.instance;
     t[i] = q.nearest.t;
     if (q.nearest.geometry == VL_NONE) continue;
-    q.instance = q.nearest.instance;
     shape[i] = (uint32_t)(shape_of(&q, q.nearest.geometry, &prim[i]) - world->shapes.items);
   }
 }

@@ -75,7 +75,7 @@ for isa in v2 v3 v4; do
   against "isa_$isa"
 done
 for set in sse4.2 avx; do
-  if ! VELO_EMBREE=$set "$VELO" render scenes/features/shapes.pbrt --dry-run --quiet >"$work/.out" 2>&1; then
+  if ! VELO_EMBREE=$set "$VELO" render scenes/features/shapes.pbrt --accelerator embree --dry-run --quiet >"$work/.out" 2>&1; then
     skip "embree_$set" "this machine does not have it"
     continue
   fi

@@ -5,11 +5,6 @@ static const vlSpaceTable *space_table(vlColorSpace space) {
   return &vl_table_spaces[(unsigned)space < 4 ? space : VL_SPACE_SRGB];
 }
 
-const vlRgbTable *vl_rgb_table(vlColorSpace space) {
-  static const vlRgbTable tables[4] = {{vl_table_rgb_0}, {vl_table_rgb_1}, {vl_table_rgb_2}, {vl_table_rgb_3}};
-  return &tables[(unsigned)space < 4 ? space : VL_SPACE_SRGB];
-}
-
 /* The density at both ends of a segment, in 1 / 1000 nm; below: the integral up to its start, in 1 / 1000. */
 #define ROW(below, lambda, density, lambda_next, density_next)             \
   (float)((below) / 1000.0), (float)(lambda), (float)((density) / 1000.0), \

@@ -27,7 +27,4 @@ extern const double vl_table_daylight[3][VL_DAYLIGHT_COUNT];
 extern const double vl_table_y_integral; /* sum of Y over all nm */
 extern const float vl_table_cie[3][VL_LAMBDA_COUNT];
 
-/* Coefficients of each colour space (color/rgb_table.h). */
-extern const float vl_table_rgb_0[], vl_table_rgb_1[], vl_table_rgb_2[], vl_table_rgb_3[];
-
 #endif

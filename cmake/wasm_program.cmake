@@ -25,5 +25,6 @@ function(velo_wasm_program target)
     -sEXPORTED_RUNTIME_METHODS=FS,NODEFS,callMain,ENV -sENVIRONMENT=web,worker,node -sNODEJS_CATCH_EXIT=0
     -sNODEJS_CATCH_REJECTION=0 --js-library ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js
     --extern-post-js ${CMAKE_SOURCE_DIR}/web/engine/program_end.js -sABORTING_MALLOC=0)
+  set_property(TARGET ${target} PROPERTY RULE_LAUNCH_LINK "env NODE_PATH=/usr/share/nodejs") # Debian's place of its modules
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${CMAKE_SOURCE_DIR}/web/engine/rgb_tables.js)
 endfunction()

@@ -265,6 +265,25 @@ vlResult vl_file_read_given(vlContext *context, const char *path, bool gunzip, c
   return read_file(context, path, true, gunzip, data, size, error);
 }
 
+/* The file's bytes in anonymous pages of its own, for systems that map no file at a given address. */
+static char *read_pages(int fd, size_t length) {
+  char *block = mmap(NULL, length + 1, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (block == MAP_FAILED) return block;
+  for (size_t used = 0; used < length;) {
+    ssize_t got = pread(fd, block + used, length - used, (off_t)used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      if (got == 0) errno = EIO; /* the file has become shorter */
+      int code = errno;
+      munmap(block, length + 1);
+      errno = code;
+      return MAP_FAILED;
+    }
+    used += (size_t)got;
+  }
+  return block;
+}
+
 vlResult vl_file_map(vlContext *context, const char *path, const char **data, size_t *size, vlError *error) {
   *data = NULL;
   struct stat info;
@@ -283,7 +302,8 @@ vlResult vl_file_map(vlContext *context, const char *path, const char **data, si
   bool good = block != MAP_FAILED;
   if (good && length && mmap(block, length, PROT_READ, MAP_PRIVATE | MAP_FIXED, fd, 0) == MAP_FAILED) {
     munmap(block, length + 1);
-    good = false;
+    block = read_pages(fd, length);
+    good = block != MAP_FAILED;
   }
   int code = errno;
   close(fd);

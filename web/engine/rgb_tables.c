@@ -1,5 +1,5 @@
-/* engine/rgb_tables.c: in WebAssembly, the coefficient tables of src/color/rgb_table.h come from JavaScript, each when the
- * first scene needs it. */
+/* engine/rgb_tables.c: in WebAssembly, the coefficient tables of src/color/rgb_table.h come from JavaScript, each when
+ * the first scene needs it. */
 #include <stddef.h>
 #include <stdlib.h>
 

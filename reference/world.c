@@ -11,7 +11,7 @@ static placement place(const vlShapeDef *def, matrix world_from_group, motion *m
   bool shape_mirrors = determinant(&group_from_shape) < 0;
   p.world_from_shape = multiply(world_from_group, group_from_shape);
   p.shape_from_world = invert(&p.world_from_shape);
-  p.mesh_mirrored = determinant(&world_from_group) < 0;
+  p.mesh_mirrored = determinant(&p.world_from_shape) < 0;
   p.flip = def->reverse_orientation != shape_mirrors;
   return p;
 }

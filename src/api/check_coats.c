@@ -7,10 +7,10 @@
 #include "scene/check.h"
 #include "world/material/coat.h"
 
-/* A coat's loss depends only on these three numbers, so it is computed once for all coats that have the same
+/* A coat's loss depends only on these numbers, so it is computed once for all coats that have the same
  * numbers. */
 typedef struct Coat {
-  float eta, tau, alpha;
+  float eta, tau, u, v; /* u, v: the alphas */
   double lost;
 } Coat;
 typedef VL_ARRAY(Coat) Coats;
@@ -39,7 +39,7 @@ static bool index_of(const vlMaterialDef *m, float *eta) {
 static vlResult measure(vlContext *context, Coat *coat) {
   vlCoatTable *table;
   double kept = 0, whole = 0;
-  vlResult r = vl_coat_build(context, coat->eta, coat->tau, ALL_BOUNCES, coat->alpha, coat->alpha, &table);
+  vlResult r = vl_coat_build_anisotropic(context, coat->eta, coat->tau, ALL_BOUNCES, coat->u, coat->v, &table);
   if (r != VL_OK) return r;
   r = vl_coat_white_albedo(context, table, &kept);
   if (r == VL_OK) r = vl_coat_conserve(context, table);
@@ -52,15 +52,15 @@ static vlResult measure(vlContext *context, Coat *coat) {
 /* Returns the fraction of light that this material's coat loses. Returns 0 if it has no rough coat or the loss
  * cannot be computed. */
 static double loss_of(vlCheck *check, const vlMaterialDef *m, Coats *coats) {
-  float u = alpha_of(m, m->u_roughness.value), v = alpha_of(m, m->v_roughness.value);
-  Coat coat = {.tau = m->thickness.value, .alpha = sqrtf(u * v)};
+  Coat coat = {
+      .tau = m->thickness.value, .u = alpha_of(m, m->u_roughness.value), .v = alpha_of(m, m->v_roughness.value)};
   if (m->kind != VL_MATERIAL_COATED_DIFFUSE || m->conserve_energy || !vl_coat_in_closed_form(m) ||
-      m->u_roughness.texture.index || m->v_roughness.texture.index || !(coat.alpha >= VL_GGX_SMOOTH) ||
-      !index_of(m, &coat.eta) || coat.eta == 1.0f)
+      m->u_roughness.texture.index || m->v_roughness.texture.index ||
+      !(coat.u >= VL_GGX_SMOOTH || coat.v >= VL_GGX_SMOOTH) || !index_of(m, &coat.eta) || coat.eta == 1.0f)
     return 0;
   for (size_t i = 0; i < coats->count; i++) {
     const Coat *c = &coats->items[i];
-    if (c->eta == coat.eta && c->tau == coat.tau && c->alpha == coat.alpha) return c->lost;
+    if (c->eta == coat.eta && c->tau == coat.tau && c->u == coat.u && c->v == coat.v) return c->lost;
   }
   vlResult r = measure(check->context, &coat);
   Coat *slot = r == VL_OK ? VL_PUSH(check->context, coats) : NULL;

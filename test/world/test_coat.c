@@ -246,7 +246,7 @@ static void conserving(void **state) {
 static void textured(void **state) {
   vlCoatTable *t, *one;
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.0f, 0.5f, &t), VL_OK);
-  assert_int_equal(t->alphas, VL_COAT_ALPHA);
+  assert_int_equal(t->rows, VL_COAT_ALPHA);
   for (int i = 0; i < 12; i++) {
     float alpha = 0.5f * powf(((float)i + 0.5f) / 12, 2), row = (sqrtf(alpha) - t->row_start) * t->row_scale;
     int low = (int)row;

@@ -60,6 +60,30 @@ typedef struct {
   float value[CHUNK][4];
 } Nodes;
 
+/* Where T(w) lies between two rows of a table. */
+typedef struct {
+  uint32_t low, high;
+  float t;
+} Row;
+
+static inline Row row_at(float row, uint32_t rows) {
+  row = row > 0.0f ? row : 0.0f; /* NaN becomes 0, too */
+  uint32_t low = row < (float)(rows - 2) ? (uint32_t)row : rows - 2;
+  float t = row - (float)low;
+  return (Row){low, low + 1, t < 1.0f ? t : 1.0f};
+}
+
+static inline Row row_of(const vlCoatTable *table, float alpha_x, float alpha_y, float x, float y) {
+  if (table->rows == 1) return (Row){0, 0, 0.0f};
+  if (table->anisotropic) { /* by azimuth; along the normal all rows are the same */
+    float across = x * x + y * y, rough = vl_abs(table->rough_y ? y : x);
+    float share = across > VL_MIN_POSITIVE ? rough / __builtin_sqrtf(across) : 0.0f;
+    return row_at(share * (float)(VL_COAT_AZIMUTHS - 1), VL_COAT_AZIMUTHS);
+  }
+  float alpha = __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y)); /* textured roughness */
+  return row_at((__builtin_sqrtf(alpha) - table->row_start) * table->row_scale, VL_COAT_ALPHA);
+}
+
 /* One table with one row for the whole slice, the usual case. */
 static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, Nodes *nodes, int of) {
   const float *row = rows_of(table, of)[0];
@@ -76,20 +100,12 @@ static void fetch_row(const vlCoatTable *table, uint32_t count, Lanes *lanes, No
 
 /* Each lane has its own table, or interpolates between two rows. Without interpolation, results are the same as
  * fetch_row's, bit for bit. */
-static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
+static void fetch_each(const Slice *s, const float *x, const float *y, Lanes *lanes, Nodes *nodes, int of) {
   for (uint32_t i = 0; i < s->count; i++) {
     const vlCoatTable *table = s->coat[i < s->live ? i : 0];
-    uint32_t low = 0, high = 0;
-    float t = 0.0f;
-    if (table->alphas > 1) { /* textured roughness: interpolates between two rows */
-      float alpha = __builtin_sqrtf(vl_ggx_alpha(s->ax[i]) * vl_ggx_alpha(s->ay[i]));
-      float row = (__builtin_sqrtf(alpha) - table->row_start) * table->row_scale;
-      row = row > 0.0f ? row : 0.0f; /* NaN becomes 0, too */
-      low = row < (float)(VL_COAT_ALPHA - 2) ? (uint32_t)row : VL_COAT_ALPHA - 2;
-      high = low + 1;
-      t = row - (float)low;
-      t = t < 1.0f ? t : 1.0f;
-    }
+    Row r = row_of(table, s->ax[i], s->ay[i], x[i], y[i]);
+    uint32_t low = r.low, high = r.high;
+    float t = r.t;
     const float(*rows)[VL_COAT_COS] = rows_of(table, of);
     const float *a = rows[low] + nodes->first[i], *b = rows[high] + nodes->first[i];
     for (int k = 0; k < 4; k++) nodes->value[i][k] = a[k] + t * (b[k] - a[k]);
@@ -101,9 +117,10 @@ static void fetch_each(const Slice *s, Lanes *lanes, Nodes *nodes, int of) {
   }
 }
 
-/* Looks up T at the cosines z, and for wo also the constants of the tables. */
-PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int of) {
+/* Looks up T at directions from `at` on, and for wo also the constants of the tables. */
+PASS look_up(const Slice *s, vlBsdfDirections w, uint32_t at, Lanes *lanes, float *through, int of) {
   Nodes nodes;
+  const float *x = w.x + at, *y = w.y + at, *z = w.z + at;
   uint32_t count = VL_WHOLE(s->count);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -114,10 +131,10 @@ PASS look_up(const Slice *s, const float *z, Lanes *lanes, float *through, int o
   const vlCoatTable *table = s->coat[0];
   uintptr_t differ = 0;
   for (uint32_t i = 0; i < s->live; i++) differ |= (uintptr_t)s->coat[i] ^ (uintptr_t)table;
-  if (differ == 0 && table->alphas == 1)
+  if (differ == 0 && table->rows == 1)
     fetch_row(table, count, lanes, &nodes, of);
   else
-    fetch_each(s, lanes, &nodes, of);
+    fetch_each(s, x, y, lanes, &nodes, of);
   const float(*value)[4] = (const float(*)[4])nodes.value;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < count; i++) {
@@ -168,8 +185,9 @@ static inline __attribute__((always_inline)) void weigh_loop(const Slice *s, con
   }
 }
 
-PASS weigh(const Slice *s, const float *oz, Lanes *lanes) {
-  look_up(s, oz, lanes, lanes->transmittance_o, OF_WO);
+PASS weigh(const Slice *s, vlBsdfDirections wo, uint32_t first, Lanes *lanes) {
+  const float *oz = wo.z + first;
+  look_up(s, wo, first, lanes, lanes->transmittance_o, OF_WO);
   int32_t all = 0;
   for (uint32_t i = 0; i < s->live; i++) all |= lanes->bounces[i];
   if (all < 8)
@@ -231,8 +249,8 @@ void vl_bsdf_coat_eval(uint32_t n, const vlBsdfParams *params, vlBsdfDirections 
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes);
-    look_up(&s, wi.z + first, &lanes, lanes.transmittance_i, OF_LIGHT);
+    weigh(&s, wo, first, &lanes);
+    look_up(&s, wi, first, &lanes, lanes.transmittance_i, OF_LIGHT);
     combine(&s, &lanes, wo, wi, value, pdf, first);
   }
 }
@@ -306,9 +324,9 @@ void vl_bsdf_coat_sample(uint32_t n, const vlBsdfParams *params, vlBsdfDirection
   Lanes lanes;
   for (uint32_t first = 0; first < n; first += CHUNK) {
     Slice s = slice_of(params, n, first);
-    weigh(&s, wo.z + first, &lanes);
+    weigh(&s, wo, first, &lanes);
     choose(&s, &lanes, wo, u_lobe, u, v, wi, first);
-    look_up(&s, wi.z + first, &lanes, lanes.transmittance_i, OF_WI);
+    look_up(&s, wi, first, &lanes, lanes.transmittance_i, OF_WI);
     settle(&s, &lanes, wo, u_lobe, wi, weight, pdf, flags, first);
     for (uint32_t i = 0; i < s.count; i++) eta_scale[first + i] = 1.0f;
   }

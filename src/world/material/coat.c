@@ -13,12 +13,23 @@
  * denser at the long tail of grazing microfacets. R has a kink at the inner critical angle and needs more nodes of
  * both. OUTER: cosines of the integral for R. */
 enum { TURNS = 12, HEIGHTS = 24, TURNS_BACK = 24, HEIGHTS_BACK = 40, GRID = TURNS_BACK * HEIGHTS_BACK, OUTER = 32 };
+/* Azimuths of means over all directions: midpoint rules over a quarter turn, of integrals and of tables' rows. */
+enum { QUARTER = 6, QUARTER_ROWS = 64 };
 
 typedef struct {
   int count;
   float u[GRID], v[GRID];
   double weight[GRID];
 } Grid;
+/* An interface seen from one side, and the layer below it. */
+typedef struct {
+  float eta; /* far side over near side */
+  float alpha_x, alpha_y, tau;
+} Interface;
+typedef struct {
+  float sin, cos;
+} Azimuth;
+
 typedef struct {
   Grid out, back;            /* nodes for T, and for R */
   double x[OUTER], w[OUTER]; /* Gauss-Legendre on [0, 1] */
@@ -67,31 +78,37 @@ static inline float layer(float tau, float c) {
   return vl_exp(-tau / down);
 }
 
-/* Mean over the visible normals for direction cosine c: the share of light that the rough interface transmits (transmit
- * != 0) or reflects, attenuated by the layer. eta: far side over near side. imitation (may be null) receives the same
- * mean with the sum of the two weights that pbrt-v4 gives a direction found by both of its samplers; see coat.h. */
-static double interface_mean(const Grid *grid, int transmit, float c, float eta, float alpha, float tau,
-                             double *imitation) {
+static inline bool is_smooth(const Interface *s) {
+  return vl_ggx_is_smooth(s->alpha_x, s->alpha_y);
+}
+
+/* Mean over the visible normals for cosine c and azimuth a: the share of light that the rough interface transmits
+ * (transmit != 0) or reflects, attenuated by the layer. side: 1 or -1; the half turn of the normals that is summed.
+ * imitation (may be null) receives the same mean with the sum of the two weights that pbrt-v4 gives a direction found
+ * by both of its samplers; see coat.h. */
+static double half_mean(const Grid *grid, int transmit, float c, Azimuth a, const Interface *s, float side,
+                        double *imitation) {
   float part[GRID], excess[GRID];
-  vlVec3 o = vl_vec3(__builtin_sqrtf(c < 1.0f ? 1.0f - c * c : 0.0f), 0.0f, c);
-  float lo = vl_ggx_length(o, alpha, alpha);
+  float sine = __builtin_sqrtf(c < 1.0f ? 1.0f - c * c : 0.0f);
+  float eta = s->eta, tau = s->tau, ax = vl_ggx_alpha(s->alpha_x), ay = vl_ggx_alpha(s->alpha_y);
+  vlVec3 o = vl_vec3(sine * a.cos, sine * a.sin, c);
+  float lo = vl_ggx_length(o, ax, ay);
   int count = grid->count;
   VL_SIMD for (int i = 0; i < count; i++) {
-    vlVec3 h = vl_ggx_sample(o, alpha, alpha, grid->u[i], grid->v[i]);
+    vlVec3 h = vl_ggx_sample(o, ax, ay, side > 0.0f ? grid->u[i] : 1.0f - grid->u[i], grid->v[i]);
     float oh = vl_dot(o, h);
     vlFresnel f = vl_fresnel_dielectric(oh, eta);
     float cos_t = f.root / eta, t = oh / eta - cos_t;
-    float a = transmit ? t : 2.0f * oh, b = transmit ? 1.0f / eta : 1.0f;
-    vlVec3 w = vl_vec3(a * h.x - b * o.x, a * h.y - b * o.y, a * h.z - b * o.z);
+    float k = transmit ? t : 2.0f * oh, b = transmit ? 1.0f / eta : 1.0f;
+    vlVec3 w = vl_vec3(k * h.x - b * o.x, k * h.y - b * o.y, k * h.z - b * o.z);
     w.z = transmit ? -w.z : w.z;
-    float li = vl_ggx_length(w, alpha, alpha);
+    float li = vl_ggx_length(w, ax, ay);
     float g = vl_ggx_shadowing(o.z, lo, w.z, li) * layer(tau, w.z);
     float share = transmit ? 1.0f - f.reflected : f.reflected;
     part[i] = ((oh > 0.0f) & (w.z > 0.0f)) ? share * g : 0.0f;
     /* Densities of w: transmission through the interface from outside (p), the base's cosine (d), transmission from
      * inside (q). */
-    float p =
-        vl_ggx_visible(h, alpha, alpha, o.z, lo) * oh * cos_t / (t * t > VL_MIN_POSITIVE ? t * t : VL_MIN_POSITIVE);
+    float p = vl_ggx_visible(h, ax, ay, o.z, lo) * oh * cos_t / (t * t > VL_MIN_POSITIVE ? t * t : VL_MIN_POSITIVE);
     float q = p * (lo + o.z) / ((li + w.z) * eta * eta), d = w.z * VL_INV_PI;
     float base2 = d * d;
     excess[i] = part[i] * (base2 / (base2 + q * q + VL_MIN_POSITIVE) - base2 / (base2 + p * p + VL_MIN_POSITIVE));
@@ -105,40 +122,68 @@ static double interface_mean(const Grid *grid, int transmit, float c, float eta,
   return sum;
 }
 
-static double transmittance(const Rules *rules, float c, float eta, float alpha, float tau, double *imitation) {
-  if (alpha >= VL_GGX_SMOOTH && eta != 1.0f) return interface_mean(&rules->out, 1, c, eta, alpha, tau, imitation);
-  vlFresnel f = vl_fresnel_dielectric(c, eta);
-  double t = eta == 1.0f ? (c > 0.0f ? layer(tau, c) : 0.0f) : (1.0f - f.reflected) * layer(tau, f.root / eta);
+/* The mean over all normals. Both halves are the same where the plane of incidence is one of symmetry, as it always is
+ * if both alphas are equal. */
+static double interface_mean(const Grid *grid, int transmit, float c, Azimuth a, const Interface *s,
+                             double *imitation) {
+  double one, other, sum = half_mean(grid, transmit, c, a, s, 1.0f, &one);
+  if (s->alpha_x == s->alpha_y) {
+    if (imitation) *imitation = one;
+    return sum;
+  }
+  sum = 0.5 * (sum + half_mean(grid, transmit, c, a, s, -1.0f, &other));
+  if (imitation) *imitation = 0.5 * (one + other);
+  return sum;
+}
+
+static double transmittance(const Rules *rules, float c, Azimuth a, const Interface *s, double *imitation) {
+  if (!is_smooth(s) && s->eta != 1.0f) return interface_mean(&rules->out, 1, c, a, s, imitation);
+  vlFresnel f = vl_fresnel_dielectric(c, s->eta);
+  double t =
+      s->eta == 1.0f ? (c > 0.0f ? layer(s->tau, c) : 0.0f) : (1.0f - f.reflected) * layer(s->tau, f.root / s->eta);
   return *imitation = t;
 }
 
 /* Reflectance of the interface from outside at cosine c, without the base. */
-static double reflectance_outside(const Rules *rules, float c, float eta, float alpha) {
-  if (eta == 1.0f) return 0.0;
-  if (alpha >= VL_GGX_SMOOTH) return interface_mean(&rules->back, 0, c, eta, alpha, 0.0f, NULL);
-  return (double)vl_fresnel_dielectric(c, eta).reflected;
+static double reflectance_outside(const Rules *rules, float c, Azimuth a, const Interface *s) {
+  if (s->eta == 1.0f) return 0.0;
+  Interface bare = *s;
+  bare.tau = 0.0f;
+  if (!is_smooth(s)) return interface_mean(&rules->back, 0, c, a, &bare, NULL);
+  return (double)vl_fresnel_dielectric(c, s->eta).reflected;
 }
 
 /* Reflectance of the interface from inside at cosine c; the layer is traversed up and down. */
-static double reflectance_inside(const Rules *rules, float c, float eta, float alpha, float tau) {
-  if (eta == 1.0f) return 0.0;
-  float l = layer(tau, c);
-  if (alpha >= VL_GGX_SMOOTH) return (double)l * interface_mean(&rules->back, 0, c, 1.0f / eta, alpha, tau, NULL);
-  return (double)(vl_fresnel_dielectric(c, 1.0f / eta).reflected * l * l);
+static double reflectance_inside(const Rules *rules, float c, Azimuth a, const Interface *s) {
+  if (s->eta == 1.0f) return 0.0;
+  float l = layer(s->tau, c);
+  Interface inside = *s;
+  inside.eta = 1.0f / s->eta;
+  if (!is_smooth(s)) return (double)l * interface_mean(&rules->back, 0, c, a, &inside, NULL);
+  return (double)(vl_fresnel_dielectric(c, 1.0f / s->eta).reflected * l * l);
 }
 
-/* R = int_0^1 2c r(c) dc. The integral is split at the critical angle, beyond which a smooth coat's reflectance
- * falls like a square root. */
-static double back_share(const Rules *rules, float eta, float alpha, float tau) {
-  double critical = eta > 1.0f ? (double)__builtin_sqrtf(1.0f - 1.0f / (eta * eta)) : 0.0, sum = 0.0;
-  for (int i = 0; i < OUTER; i++) {
-    double x = rules->x[i], below = critical * x, above = critical + (1.0 - critical) * x * x;
-    if (critical > 0.0)
-      sum += rules->w[i] * critical * 2.0 * below * reflectance_inside(rules, (float)below, eta, alpha, tau);
-    sum += rules->w[i] * (1.0 - critical) * 2.0 * x * 2.0 * above *
-           reflectance_inside(rules, (float)above, eta, alpha, tau);
+/* The i-th of n azimuths of a midpoint rule over a quarter turn, after which an interface repeats itself, mirrored. */
+static Azimuth azimuth_at(int i, int n) {
+  vlSinCos x = vl_sincos_turn(0.25f * ((float)i + 0.5f) / (float)n);
+  return (Azimuth){x.sin, x.cos};
+}
+
+/* R = int_0^1 2c r(c) dc, r the mean over azimuths. The integral is split at the critical angle, beyond which a smooth
+ * coat's reflectance falls like a square root. */
+static double back_share(const Rules *rules, const Interface *s) {
+  double critical = s->eta > 1.0f ? (double)__builtin_sqrtf(1.0f - 1.0f / (s->eta * s->eta)) : 0.0, sum = 0.0;
+  bool same = s->alpha_x == s->alpha_y;
+  int azimuths = same ? 1 : QUARTER;
+  for (int k = 0; k < azimuths; k++) {
+    Azimuth a = same ? (Azimuth){0.0f, 1.0f} : azimuth_at(k, QUARTER);
+    for (int i = 0; i < OUTER; i++) {
+      double x = rules->x[i], below = critical * x, above = critical + (1.0 - critical) * x * x;
+      if (critical > 0.0) sum += rules->w[i] * critical * 2.0 * below * reflectance_inside(rules, (float)below, a, s);
+      sum += rules->w[i] * (1.0 - critical) * 2.0 * x * 2.0 * above * reflectance_inside(rules, (float)above, a, s);
+    }
   }
-  return sum;
+  return sum / azimuths;
 }
 
 static double at_cosine(const float *t, double c) {
@@ -153,20 +198,73 @@ static double escape_share(const Rules *rules, const float *t, float eta) {
   return sum / ((double)eta * (double)eta);
 }
 
-static void build_row(const Rules *rules, vlCoatTable *table, uint32_t row, float alpha) {
+static float root(float x) {
+  return __builtin_sqrtf(x > 0.0f ? x : 0.0f);
+}
+
+/* The interface and the azimuth that a row is for. */
+static Interface row_interface(const vlCoatTable *table, uint32_t row) {
+  float a = table->rows > 1 ? table->row_start + (float)row / table->row_scale : 0.0f;
+  float alpha = table->rows > 1 ? a * a : table->alpha_min;
+  if (!table->anisotropic) return (Interface){table->eta, alpha, alpha, table->tau};
+  return (Interface){table->eta, table->rough_y ? table->alpha_min : table->alpha_max,
+                     table->rough_y ? table->alpha_max : table->alpha_min, table->tau};
+}
+
+static Azimuth row_azimuth(const vlCoatTable *table, uint32_t row) {
+  if (!table->anisotropic) return (Azimuth){0.0f, 1.0f};
+  float rough = (float)row / (float)(VL_COAT_AZIMUTHS - 1), smooth = root(1.0f - rough * rough);
+  return table->rough_y ? (Azimuth){rough, smooth} : (Azimuth){smooth, rough};
+}
+
+/* Sets a number of each row of an anisotropic table to its mean over azimuths, as lookups interpolate it. */
+static void average_azimuths(const vlCoatTable *table, float *of_row) {
+  double sum = 0.0;
+  if (!table->anisotropic) return;
+  for (int i = 0; i < QUARTER_ROWS; i++) {
+    float row = azimuth_at(i, QUARTER_ROWS).sin * (float)(VL_COAT_AZIMUTHS - 1);
+    uint32_t low = row < (float)(VL_COAT_AZIMUTHS - 2) ? (uint32_t)row : VL_COAT_AZIMUTHS - 2;
+    double t = (double)row - low;
+    sum += ((1.0 - t) * (double)of_row[low] + t * (double)of_row[low + 1]) / QUARTER_ROWS;
+  }
+  for (uint32_t row = 0; row < VL_COAT_AZIMUTHS; row++) of_row[row] = (float)sum;
+}
+
+static void build_row(const Rules *rules, vlCoatTable *table, uint32_t row) {
   float *t = table->transmittance[row];
+  Interface s = row_interface(table, row);
+  Azimuth a = row_azimuth(table, row);
   for (int i = 0; i < VL_COAT_COS; i++) {
     float x = (float)i / (float)(VL_COAT_COS - 1);
     double imitation;
-    t[i] = (float)transmittance(rules, x * x * x * x, table->eta, alpha, table->tau, &imitation);
+    t[i] = (float)transmittance(rules, x * x * x * x, a, &s, &imitation);
     table->imitation[row][i] = (float)imitation;
   }
-  table->back[row] = (float)back_share(rules, table->eta, alpha, table->tau);
+  table->back[row] =
+      table->anisotropic && row > 0 ? table->back[0] : (float)back_share(rules, &s); /* the same for each azimuth */
   table->escape[row] = (float)escape_share(rules, t, table->eta);
 }
 
-static float root(float x) {
-  return __builtin_sqrtf(x > 0.0f ? x : 0.0f);
+/* Builds the rows of a table whose ranges are given. Takes the table. */
+static vlResult build_rows(vlContext *context, const vlCoatTable *ranges, vlCoatTable **result) {
+  vlCoatTable *table = vl_alloc(context, sizeof *table);
+  Rules *rules = vl_alloc(context, sizeof *rules);
+  if (!table || !rules) {
+    vl_free(context, table);
+    vl_free(context, rules);
+    return VL_ERROR_MEMORY;
+  }
+  *table = *ranges;
+  make_rules(rules);
+  for (uint32_t row = 0; row < table->rows; row++) build_row(rules, table, row);
+  average_azimuths(table, table->escape);
+  vl_free(context, rules);
+  *result = table;
+  return VL_OK;
+}
+
+static uint32_t bounces_of(uint32_t max_depth) {
+  return max_depth > 509 ? 255 : (max_depth + 1) / 2;
 }
 
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
@@ -176,31 +274,36 @@ vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_de
   if (!(eta > 0.0f && eta < VL_INFINITY && tau >= 0.0f && alpha_min >= 0.0f && alpha_max >= alpha_min &&
         alpha_max < VL_INFINITY))
     return VL_ERROR_ARGUMENT;
-  vlCoatTable *table = vl_alloc_zero(context, 1, sizeof *table);
-  Rules *rules = vl_alloc(context, sizeof *rules);
-  if (!table || !rules) {
-    vl_free(context, table);
-    vl_free(context, rules);
-    return VL_ERROR_MEMORY;
-  }
-  make_rules(rules);
-  table->eta = eta;
-  table->tau = tau;
-  table->bounces = max_depth > 509 ? 255 : (max_depth + 1) / 2;
-  table->alphas = alpha_max > alpha_min ? VL_COAT_ALPHA : 1;
-  table->alpha_min = alpha_min;
-  table->alpha_max = alpha_max;
-  table->row_start = root(alpha_min);
-  float step = (root(alpha_max) - table->row_start) / (float)(VL_COAT_ALPHA - 1);
-  if (!(step > 0.0f)) table->alphas = 1;
-  table->row_scale = table->alphas > 1 ? 1.0f / step : 0.0f;
-  for (uint32_t row = 0; row < table->alphas; row++) {
-    float a = table->row_start + (float)row * step;
-    build_row(rules, table, row, table->alphas > 1 ? a * a : alpha_min);
-  }
-  vl_free(context, rules);
-  *result = table;
-  return VL_OK;
+  float start = root(alpha_min), step = (root(alpha_max) - start) / (float)(VL_COAT_ALPHA - 1);
+  bool range = alpha_max > alpha_min && step > 0.0f;
+  const vlCoatTable ranges = {.eta = eta,
+                              .tau = tau,
+                              .bounces = bounces_of(max_depth),
+                              .rows = range ? VL_COAT_ALPHA : 1,
+                              .alpha_min = alpha_min,
+                              .alpha_max = alpha_max,
+                              .row_start = start,
+                              .row_scale = range ? 1.0f / step : 0.0f};
+  return build_rows(context, &ranges, result);
+}
+
+vlResult vl_coat_build_anisotropic(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_x,
+                                   float alpha_y, vlCoatTable **result) {
+  bool rough_y = alpha_y > alpha_x;
+  float low = rough_y ? alpha_x : alpha_y, high = rough_y ? alpha_y : alpha_x;
+  if (alpha_x == alpha_y || !(low >= 0.0f && high < VL_INFINITY) || !(eta > 0.0f && eta < VL_INFINITY && tau >= 0.0f))
+    return vl_coat_build(context, eta, tau, max_depth, low, high, result);
+  if (!context || !result) return VL_ERROR_ARGUMENT;
+  *result = NULL;
+  const vlCoatTable ranges = {.eta = eta,
+                              .tau = tau,
+                              .bounces = bounces_of(max_depth),
+                              .rows = VL_COAT_AZIMUTHS,
+                              .alpha_min = low,
+                              .alpha_max = high,
+                              .anisotropic = true,
+                              .rough_y = rough_y};
+  return build_rows(context, &ranges, result);
 }
 
 /* Like escape_share, but integrates the interpolated table by the midpoint rule over x = c^(1/4), so that it agrees
@@ -215,41 +318,63 @@ static double escape_exactly(const float *t, float eta) {
   return sum / ((double)eta * (double)eta);
 }
 
-static float row_alpha(const vlCoatTable *table, uint32_t row) {
-  float a = table->alphas > 1 ? table->row_start + (float)row / table->row_scale : 0.0f;
-  return table->alphas > 1 ? a * a : table->alpha_min;
-}
-
-static void conserve_row(const Rules *rules, vlCoatTable *table, uint32_t row) {
-  float eta = table->eta, alpha = row_alpha(table, row), *t = table->transmittance[row], through[VL_COAT_COS];
+/* First half of conserving: a row of T becomes the share that the layer transmits; through receives what the interface
+ * does not reflect, escape what of the base's light passes it. */
+static void conserve_row(const Rules *rules, vlCoatTable *table, uint32_t row, float *through, float *escape) {
+  Interface s = row_interface(table, row), clear = s;
+  Azimuth a = row_azimuth(table, row);
+  float *t = table->transmittance[row];
   double layers = 1.0, unused;
-  memcpy(table->imitation[row], t, sizeof table->imitation[row]);
-  if (alpha < VL_GGX_SMOOTH || eta == 1.0f) return; /* nothing is lost */
+  clear.tau = 0.0f;
   for (int i = VL_COAT_COS; i-- > 0;) {
     float x = (float)i / (float)(VL_COAT_COS - 1),
           c = x * x * x * x > VL_MIN_FRACTION ? x * x * x * x : VL_MIN_FRACTION;
-    through[i] = (float)(1.0 - reflectance_outside(rules, c, eta, alpha));
-    double clear = table->tau > 0.0f ? transmittance(rules, c, eta, alpha, 0.0f, &unused) : 0.0;
-    if (clear > 0.0) layers = (double)t[i] / clear; /* otherwise as at the previous cosine */
-    t[i] = (float)layers;                           /* share that the layer transmits */
+    through[i] = (float)(1.0 - reflectance_outside(rules, c, a, &s));
+    double all = s.tau > 0.0f ? transmittance(rules, c, a, &clear, &unused) : 0.0;
+    if (all > 0.0) layers = (double)t[i] / all; /* otherwise as at the previous cosine */
+    t[i] = (float)layers;                       /* share that the layer transmits */
   }
-  double escape = escape_exactly(through, eta), limit = escape > 1.0 ? 1.0 / escape : 1.0;
+  *escape = (float)escape_exactly(through, table->eta);
+}
+
+/* Second half, with the mean escape of all azimuths. */
+static void limit_row(const Rules *rules, vlCoatTable *table, uint32_t row, const float *through, double escape) {
+  Interface clear = row_interface(table, row);
+  float *t = table->transmittance[row];
+  clear.tau = 0.0f;
+  double limit = escape > 1.0 ? 1.0 / escape : 1.0;
   for (int i = 0; i < VL_COAT_COS; i++) table->imitation[row][i] = t[i] = (float)(limit * (double)(t[i] * through[i]));
-  double back = 1.0 - limit * escape, clear = table->tau > 0.0f ? back_share(rules, eta, alpha, 0.0f) : 0.0;
-  table->back[row] = (float)(clear > 0.0 ? back * (double)table->back[row] / clear : back);
-  table->escape[row] = (float)escape_exactly(t, eta);
+  double back = 1.0 - limit * escape, all = table->tau > 0.0f ? back_share(rules, &clear) : 0.0;
+  table->back[row] = (float)(all > 0.0 ? back * (double)table->back[row] / all : back);
+  table->escape[row] = (float)escape_exactly(t, table->eta);
 }
 
 vlResult vl_coat_conserve(vlContext *context, vlCoatTable *table) {
   if (!context || !table) return VL_ERROR_ARGUMENT;
   if (table->conserves) return VL_OK;
-  Rules *rules = vl_alloc(context, sizeof *rules);
-  if (!rules) return VL_ERROR_MEMORY;
-  make_rules(rules);
-  for (uint32_t row = 0; row < table->alphas; row++) conserve_row(rules, table, row);
+  typedef struct {
+    Rules rules;
+    float through[VL_COAT_ALPHA][VL_COAT_COS], escape[VL_COAT_ALPHA];
+  } Work;
+  Work *work = vl_alloc(context, sizeof *work);
+  if (!work) return VL_ERROR_MEMORY;
+  make_rules(&work->rules);
+  bool lossy[VL_COAT_ALPHA];
+  for (uint32_t row = 0; row < table->rows; row++) {
+    Interface s = row_interface(table, row);
+    lossy[row] = !is_smooth(&s) && table->eta != 1.0f;
+    if (lossy[row])
+      conserve_row(&work->rules, table, row, work->through[row], &work->escape[row]);
+    else
+      memcpy(table->imitation[row], table->transmittance[row], sizeof table->imitation[row]);
+  }
+  average_azimuths(table, work->escape);
+  for (uint32_t row = 0; row < table->rows; row++)
+    if (lossy[row]) limit_row(&work->rules, table, row, work->through[row], (double)work->escape[row]);
+  average_azimuths(table, table->escape);
   table->bounces = 255;
   table->conserves = true;
-  vl_free(context, rules);
+  vl_free(context, work);
   return VL_OK;
 }
 
@@ -258,17 +383,26 @@ vlResult vl_coat_white_albedo(vlContext *context, const vlCoatTable *table, doub
   Rules *rules = vl_alloc(context, sizeof *rules);
   if (!rules) return VL_ERROR_MEMORY;
   make_rules(rules);
-  double power = 1.0, series = 0.0, back = (double)table->back[0], sum = 0.0;
+  double power = 1.0, series = 0.0, back = (double)table->back[0];
+  float of_row[VL_COAT_ALPHA];
   for (uint32_t k = 0; k < table->bounces; k++) {
     series += power;
     power *= back;
   }
-  for (int i = 0; i < OUTER; i++) {
-    double c = rules->x[i], own = reflectance_outside(rules, (float)c, table->eta, row_alpha(table, 0));
-    sum += rules->w[i] * 2.0 * c * (own + at_cosine(table->transmittance[0], c) * (double)table->escape[0] * series);
+  for (uint32_t row = 0; row < (table->anisotropic ? table->rows : 1); row++) {
+    Interface s = row_interface(table, row);
+    Azimuth a = row_azimuth(table, row);
+    double sum = 0.0;
+    for (int i = 0; i < OUTER; i++) {
+      double c = rules->x[i], own = reflectance_outside(rules, (float)c, a, &s);
+      double base = at_cosine(table->transmittance[row], c) * (double)table->escape[0] * series;
+      sum += rules->w[i] * 2.0 * c * (own + base);
+    }
+    of_row[row] = (float)sum;
   }
+  average_azimuths(table, of_row);
   vl_free(context, rules);
-  *albedo = sum;
+  *albedo = (double)of_row[0];
   return VL_OK;
 }
 

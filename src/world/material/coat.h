@@ -18,13 +18,17 @@
 
 #include "base/context.h"
 
-enum { VL_COAT_COS = 96, VL_COAT_ALPHA = 32 };
+enum { VL_COAT_COS = 96, VL_COAT_ALPHA = 32, VL_COAT_AZIMUTHS = 17 };
 
 typedef struct vlCoatTable {
   float eta, tau;
   uint32_t bounces; /* K, at most 255 */
-  uint32_t alphas;  /* number of rows: 1 for alpha_min only, or VL_COAT_ALPHA in equal steps of sqrt(alpha) */
+  uint32_t rows;    /* 1 for alpha_min only; VL_COAT_ALPHA in equal steps of sqrt(alpha); or VL_COAT_AZIMUTHS */
   float alpha_min, alpha_max;
+  /* Anisotropic: alpha_min and alpha_max are those of the two axes, and T depends on the azimuth of w. It is even in
+   * w.x and in w.y, so the rows are equal steps of r / sqrt(w.x^2 + w.y^2), from 0 to 1, with r = |w.y| if rough_y is
+   * set, else |w.x|. Near the axis of alpha_min, T changes as fast as this number where alpha_min is small. */
+  bool anisotropic, rough_y;
   float row_start, row_scale; /* row = (sqrt(alpha) - row_start) * row_scale */
   /* T at cos = (i / (VL_COAT_COS - 1))^4; lookups interpolate by cubics */
   float transmittance[VL_COAT_ALPHA][VL_COAT_COS];
@@ -37,18 +41,22 @@ typedef struct vlCoatTable {
   float imitation[VL_COAT_ALPHA][VL_COAT_COS];
   bool imitate;
   bool conserves;              /* vl_coat_conserve has changed the table */
-  float back[VL_COAT_ALPHA];   /* R */
+  float back[VL_COAT_ALPHA];   /* R; anisotropic: the same in each row, as is escape */
   float escape[VL_COAT_ALPHA]; /* share of the light from the base that leaves without reflection at the coat: int T
                                   2cos dcos / eta^2 */
 } vlCoatTable;
 
-/* Builds the tables for isotropic alpha between alpha_min and alpha_max (equal for untextured roughness; for an
- * anisotropic coat, the geometric mean). Below VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. The quadrature is
- * deterministic. Relative errors of T and R for eta > 1: 1e-4 up to alpha 0.1, 4e-4 up to alpha 1. Interpolation
- * between rows adds up to 2e-3 for cos > 0.1 and 1e-2 below. A build takes 1.5 ms for one roughness, 45 ms for a range.
- * Errors: ARGUMENT (eta <= 0, tau < 0, alpha_min > alpha_max, ...), MEMORY. */
+/* Builds the tables for isotropic alpha between alpha_min and alpha_max (equal for untextured roughness). Below
+ * VL_GGX_SMOOTH (math/ggx.h) the interface is smooth. The quadrature is deterministic. Relative errors of T and R for
+ * eta > 1: 1e-4 up to alpha 0.1, 4e-4 up to alpha 1. Interpolation between rows adds up to 2e-3 for cos > 0.1 and 1e-2
+ * below. A build takes 1.5 ms for one roughness, 45 ms for a range. Errors: ARGUMENT (eta <= 0, tau < 0, alpha_min >
+ * alpha_max, ...), MEMORY. */
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
                        vlCoatTable **table);
+/* The same for an interface of two alphas, along x and along y. Interpolation between azimuths adds up to 2e-3 for
+ * alphas of 0.05 and more, and 1e-2 below. A build takes 50 ms. Errors: ARGUMENT, MEMORY. */
+vlResult vl_coat_build_anisotropic(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_x,
+                                   float alpha_y, vlCoatTable **table);
 /* Makes the coat of a built table keep all light: over a white base and without absorption nothing is lost, at any
  * roughness. The base receives the light that single scattering between microfacets loses: T(w) becomes (1 - E(w)) T(w)
  * / T0(w) and R becomes R (1 - mean(1 - E) / eta^2) / R0, where E is the reflectance of the coat alone from outside,

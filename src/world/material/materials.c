@@ -30,7 +30,8 @@ static const vlWorldCoat *find_coat(const vlWorld *world, const vlCoatTable *wan
   for (size_t i = 0; i < world->coats.count; i++) {
     const vlCoatTable *t = world->coats.items[i].table;
     if (t && t->eta == wanted->eta && t->tau == wanted->tau && world->coats.items[i].depth == depth &&
-        t->alpha_min == wanted->alpha_min && t->alpha_max == wanted->alpha_max && t->conserves == wanted->conserves)
+        t->alpha_min == wanted->alpha_min && t->alpha_max == wanted->alpha_max &&
+        t->anisotropic == wanted->anisotropic && t->rough_y == wanted->rough_y && t->conserves == wanted->conserves)
       return &world->coats.items[i];
   }
   return NULL;
@@ -40,12 +41,18 @@ static void free_coat(vlContext *context, void *table) {
   vl_coat_free(context, table);
 }
 
-/* Gives the coat table for this range of alphas. Coats with equal parameters share a table. */
-static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, float low, float high,
-                           const vlCoatTable **table, vlError *error) {
+/* Gives the coat table for these alphas, along u and along v, or, if one of them is textured, for all up to 1. Coats
+ * with equal parameters share a table. */
+static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWorldMaterial *m, bool textured, float u,
+                           float v, const vlCoatTable **table, vlError *error) {
   float thickness = def->thickness.value;
-  const vlCoatTable wanted = {
-      .eta = m->eta_s, .tau = thickness, .alpha_min = low, .alpha_max = high, .conserves = def->conserve_energy};
+  const vlCoatTable wanted = {.eta = m->eta_s,
+                              .tau = thickness,
+                              .alpha_min = textured ? 0 : fminf(u, v),
+                              .alpha_max = textured ? 1 : fmaxf(u, v),
+                              .anisotropic = !textured && u != v,
+                              .rough_y = !textured && v > u,
+                              .conserves = def->conserve_energy};
   const vlWorldCoat *known = find_coat(world, &wanted, def->max_depth);
   if (known) {
     *table = known->table;
@@ -60,9 +67,10 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
     return VL_OK;
   }
   vlCoatTable *built = NULL;
-  if (vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, low, high, &built) != VL_OK)
-    return vl_fail_memory(error);
-  vlResult r = def->conserve_energy ? vl_coat_conserve(world->context, built) : VL_OK;
+  vlResult r = textured ? vl_coat_build(world->context, m->eta_s, thickness, def->max_depth, 0, 1, &built)
+                        : vl_coat_build_anisotropic(world->context, m->eta_s, thickness, def->max_depth, u, v, &built);
+  if (r != VL_OK) return vl_fail_memory(error);
+  r = def->conserve_energy ? vl_coat_conserve(world->context, built) : VL_OK;
   vlWorldCoat *slot = r != VL_OK ? NULL : VL_PUSH(world->context, &world->coats);
   vlPart *part = slot ? vl_part_add(world) : NULL;
   if (!part) {
@@ -79,12 +87,12 @@ static vlResult coat_table(vlWorld *world, const vlMaterialDef *def, const vlWor
 
 static vlResult coat_of(vlWorld *world, const vlMaterialDef *def, vlWorldMaterial *m, vlError *error) {
   const vlTextureNode *u = &world->nodes.items[m->u_roughness], *v = &world->nodes.items[m->v_roughness];
-  if (u->kind != VL_NODE_FLOAT || v->kind != VL_NODE_FLOAT) return coat_table(world, def, m, 0, 1, &m->coat, error);
-  float a = alpha_of(u->value, m->remap), b = alpha_of(v->value, m->remap), alpha = sqrtf(a * b);
-  vlResult r = coat_table(world, def, m, alpha, alpha, &m->coat, error);
+  if (u->kind != VL_NODE_FLOAT || v->kind != VL_NODE_FLOAT)
+    return coat_table(world, def, m, true, 0, 0, &m->coat, error);
+  float a = alpha_of(u->value, m->remap), b = alpha_of(v->value, m->remap);
+  vlResult r = coat_table(world, def, m, false, a, b, &m->coat, error);
   if (r != VL_OK || !world->def.regularize) return r;
-  alpha = sqrtf(vl_ggx_widened(a) * vl_ggx_widened(b));
-  return coat_table(world, def, m, alpha, alpha, &m->widened, error);
+  return coat_table(world, def, m, false, vl_ggx_widened(a), vl_ggx_widened(b), &m->widened, error);
 }
 
 static void free_measured(vlContext *context, void *measured) {

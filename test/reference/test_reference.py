@@ -242,6 +242,31 @@ def alpha_textures_of_instances_are_placed_in_the_world():
 
 
 @case
+def sides_under_mirroring_transforms_agree_with_velo():
+    """Glass of index 2 seen from outside, over a lamp, is 1/4 as bright, else 4 times: which side is out is as in pbrt, for each
+    kind of shape, mirrored or not, in an instance or not, turned by ReverseOrientation or not."""
+    shapes = (("quadric", 'Shape "disk" "float radius" 5\n'),
+              ("patch", 'Shape "bilinearmesh" "point3 P" [ -5 -5 0  5 -5 0  -5 5 0  5 5 .1 ]\n'),
+              ("triangles", 'Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  0 9 0 ]\n'),
+              ("normals", 'Shape "trianglemesh" "point3 P" [ -9 -9 0  9 -9 0  0 9 0 ] "normal N" [ 0 0 -1 0 0 -1 0 0 -1 ]\n'))
+    lamp = 'AttributeBegin Translate 0 0 1 AreaLightSource "diffuse" "bool twosided" true Shape "disk" "float radius" 5 AttributeEnd\n'
+    sides = set()
+    for name, shape in shapes:
+        for mirror in ("", "Scale -1 1 1 "):
+            for place in ("", "Scale 1 -1 1 "):
+                for turn in ("", "ReverseOrientation "):
+                    text = turn + 'Material "dielectric" "float eta" 2\n' + shape
+                    text = 'ObjectBegin "o" AttributeBegin ' + mirror + text + "AttributeEnd ObjectEnd\n" + place + 'ObjectInstance "o"\n'
+                    path = scene("sides.pbrt", "WorldBegin\n" + lamp + "AttributeBegin " + text + "AttributeEnd\n")
+                    options = ("--color", "rgb", "--resolution", "2x2")
+                    means = [draw(path, "sides.exr", 16, *options)[0].mean() for draw in (render_velo, render)]
+                    sides.add((name, bool(mirror), bool(place), bool(turn), means[0] > 1))
+                    assert 0.8 < means[0] / means[1] < 1.25, (name, mirror, place, turn, means)
+    out = [s[:4] for s in sides if s[4]]
+    assert len(out) == 16, "half of the 32 are seen from inside: %s" % out
+
+
+@case
 def a_white_furnace_is_white():
     for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
                            ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):

@@ -12,7 +12,7 @@
 
 typedef struct {
   bool metal;
-  float alpha, eta_s, base_x, base_y, thickness, albedo, g, eta, k, reflectance, depth;
+  float alpha, alpha_y /* of the coat, 0: alpha */, eta_s, base_x, base_y, thickness, albedo, g, eta, k, reflectance, depth;
 } Stack;
 
 static const Stack stacks[] = {
@@ -47,7 +47,7 @@ static void put(Batch *b, uint32_t i, const Stack *t, uint32_t seed) {
                .eta = t->eta,
                .k = t->k,
                .alpha_x = t->alpha,
-               .alpha_y = t->alpha,
+               .alpha_y = t->alpha_y > 0 ? t->alpha_y : t->alpha,
                .eta_s = t->eta_s,
                .own = rows};
   batch_surface(b, i, &s);
@@ -162,12 +162,13 @@ static void walks_are_natures(void **state) {
 
 static void diffuse_base_is_the_closed_form(void **state) {
   const State *s = *state;
-  for (int rough = 0; rough < 2; rough++) {
-    float alpha = rough ? 0.3f : 0.0f;
-    Stack t = {.eta_s = 1.5f, .alpha = alpha, .reflectance = 0.8f, .thickness = 0.1f, .depth = 10};
+  const float alphas[4][2] = {{0, 0}, {0.3f, 0.3f}, {0.1f, 0.5f}, {0.6f, 0.05f}};
+  for (int rough = 0; rough < 4; rough++) {
+    float x_alpha = alphas[rough][0], y_alpha = alphas[rough][1];
+    Stack t = {.eta_s = 1.5f, .alpha = x_alpha, .alpha_y = y_alpha, .reflectance = 0.8f, .thickness = 0.1f, .depth = 10};
     vlCoatTable *table;
-    assert_int_equal(vl_coat_build(s->context, 1.5f, 0.1f, 10, alpha, alpha, &table), VL_OK);
-    Surface exact = {.reflectance = 0.8f, .eta_s = 1.5f, .alpha_x = alpha, .alpha_y = alpha, .coat = table};
+    assert_int_equal(vl_coat_build_anisotropic(s->context, 1.5f, 0.1f, 10, x_alpha, y_alpha, &table), VL_OK);
+    Surface exact = {.reflectance = 0.8f, .eta_s = 1.5f, .alpha_x = x_alpha, .alpha_y = y_alpha, .coat = table};
     const double angles[4][3] = {{0.2, 0.5, 1}, {1.0, 0.3, 2}, {0.7, 1.2, 3}, {1.3, 1.3, 0.5}};
     for (int k = 0; k < 4; k++) {
       double sum = 0, square = 0, count = 0;

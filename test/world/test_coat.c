@@ -240,6 +240,17 @@ static void conserving(void **state) {
     if (!(eta < 1 || (albedo > 0.999 && albedo < 1.001))) fail_msg("eta %g alpha %g: %g", eta, alpha, albedo);
     vl_coat_free(*state, t);
   }
+  /* Two alphas: what leaves in other directions than it came from, too. */
+  for (int i = 0; i < 3; i++) {
+    const float alphas[3][2] = {{0.1f, 0.5f}, {0.6f, 0.05f}, {0, 0.3f}};
+    assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.0f, 1000, alphas[i][0], alphas[i][1], &t), VL_OK);
+    assert_int_equal(t->rows, VL_COAT_AZIMUTHS);
+    assert_int_equal(vl_coat_white_albedo(*state, t, &other), VL_OK);
+    assert_int_equal(vl_coat_conserve(*state, t), VL_OK);
+    assert_int_equal(vl_coat_white_albedo(*state, t, &albedo), VL_OK);
+    if (!(other < 0.97 && albedo > 0.998 && albedo < 1.002)) fail_msg("anisotropic %d: %g, %g", i, other, albedo);
+    vl_coat_free(*state, t);
+  }
 }
 
 /* Rows of a textured roughness against tables of one alpha. */
@@ -274,6 +285,9 @@ static void arguments(void **state) {
   assert_int_equal(vl_coat_build(*state, 1.5f, -1.0f, 10, 0, 0, &t), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, 0.2f, 0.1f, &t), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 10, nan, nan, &t), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, 0.1f, nan, &t), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, 1.5f, 0.01f, 10, -0.1f, 0.2f, &t), VL_ERROR_ARGUMENT);
+  assert_int_equal(vl_coat_build_anisotropic(*state, nan, 0.01f, 10, 0.1f, 0.2f, &t), VL_ERROR_ARGUMENT);
   assert_int_equal(vl_coat_build(*state, 1.5f, 0.01f, 0xffffffffu, 0, 0, &t), VL_OK);
   assert_int_equal(t->bounces, 255);
   vl_coat_free(*state, t);

@@ -35,7 +35,7 @@ bool verify_has_surfaces(VerifyLights lights) {
 
 /* What decides which light of the scene the tracers find, besides what they do not support (vl_tracer_lacks). */
 typedef struct Features {
-  bool hair;   /* its lobes are so narrow that uniform directions hardly ever meet them */
+  bool narrow; /* hair and glass: their lobes are so narrow that uniform directions hardly ever meet them */
   bool smooth; /* a material that may reflect or refract like a mirror */
   bool media;  /* any medium, or light that goes through a solid */
   bool small, sky, surfaces;
@@ -62,12 +62,12 @@ static bool may_be_smooth(const vlMaterialDef *m) {
 }
 
 static Features find_features(const Verify *v) {
-  Features f = {.hair = false};
+  Features f = {.narrow = false};
   const vlMaterialDef *material;
   const vlLightDef *light;
   for (uint32_t i = 1; (material = vl_scene_material(v->scene, (vlMaterialId){i})); i++) {
     f.smooth = f.smooth || may_be_smooth(material);
-    f.hair = f.hair || material->kind == VL_MATERIAL_HAIR;
+    f.narrow = f.narrow || material->kind == VL_MATERIAL_HAIR || material->kind == VL_MATERIAL_DIELECTRIC;
     f.media = f.media || material->kind == VL_MATERIAL_SUBSURFACE;
   }
   f.media = f.media || vl_scene_medium(v->scene, (vlMediumId){1});
@@ -103,7 +103,7 @@ static void add_tracers(Verify *v, const Features *f, VerifyLights lights, int a
     verify_note(v, "lightpath and randomwalk are not compared: smooth surfaces are black with them");
   else
     add(v, (VerifyRun){.name = "lightpath", .tracer = VL_TRACER_LIGHT_PATH, .lights = lights, .against = against});
-  if (!f->smooth && !f->media && !f->hair && !small)
+  if (!f->smooth && !f->media && !f->narrow && !small)
     add(v, (VerifyRun){.name = "randomwalk", .tracer = VL_TRACER_RANDOM_WALK, .lights = lights, .against = against});
   add(v,
       (VerifyRun){.name = "merging", .tracer = VL_TRACER_MERGING, .lights = lights, .against = against, .apart = true});

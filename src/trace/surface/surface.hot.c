@@ -205,10 +205,12 @@ static inline __attribute__((always_inline)) Triangle triangle_point(vlVec3 o, v
   float inv_det = vl_abs(det) > VL_MIN_POSITIVE ? 1.0f / det : 0.0f;
   vlVec3 du = vl_mul(vl_sub(vl_mul(e02, v12), vl_mul(e12, v02)), inv_det);
   vlVec3 dv = vl_mul(vl_sub(vl_mul(e12, u02), vl_mul(e02, u12)), inv_det);
-  vlFrame frame = vl_frame_from_z(r.n);
+  /* Where the coordinates span no area, the tangent is the edge from the first corner to the second: it turns with the
+   * triangle, as one made from the normal alone would not. */
+  vlVec3 edge = vl_normalize(near_one(vl_sub(p1, p0)));
   float ok = vl_length2(du) > 0.0f ? 1.0f : 0.0f;
-  r.u = select3(ok > 0.0f, du, frame.x);
-  r.v = select3(ok > 0.0f, dv, frame.y);
+  r.u = select3(ok > 0.0f, du, edge);
+  r.v = select3(ok > 0.0f, dv, vl_cross(r.g, edge));
   r.uv_scale = area2 > 0.0f ? __builtin_sqrtf(vl_abs(det) / area2) : 0.0f;
   return r;
 }

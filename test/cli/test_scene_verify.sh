@@ -77,6 +77,23 @@ expect_text mirror_lightpath 'lightpath and randomwalk are not compared: smooth 
 expect_text mirror_small_lights 'only light paths find them through smooth surfaces'
 if grep -q '^lightpath  ' <<<"$out"; then fail mirror_has_no_lightpath; else pass mirror_has_no_lightpath; fi
 
+# Brushed metal on a triangle whose texture coordinates span no area: its tangent turns with it.
+cat >tangent.pbrt <<'END'
+LookAt 0 -4 1.5  0 0 0.4  0 0 1
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+WorldBegin
+LightSource "distant" "point3 from" [.4 -.7 1] "rgb L" [3 3 3]
+Material "conductor" "float uroughness" .03 "float vroughness" .5
+Shape "trianglemesh" "point3 P" [-2 -2 0 2 -2 0 0 3 .5] "point2 uv" [0 0 1 1 2 2]
+END
+check tangent verify tangent.pbrt
+
+# Rough glass: uniform directions hardly ever meet its lobes.
+printf '%s\n' "$head" 'Material "dielectric" "float roughness" .2' "$body" >glass.pbrt
+check glass verify glass.pbrt
+if grep -q '^randomwalk' <<<"$out"; then fail glass_has_no_randomwalk; else pass glass_has_no_randomwalk; fi
+
 # A tracer that volpath replaces is not compared with volpath.
 printf '%s\n' "$head" 'Material "subsurface"' "$body" >solid.pbrt
 check subsurface verify solid.pbrt

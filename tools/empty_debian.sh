@@ -12,7 +12,20 @@ make_machine() {
   cp /etc/resolv.conf /etc/hosts "$1/etc/"
   for file in /etc/apt/apt.conf.d/*proxy*; do [ ! -e "$file" ] || cp "$file" "$1/etc/apt/apt.conf.d/"; done
   mount -t proc proc "$1/proc"
-  mount --rbind /dev "$1/dev"
+  own_devices "$1/dev"
+}
+
+# Devices of the machine's own: what runs there as root must not be able to remove those of this one.
+own_devices() {
+  mount -t tmpfs -o mode=755 tmpfs "$1"
+  mkdir "$1/pts" "$1/shm"
+  mount -t devpts -o newinstance,ptmxmode=0666,mode=0620 devpts "$1/pts"
+  chmod 1777 "$1/shm"
+  for node in null:3 zero:5 full:7 random:8 urandom:9; do mknod -m 666 "$1/${node%:*}" c 1 "${node#*:}"; done
+  mknod -m 666 "$1/tty" c 5 0
+  ln -s pts/ptmx "$1/ptmx"
+  ln -s /proc/self/fd "$1/fd"
+  for stream in 0:stdin 1:stdout 2:stderr; do ln -s "/proc/self/fd/${stream%:*}" "$1/${stream#*:}"; done
 }
 
 run_in_machine() {

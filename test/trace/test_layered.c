@@ -12,7 +12,8 @@
 
 typedef struct {
   bool metal;
-  float alpha, alpha_y /* of the coat, 0: alpha */, eta_s, base_x, base_y, thickness, albedo, g, eta, k, reflectance, depth;
+  float alpha, alpha_y /* of the coat, 0: alpha */, eta_s, base_x, base_y, thickness, albedo, g, eta, k, reflectance,
+      depth;
 } Stack;
 
 static const Stack stacks[] = {
@@ -165,7 +166,8 @@ static void diffuse_base_is_the_closed_form(void **state) {
   const float alphas[4][2] = {{0, 0}, {0.3f, 0.3f}, {0.1f, 0.5f}, {0.6f, 0.05f}};
   for (int rough = 0; rough < 4; rough++) {
     float x_alpha = alphas[rough][0], y_alpha = alphas[rough][1];
-    Stack t = {.eta_s = 1.5f, .alpha = x_alpha, .alpha_y = y_alpha, .reflectance = 0.8f, .thickness = 0.1f, .depth = 10};
+    Stack t = {
+        .eta_s = 1.5f, .alpha = x_alpha, .alpha_y = y_alpha, .reflectance = 0.8f, .thickness = 0.1f, .depth = 10};
     vlCoatTable *table;
     assert_int_equal(vl_coat_build_anisotropic(s->context, 1.5f, 0.1f, 10, x_alpha, y_alpha, &table), VL_OK);
     Surface exact = {.reflectance = 0.8f, .eta_s = 1.5f, .alpha_x = x_alpha, .alpha_y = y_alpha, .coat = table};

@@ -78,7 +78,7 @@ static inline Row row_of(const vlCoatTable *table, float alpha_x, float alpha_y,
   if (table->anisotropic) { /* by azimuth; along the normal all rows are the same */
     float across = x * x + y * y, rough = vl_abs(table->rough_y ? y : x);
     float share = across > VL_MIN_POSITIVE ? rough / __builtin_sqrtf(across) : 0.0f;
-    return row_at(share * (float)(VL_COAT_AZIMUTHS - 1), VL_COAT_AZIMUTHS);
+    return row_at(__builtin_sqrtf(share) * (float)(VL_COAT_AZIMUTHS - 1), VL_COAT_AZIMUTHS);
   }
   float alpha = __builtin_sqrtf(vl_ggx_alpha(alpha_x) * vl_ggx_alpha(alpha_y)); /* textured roughness */
   return row_at((__builtin_sqrtf(alpha) - table->row_start) * table->row_scale, VL_COAT_ALPHA);

@@ -213,7 +213,7 @@ static Interface row_interface(const vlCoatTable *table, uint32_t row) {
 
 static Azimuth row_azimuth(const vlCoatTable *table, uint32_t row) {
   if (!table->anisotropic) return (Azimuth){0.0f, 1.0f};
-  float rough = (float)row / (float)(VL_COAT_AZIMUTHS - 1), smooth = root(1.0f - rough * rough);
+  float x = (float)row / (float)(VL_COAT_AZIMUTHS - 1), rough = x * x, smooth = root(1.0f - rough * rough);
   return table->rough_y ? (Azimuth){rough, smooth} : (Azimuth){smooth, rough};
 }
 
@@ -222,7 +222,7 @@ static void average_azimuths(const vlCoatTable *table, float *of_row) {
   double sum = 0.0;
   if (!table->anisotropic) return;
   for (int i = 0; i < QUARTER_ROWS; i++) {
-    float row = azimuth_at(i, QUARTER_ROWS).sin * (float)(VL_COAT_AZIMUTHS - 1);
+    float row = root(azimuth_at(i, QUARTER_ROWS).sin) * (float)(VL_COAT_AZIMUTHS - 1);
     uint32_t low = row < (float)(VL_COAT_AZIMUTHS - 2) ? (uint32_t)row : VL_COAT_AZIMUTHS - 2;
     double t = (double)row - low;
     sum += ((1.0 - t) * (double)of_row[low] + t * (double)of_row[low + 1]) / QUARTER_ROWS;

@@ -18,7 +18,7 @@
 
 #include "base/context.h"
 
-enum { VL_COAT_COS = 96, VL_COAT_ALPHA = 32, VL_COAT_AZIMUTHS = 17 };
+enum { VL_COAT_COS = 96, VL_COAT_ALPHA = 32, VL_COAT_AZIMUTHS = 25 };
 
 typedef struct vlCoatTable {
   float eta, tau;
@@ -26,8 +26,8 @@ typedef struct vlCoatTable {
   uint32_t rows;    /* 1 for alpha_min only; VL_COAT_ALPHA in equal steps of sqrt(alpha); or VL_COAT_AZIMUTHS */
   float alpha_min, alpha_max;
   /* Anisotropic: alpha_min and alpha_max are those of the two axes, and T depends on the azimuth of w. It is even in
-   * w.x and in w.y, so the rows are equal steps of r / sqrt(w.x^2 + w.y^2), from 0 to 1, with r = |w.y| if rough_y is
-   * set, else |w.x|. Near the axis of alpha_min, T changes as fast as this number where alpha_min is small. */
+   * w.x and in w.y, so the rows are equal steps of sqrt(r), from 0 to 1, with r = |w.y| / sqrt(w.x^2 + w.y^2) if
+   * rough_y is set, else |w.x| / ...: densest near the axis of alpha_min, where T changes fastest. */
   bool anisotropic, rough_y;
   float row_start, row_scale; /* row = (sqrt(alpha) - row_start) * row_scale */
   /* T at cos = (i / (VL_COAT_COS - 1))^4; lookups interpolate by cubics */
@@ -54,7 +54,7 @@ typedef struct vlCoatTable {
 vlResult vl_coat_build(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_min, float alpha_max,
                        vlCoatTable **table);
 /* The same for an interface of two alphas, along x and along y. Interpolation between azimuths adds up to 2e-3 for
- * alphas of 0.05 and more, and 1e-2 below. A build takes 50 ms. Errors: ARGUMENT, MEMORY. */
+ * alphas of 0.05 and more, and 1e-2 below. A build takes 100 ms. Errors: ARGUMENT, MEMORY. */
 vlResult vl_coat_build_anisotropic(vlContext *context, float eta, float tau, uint32_t max_depth, float alpha_x,
                                    float alpha_y, vlCoatTable **table);
 /* Makes the coat of a built table keep all light: over a white base and without absorption nothing is lost, at any

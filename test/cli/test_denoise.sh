@@ -56,13 +56,14 @@ for exposure in "" "--exposure auto"; do
   fi
 done
 
-# Stopped while it denoises: the image is there, no denoised copy is, and none is said to be. A larger image takes longer to
-# denoise; waiting without sleep starts no process, which on a loaded machine would take as long.
-for width in 400 800 1600 3200 6400; do
+# Stopped while it denoises: the image is there, no denoised copy is, and none is said to be. A signal before denoising has
+# begun only ends the render. Larger images take longer to denoise, so a loaded machine meets one of these times.
+for try in "400 .01" "800 .03" "1600 .2" "3200 .5" "6400 1.5"; do
   rm -f stopped.exr stopped_clean.exr
-  "$VELO" render room.pbrt -t 1 --resolution ${width}x300 --spp 2 -o stopped.exr --denoise stopped_clean.exr >said 2>&1 &
+  "$VELO" render room.pbrt -t 1 --resolution ${try% *}x300 --spp 2 -o stopped.exr --denoise stopped_clean.exr >said 2>&1 &
   process=$!
   while [ ! -e stopped.exr ] && kill -0 $process 2>/dev/null; do :; done
+  sleep "${try#* }"
   kill -TERM $process 2>/dev/null
   wait $process
   code=$?

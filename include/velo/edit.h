@@ -38,10 +38,11 @@ typedef struct vlInstanceInfo {
   vlGroupId group;             /**< what it places */
   double world_from_group[16]; /**< its pose; of a moving instance: the pose at its first time */
   bool moves;                  /**< it has several poses */
-  /** The poses of a moving instance: their number, their times in seconds, ascending, and 16 numbers of each,
-   * world_from_group. Between them it moves as vl_scene_add_moving_instance says. 0 and null: it is at rest. */
-  uint32_t keys;
-  const double *times, *poses;
+  uint32_t keys;               /**< number of poses of a moving instance; 0: it is at rest */
+  const double *times;         /**< their times in seconds, ascending; null: it is at rest */
+  /** 16 numbers of each pose, world_from_group; null: it is at rest. Between the times it moves as
+   * vl_scene_add_moving_instance says. */
+  const double *poses;
   bool shown;      /**< it is in the worlds that are built from now on */
   vlSource source; /**< where the file describes it */
   vlLabel label;   /**< what the file calls it */

@@ -15,6 +15,7 @@
 #include "velo/velo.h"
 #include "world/accel/bvh.h"
 #include "world/accel/local_ray.h"
+#include "world/accel/nearest.h"
 #include "world/shape/double3.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
@@ -683,6 +684,19 @@ static void nothing_at_all(void **state) {
   unmake(&m);
 }
 
+/* Embree reports a hit at an infinite distance where the arithmetic of a huge triangle overflows. */
+static void a_distance_that_overflows_is_no_hit(void **state) {
+  (void)state;
+  vlNearest known = {.t = INFINITY, .instance = VL_NONE, .geometry = VL_NONE, .primitive = VL_NONE};
+  vlNearest hit = {.t = INFINITY, .instance = VL_NONE};
+  assert_false(vl_nearest_offer(&known, &hit));
+  hit.t = NAN;
+  assert_false(vl_nearest_offer(&known, &hit));
+  hit.t = 1;
+  assert_true(vl_nearest_offer(&known, &hit));
+  assert_true(known.geometry == 0);
+}
+
 int main(void) {
   vlBuildDef embree = vl_default_build_def();
   embree.accelerator = VL_ACCELERATOR_EMBREE;
@@ -693,6 +707,7 @@ int main(void) {
       cmocka_unit_test(stopped_builds),
       cmocka_unit_test(broken_rays),
       cmocka_unit_test(nothing_at_all),
+      cmocka_unit_test(a_distance_that_overflows_is_no_hit),
   };
   const struct CMUnitTest beside_embree[] = {
       cmocka_unit_test(hits_are_those_of_embree),

@@ -61,11 +61,12 @@ static inline bool vl_nearest_clearly(const vlNearest *known, float t) {
   return t * VL_NEAREST_WINDOW < known->t;
 }
 
-/* Replaces *known by *hit if hit comes before it. Returns whether it did. */
+/* Replaces *known by *hit if hit comes before it. Returns whether it did. A distance that overflows is no hit. */
 static inline bool vl_nearest_offer(vlNearest *known, const vlNearest *hit) {
-  if (!vl_nearest_clearly(known, hit->t) &&
-      (!(hit->t <= known->t * VL_NEAREST_WINDOW) || !vl_nearest_before(hit, known)))
-    return false;
+  if (!vl_nearest_clearly(known, hit->t)) {
+    bool close = known->t < __builtin_inff() && hit->t <= known->t * VL_NEAREST_WINDOW;
+    if (!close || !vl_nearest_before(hit, known)) return false;
+  }
   *known = *hit;
   return true;
 }

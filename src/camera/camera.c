@@ -105,7 +105,7 @@ static vlResult check_optional(const vlCameraDef *d, vlError *error) {
   };
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
     if (isnan(numbers[i].value) && !vl_is_unset(numbers[i].value))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is NaN; it must be a number or VL_UNSET", numbers[i].name);
+      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is NaN; it must be a number", numbers[i].name);
   if (isinf(d->stereo.convergence) || !isfinite(d->stereo.interocular))
     return vl_fail(error, VL_ERROR_ARGUMENT,
                    "camera: the interocular distance is %g and the convergence %g; both must "

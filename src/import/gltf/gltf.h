@@ -325,7 +325,7 @@ typedef struct vlGltfTextureUse {
   bool colors; /* multiplied by the vertex colour */
   float scale; /* float textures only: value = bias + scale * channel */
   float bias;
-  float cutoff; /* not NaN: the value becomes 1 from the cutoff on and 0 below it */
+  double cutoff; /* unless unset: the value becomes 1 from the cutoff on and 0 below it */
 } vlGltfTextureUse;
 vlGltfTextureUse vl_gltf_use_color(void);
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor);

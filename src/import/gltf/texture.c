@@ -10,11 +10,11 @@
 #include "math/elementary.h"
 
 vlGltfTextureUse vl_gltf_use_color(void) {
-  return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = NAN};
+  return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = VL_UNSET};
 }
 
 vlGltfTextureUse vl_gltf_use_channel(int channel, float factor) {
-  vlGltfTextureUse use = {.channel = channel, .tint = {1, 1, 1, 1}, .cutoff = NAN};
+  vlGltfTextureUse use = {.channel = channel, .tint = {1, 1, 1, 1}, .cutoff = VL_UNSET};
   use.tint[channel] = factor;
   return use;
 }

@@ -134,10 +134,12 @@ int main(int argc, char **argv) {
   defs->render.spp = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
   uint32_t width = argc > 3 ? (uint32_t)strtoul(argv[3], NULL, 10) : 256;
   uint32_t height = (uint32_t)((double)width * defs->film.height / defs->film.width);
-  defs->camera.width = width, defs->camera.height = height;
+  defs->camera.width = width;
+  defs->camera.height = height;
   defs->film = vl_default_film_def(width, height);
   Record rays = {0};
-  worlds[0]->accel.log = record, worlds[0]->accel.log_user = &rays;
+  worlds[0]->accel.log = record;
+  worlds[0]->accel.log_user = &rays;
   if (!render(context, worlds[0], defs)) return 1;
   worlds[0]->accel.log = NULL;
   unsigned state = vl_accel_enter();

@@ -48,7 +48,8 @@ int main(int count, char **arguments) {
   float *pixels = memset(vl_image_pixels(view), 0, sizeof(float) * 3 * width * height);
   vlCameraDef side_def = defs->camera;
   vlCamera side;
-  side_def.eye[0] += 3, side_def.eye[1] += 1.5;
+  side_def.eye[0] += 3;
+  side_def.eye[1] += 1.5;
   must(vl_camera_make(&side_def, &side, NULL, &error), &error);
   char path[4096];
   snprintf(path, sizeof path, "%s.ply", arguments[2]);

@@ -39,7 +39,8 @@ int main(int count, char **arguments) {
   vlImageDef sheet_def = vl_default_image_def(COLUMNS * WIDTH, ROWS * HEIGHT, 3);
   vlImage *sheet;
   defs->film = vl_default_film_def(WIDTH, HEIGHT);
-  defs->camera.width = WIDTH, defs->camera.height = HEIGHT;
+  defs->camera.width = WIDTH;
+  defs->camera.height = HEIGHT;
   defs->render.spp = 1;
   must(vl_world_build(scene, &defs->build, &world, &error), &error);
   must(vl_camera_make(&defs->camera, &camera, NULL, &error), &error);

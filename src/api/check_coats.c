@@ -7,8 +7,7 @@
 #include "scene/check.h"
 #include "world/material/coat.h"
 
-/* A coat's loss depends only on these numbers, so it is computed once for all coats that have the same
- * numbers. */
+/* A coat's loss depends only on these numbers, so it is computed once for all coats that have the same numbers. */
 typedef struct Coat {
   float eta, tau, u, v; /* u, v: the alphas */
   double lost;

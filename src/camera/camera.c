@@ -3,6 +3,7 @@
 
 #include "base/cookie.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "camera/kinds.h"
 #include "camera/own.h"
 #include "camera/parts.h"
@@ -103,13 +104,12 @@ static vlResult check_optional(const vlCameraDef *d, vlError *error) {
       {"max_angle", d->max_angle},
       {"convergence", d->stereo.convergence},
   };
-  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
     if (isnan(numbers[i].value) && !vl_is_unset(numbers[i].value))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is NaN; it must be a number", numbers[i].name);
   if (isinf(d->stereo.convergence) || !isfinite(d->stereo.interocular))
     return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the interocular distance is %g and the convergence %g; both must "
-                   "be finite",
+                   "camera: the interocular distance is %g and the convergence %g; both must be finite",
                    d->stereo.interocular, d->stereo.convergence);
   return VL_OK;
 }

@@ -36,7 +36,8 @@ static void libraries_have_versions(void **state) {
     embree = embree || strcmp(library->name, "Embree") == 0;
   }
   vlBuildDef def = vl_default_build_def();
-  def.accelerator = VL_ACCELERATOR_EMBREE, def.bits = VL_BITS_FAST;
+  def.accelerator = VL_ACCELERATOR_EMBREE;
+  def.bits = VL_BITS_FAST;
   vlAccelerator kind;
   assert_int_equal(embree, vl_accel_choose(&def, &kind, NULL) == VL_OK); /* built with it */
   assert_true(count >= (embree ? 10 : 9));

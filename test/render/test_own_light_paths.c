@@ -3,31 +3,8 @@
 #include "render/shots.h"
 
 #include "api/small_world.h"
+#include "render/own_pinhole.h"
 #include "render/own_view.h"
-
-typedef struct Pinhole {
-  double focal;
-} Pinhole;
-
-static void pinhole_rays(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {
-  const Pinhole *p = user;
-  for (uint32_t i = 0; i < points->count; i++) {
-    rays->dx[i] = points->x[i] - 0.5 * points->width;
-    rays->dy[i] = points->y[i] - 0.5 * points->height;
-    rays->dz[i] = p->focal;
-  }
-}
-static void pinhole_pixels(void *user, const vlOwnSpacePoints *points) {
-  const Pinhole *p = user;
-  for (uint32_t i = 0; i < points->count; i++) {
-    if (!(points->z[i] > 0)) continue;
-    points->film_x[i] = p->focal * points->x[i] / points->z[i] + 0.5 * points->width;
-    points->film_y[i] = p->focal * points->y[i] / points->z[i] + 0.5 * points->height;
-  }
-}
-static Pinhole of_small = {40};
-static const vlOwnCamera pinhole = {
-    .name = "pinhole", .rays = pinhole_rays, .pixels = pinhole_pixels, .user = &of_small};
 
 /* Equidistant, 20 pixels per radian; it has no rays beyond 0.7 radians. */
 static void fisheye_rays(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {
@@ -186,7 +163,8 @@ static void pinhole_is_velos(void **state) {
                     (int)tracers[i], differing, image_mean(&p[0], 1), image_mean(&p[1], 1));
       assert_true(differing < 0.02 && image_mean(&p[0], 1) > 0.02);
       assert_ratio("mean", image_mean(&p[1], 1), image_mean(&p[0], 1), 1e-3);
-      image_free(&p[0]), image_free(&p[1]);
+      image_free(&p[0]);
+      image_free(&p[1]);
     }
 }
 
@@ -293,7 +271,8 @@ static void wrong_inverses(void **state) {
   /* the floor gets all its light from lamps and lights; the sky is hit by camera rays */
   assert_true(image_region(&q, 5, 20, 35, 30, 1) > 0.02);
   assert_true(image_region(&p, 5, 20, 35, 30, 1) == 0);
-  image_free(&p), image_free(&q);
+  image_free(&p);
+  image_free(&q);
 }
 
 /* Of cameras that light paths cannot be connected to, the tracer that lives of that names it. */
@@ -308,7 +287,11 @@ static void what_tracers_lack(void **state) {
     vlWorld *world;
     vlCamera camera;
     vlError error = {0};
-    if (i == 3) s.camera.eye_close[0] = 0.2, s.camera.eye_close[1] = 1.6, s.camera.eye_close[2] = 5;
+    if (i == 3) {
+      s.camera.eye_close[0] = 0.2;
+      s.camera.eye_close[1] = 1.6;
+      s.camera.eye_close[2] = 5;
+    }
     assert_int_equal(vl_world_build(s.scene, &s.build, &world, &error), VL_OK);
     assert_int_equal(vl_camera_make(&s.camera, &camera, NULL, &error), VL_OK);
     const char *lack = vl_tracer_lacks(world, &camera, &s.film, VL_TRACER_LIGHT_PATH);

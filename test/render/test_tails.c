@@ -27,7 +27,8 @@ static void by_numbers(void **state) {
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     float r = 0.3f, g = 0.6f, b = 0.9f;
-    tails.rare = cases[k].rare, tails.most = cases[k].most;
+    tails.rare = cases[k].rare;
+    tails.most = cases[k].most;
     vl_tails_measure(&tails, 1, &x, &y, &given, (float *const[3]){&r, &g, &b});
     assert_near("second moment", (double)r, cases[k].expected, 1e-5 * q * p);
     assert_near("its square", (double)g / VL_TAIL_SQUARES, cases[k].expected * cases[k].expected, 1e-5 * q * p * q * p);
@@ -51,23 +52,28 @@ static Stage room(const void *user, vlTracer tracer) {
   (void)tracer;
   Stage s = stage_open(SIZE, SIZE);
   s.camera.fov = 1.2;
-  s.render.max_depth = 4, s.render.spp = 512;
+  s.render.max_depth = 4;
+  s.render.spp = 512;
   vlMaterialId white = add_diffuse(&s, 0.6f, 0.6f, 0.6f), walls[3] = {white, white, white};
   add_walls(&s, walls, white);
   if (r->lamp > 0) {
     Quad lamp = quad_at(0, 2.4f, -2, 1.2f, 0, 0, 0, 0, 1.2f);
-    lamp.emission = add_emission(&s, (float)r->lamp, false), lamp.material = white;
+    lamp.emission = add_emission(&s, (float)r->lamp, false);
+    lamp.material = white;
     add_quad(&s, &lamp);
   }
   if (!(r->ball > 0)) return s;
   vlMaterialDef metal = vl_default_material_def(VL_MATERIAL_CONDUCTOR);
-  metal.u_roughness = metal.v_roughness = vl_float_input(r->roughness), metal.remap_roughness = false;
+  metal.u_roughness = metal.v_roughness = vl_float_input(r->roughness);
+  metal.remap_roughness = false;
   add_ball_of(&s, 0.5f, -1.5f, r->ball, vl_scene_add_material(s.scene, &metal), (vlEmissionId){0});
   vlLightDef spot = vl_default_light_def(VL_LIGHT_SPOT);
   const float from[3] = {-2, 2, -2}, to[3] = {0.5f, -1.5f, -3};
   memcpy(spot.from, from, sizeof from);
   memcpy(spot.to, to, sizeof to);
-  spot.scale = r->spot, spot.cone_angle = 0.2f * r->ball, spot.cone_delta = 0.02f * r->ball;
+  spot.scale = r->spot;
+  spot.cone_angle = 0.2f * r->ball;
+  spot.cone_delta = 0.02f * r->ball;
   assert_int_not_equal(vl_scene_add_light(s.scene, &spot).index, 0);
   return s;
 }
@@ -88,7 +94,9 @@ static vlTracerChoice choice_of(const Room *r) {
 
 static Image image_of(const Room *r, vlTracer tracer, uint32_t spp, uint32_t seed) {
   Stage s = room(r, tracer);
-  s.render.tracer = tracer, s.render.spp = spp, s.render.seed = seed;
+  s.render.tracer = tracer;
+  s.render.spp = spp;
+  s.render.seed = seed;
   return stage_finish(&s);
 }
 

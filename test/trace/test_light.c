@@ -120,10 +120,16 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
   uint32_t done = 0;
   for (; done < TRIES; done += VL_BATCH) {
     for (uint32_t i = 0; i < VL_BATCH; i++) {
-      s->surface.px[i] = f->p.x, s->surface.py[i] = f->p.y, s->surface.pz[i] = f->p.z;
+      s->surface.px[i] = f->p.x;
+      s->surface.py[i] = f->p.y;
+      s->surface.pz[i] = f->p.z;
       s->surface.side[i] = f->side;
-      s->surface.nx[i] = f->n.x, s->surface.ny[i] = f->n.y, s->surface.nz[i] = f->n.z;
-      s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
+      s->surface.nx[i] = f->n.x;
+      s->surface.ny[i] = f->n.y;
+      s->surface.nz[i] = f->n.z;
+      s->shade.u0[i] = stat_float(&rng);
+      s->shade.u1[i] = stat_float(&rng);
+      s->shade.u2[i] = stat_float(&rng);
     }
     vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u1, s->shade.u2, s->shade.u0, &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
@@ -234,7 +240,9 @@ static void one_side(void **state) {
       Fixture *f = begin();
       add_triangles(f, p, 3, true);
       vlLightDef sun = vl_default_light_def(VL_LIGHT_DISTANT);
-      sun.from[0] = 0.4f, sun.from[1] = 0.2f, sun.from[2] = 1;
+      sun.from[0] = 0.4f;
+      sun.from[1] = 0.2f;
+      sun.from[2] = 1;
       sun.to[0] = sun.to[1] = sun.to[2] = 0;
       assert_int_not_equal(vl_scene_add_light(f->scene, &sun).index, 0);
       vlLightDef even = vl_default_light_def(VL_LIGHT_INFINITE);
@@ -271,7 +279,9 @@ static void crowd(void **state) {
   uint32_t indices[3 * FACES], *at = indices;
   for (uint32_t y = 0; y <= SIDE; y++)
     for (uint32_t x = 0; x <= SIDE; x++) {
-      p[y][x][0] = (float)x * 0.2f - 2, p[y][x][1] = (float)y * 0.2f - 2, p[y][x][2] = 1;
+      p[y][x][0] = (float)x * 0.2f - 2;
+      p[y][x][1] = (float)y * 0.2f - 2;
+      p[y][x][2] = 1;
       uint32_t k = y * (SIDE + 1) + x;
       if (x == SIDE || y == SIDE) continue;
       const uint32_t faces[6] = {k, k + 1, k + SIDE + 1, k + 1, k + SIDE + 2, k + SIDE + 1};

@@ -92,7 +92,10 @@ static void add_grid(const Kit *k, bool even, bool moving) {
       count += 2;
     }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = p[0], def.vertices = GRID * GRID, def.indices = faces[0], def.faces = count;
+  def.positions = p[0];
+  def.vertices = GRID * GRID;
+  def.indices = faces[0];
+  def.faces = count;
   if (moving) def.positions_close = later[0];
   if (moving && random_unit() < 0.5f) def.times[1] = 0.25; /* the steps of the world's time are quarters */
   decorate(k, &def);
@@ -117,7 +120,10 @@ static void add_triangles(const Kit *k, bool moving) {
     }
   }
   vlShapeDef def = vl_default_shape_def(VL_SHAPE_TRIANGLES);
-  def.positions = p[0], def.vertices = 3 * FACES, def.indices = faces[0], def.faces = FACES;
+  def.positions = p[0];
+  def.vertices = 3 * FACES;
+  def.indices = faces[0];
+  def.faces = FACES;
   if (moving) def.positions_close = later[0];
   decorate(k, &def);
   vl_scene_add_shape(k->scene, &def);
@@ -141,9 +147,20 @@ static void add_other(const Kit *k, uint32_t which) {
   for (int c = 0; c < 8; c++)
     for (int i = 0; i < 3; i++) p[c][i] = size * 0.5f * random_signed();
   def.positions = p[0];
-  if (def.kind == VL_SHAPE_BILINEAR) def.vertices = 4, def.faces = 1, def.indices = face;
-  if (def.kind == VL_SHAPE_CURVES) def.vertices = 8, def.faces = 2, def.widths = widths;
-  def.radius = 0.3f * size, def.z_min = -0.2f * size, def.z_max = 0.2f * size, def.height = 0;
+  if (def.kind == VL_SHAPE_BILINEAR) {
+    def.vertices = 4;
+    def.faces = 1;
+    def.indices = face;
+  }
+  if (def.kind == VL_SHAPE_CURVES) {
+    def.vertices = 8;
+    def.faces = 2;
+    def.widths = widths;
+  }
+  def.radius = 0.3f * size;
+  def.z_min = -0.2f * size;
+  def.z_max = 0.2f * size;
+  def.height = 0;
   set_pose(def.group_from_shape, size, false);
   decorate(k, &def);
   vl_scene_add_shape(k->scene, &def);
@@ -152,7 +169,10 @@ static void add_other(const Kit *k, uint32_t which) {
 static void fill(Kit *k) {
   for (uint32_t i = 0; i < SHAPES; i++) {
     bool moving = k->what->moving && (!k->what->plain || i % 2);
-    if (k->what->plain || k->what->moving) add_grid(k, i % 2 || k->what->size != 1, moving), add_triangles(k, moving);
+    if (k->what->plain || k->what->moving) {
+      add_grid(k, i % 2 || k->what->size != 1, moving);
+      add_triangles(k, moving);
+    }
     if (k->what->others) add_other(k, i);
   }
 }
@@ -172,9 +192,14 @@ static void make_scene(const Case *what, Made *m, const vlContextDef *def) {
     fill(&k);
     for (int i = 0; i < 4; i++) {
       double poses[32], times[2] = {0, 1};
-      set_pose(poses, what->size, i == 0), set_pose(poses + 16, what->size, true);
+      set_pose(poses, what->size, i == 0);
+      set_pose(poses + 16, what->size, true);
       memcpy(poses + 16, poses, 11 * sizeof *poses);
-      if (i % 2) poses[16] *= 1.5, poses[21] *= 0.75, poses[17] += 0.2;
+      if (i % 2) {
+        poses[16] *= 1.5;
+        poses[21] *= 0.75;
+        poses[17] += 0.2;
+      }
       if (what->travelling && i < 3)
         vl_scene_add_moving_instance(m->scene, k.group, 2, times, poses, (vlSource){0});
       else
@@ -187,7 +212,8 @@ static bool has_embree; /* else worlds[0] is null */
 
 static void make(const Case *what, Made *m, vlIsa isa, uint32_t threads) {
   vlContextDef def = vl_default_context_def();
-  def.isa = isa, def.threads = threads;
+  def.isa = isa;
+  def.threads = threads;
   make_scene(what, m, &def);
   vlBuildDef build = vl_default_build_def();
   for (int a = !has_embree; a < 2; a++) {
@@ -223,7 +249,10 @@ static void point_of(const vlWorld *w, float time, int corner, bool edge, float 
     s = &w->shapes.items[random_below((uint32_t)w->shapes.count)];
   float u = random_unit(), v = random_unit() * (1 - u);
   if (s->kind != VL_SHAPE_TRIANGLES) {
-    for (int i = 0; i < 3; i++) p[i] = w->center[i] + w->radius * random_signed(), along[i] = random_signed();
+    for (int i = 0; i < 3; i++) {
+      p[i] = w->center[i] + w->radius * random_signed();
+      along[i] = random_signed();
+    }
     return;
   }
   const uint32_t *f = s->indices + 3 * (size_t)random_below(s->faces);
@@ -231,7 +260,10 @@ static void point_of(const vlWorld *w, float time, int corner, bool edge, float 
   const float *c[3];
   for (int k = 0; k < 3; k++) c[k] = vl_vertex_at(s, f[k], time, room[k]);
   if (edge) v = 0;
-  if (corner >= 0) u = corner == 1, v = corner == 2;
+  if (corner >= 0) {
+    u = corner == 1;
+    v = corner == 2;
+  }
   for (int i = 0; i < 3; i++) {
     p[i] = corner >= 0 ? c[corner][i] : c[0][i] + u * (c[1][i] - c[0][i]) + v * (c[2][i] - c[0][i]);
     along[i] = c[1][i] - c[0][i];
@@ -249,13 +281,21 @@ static void make_rays(const vlWorld *w, Way way) {
     uint32_t axis = random_below(3);
     for (int i = 0; i < 3; i++) {
       if (random_unit() < 0.3f) from[i] = w->center[i] + 2 * w->radius * random_signed();
-      o_[i][k] = from[i], d_[i][k] = (to[i] - from[i]) * length;
-      if (way == ALONG) o_[i][k] = to[i] - 3 * along[i], d_[i][k] = along[i];
-      if (way == AXES) o_[i][k] = to[i], d_[i][k] = 0;
+      o_[i][k] = from[i];
+      d_[i][k] = (to[i] - from[i]) * length;
+      if (way == ALONG) {
+        o_[i][k] = to[i] - 3 * along[i];
+        d_[i][k] = along[i];
+      }
+      if (way == AXES) {
+        o_[i][k] = to[i];
+        d_[i][k] = 0;
+      }
     }
     if (way == AXES) {
       for (int i = 0; i < 3; i++) o_[i][k] += 1e-3f * w->radius * random_signed(); /* not in the face of a box */
-      o_[axis][k] = w->center[axis] + 2 * w->radius, d_[axis][k] = -length;
+      o_[axis][k] = w->center[axis] + 2 * w->radius;
+      d_[axis][k] = -length;
     }
     start_[k] = random_unit() < 0.2f ? random_unit() / length : 0;
     end_[k] = random_unit() < 0.3f ? 2 * random_unit() / length : INFINITY;
@@ -335,9 +375,13 @@ static Met met_triangle(const vlWorld *w, const Hits *h, uint32_t k) {
   }
   for (int i = 0; i < 3; i++) {
     vl_cross3(c[(i + 1) % 3], c[(i + 2) % 3], n);
-    side[i] = vl_dot3(n, d), sum += side[i];
+    side[i] = vl_dot3(n, d);
+    sum += side[i];
   }
-  for (int j = 0; j < 3; j++) c[1][j] -= c[0][j], c[2][j] -= c[0][j];
+  for (int j = 0; j < 3; j++) {
+    c[1][j] -= c[0][j];
+    c[2][j] -= c[0][j];
+  }
   vl_cross3(c[1], c[2], n);
   double twice_area = sqrt(vl_dot3(n, n)), longest = sqrt(fmax(vl_dot3(c[1], c[1]), vl_dot3(c[2], c[2])));
   double far = sqrt(vl_dot3(d, d)) * (double)h->t[k];
@@ -359,7 +403,10 @@ typedef struct Verdict {
  * packets of Embree sum the determinant of a moving instance in another order. */
 static double to_group(const vlWorld *w, uint32_t k, uint32_t instance, float o[3], float d[3]) {
   float world_o[3], world_d[3], pose[12], map[12];
-  for (int i = 0; i < 3; i++) o[i] = world_o[i] = o_[i][k], d[i] = world_d[i] = d_[i][k];
+  for (int i = 0; i < 3; i++) {
+    o[i] = world_o[i] = o_[i][k];
+    d[i] = world_d[i] = d_[i][k];
+  }
   if (instance == VL_NONE) return 0;
   const vlWorldInstance *at = &w->instances.items[instance];
   memcpy(pose, at->from_group, sizeof pose);
@@ -395,7 +442,8 @@ static int meets(const float *const c[3], const float o[3], const float d[3], do
     u[k] = 2 * vl_dot3(n, ray);
   }
   vl_cross3(edge[0], edge[1], n);
-  speed = vl_dot3(n, ray), height = vl_dot3(n, v[0]);
+  speed = vl_dot3(n, ray);
+  height = vl_dot3(n, v[0]);
   /* Corners relative to the origin are off by `near`, and their differences by a little more. */
   double near = EPSILON * reach + 2 * scale_error * far;
   double beside = length * (8 * near * (reach + longest) + 32 * EPSILON * reach * longest);
@@ -403,10 +451,12 @@ static int meets(const float *const c[3], const float o[3], const float d[3], do
   double wide = beside + 2 * EPSILON * fabs(u[0] + u[1] + u[2]);
   double least = fmin(u[0], fmin(u[1], u[2])), most = fmax(u[0], fmax(u[1], u[2]));
   if (least < -wide && most > wide) return 0;
-  at[0] = -INFINITY, at[1] = INFINITY;
+  at[0] = -INFINITY;
+  at[1] = INFINITY;
   if (fabs(speed) <= slow) return 1;
   double t = height / speed, error = (low + fabs(t) * slow) / (fabs(speed) - slow) + 8 * EPSILON * fabs(t);
-  at[0] = t - error, at[1] = t + error;
+  at[0] = t - error;
+  at[1] = t + error;
   return least > beside || most < -beside ? 2 : 1;
 }
 
@@ -480,7 +530,8 @@ static void hits_are_those_of_embree(void **state) {
         trace(m.worlds[0], true, &hits[1]);
         trace(m.worlds[1], false, &hits[2]);
         for (uint32_t k = 0; k < BATCH; k++) {
-          rays++, met += hits[2].shape[k] != VL_NONE;
+          rays++;
+          met += hits[2].shape[k] != VL_NONE;
           bool same = same_hit(m.worlds[0], &hits[0], &hits[2], k);
           /* Embree's packets do not compare all hits at the ray's very start. */
           if (hits[2].t[k] != 0) same = same && same_hit(m.worlds[0], &hits[1], &hits[2], k);
@@ -517,7 +568,10 @@ static void ends_near_hits(void **state) {
     for (uint32_t b = 0; b < batches(); b++) {
       static Hits first, hits[2];
       make_rays(m.worlds[0], ANYWHERE);
-      for (uint32_t k = 0; k < BATCH; k++) start_[k] = 0, end_[k] = INFINITY;
+      for (uint32_t k = 0; k < BATCH; k++) {
+        start_[k] = 0;
+        end_[k] = INFINITY;
+      }
       trace(m.worlds[1], false, &first);
       for (int step = -4; step <= 4; step++) {
         for (uint32_t k = 0; k < BATCH; k++) {
@@ -575,7 +629,8 @@ static void trees_are_shared(void **state) {
     const vlAccel *old = &m.worlds[1]->accel;
     for (int a = 0; a < 2; a++) {
       vlBuildDef build = vl_default_build_def();
-      build.accelerator = VL_ACCELERATOR_BVH, build.previous = m.worlds[a];
+      build.accelerator = VL_ACCELERATOR_BVH;
+      build.previous = m.worlds[a];
       vlWorld *world = NULL;
       assert_int_equal(vl_world_build(m.scene, &build, &world, NULL), VL_OK);
       for (uint32_t k = 0; k < old->group_count; k++) {
@@ -623,11 +678,13 @@ static void stopped_builds(void **state) {
   Made m = {0};
   Stopper stopper = {0};
   vlContextDef def = vl_default_context_def();
-  def.threads = 1, def.allocator = (vlAllocator){&stopper, stopping_allocate, plain_release};
+  def.threads = 1;
+  def.allocator = (vlAllocator){&stopper, stopping_allocate, plain_release};
   make_scene(&cases[sizeof cases / sizeof *cases - 1], &m, &def);
   assert_int_equal(vl_cancel_create(m.context, &stopper.cancel), VL_OK);
   vlBuildDef build = vl_default_build_def();
-  build.accelerator = VL_ACCELERATOR_BVH, build.cancel = stopper.cancel;
+  build.accelerator = VL_ACCELERATOR_BVH;
+  build.cancel = stopper.cancel;
   size_t before = vl_context_memory(m.context, NULL);
   uint32_t stopped = 0;
   for (long n = 1;; n += 3) {

@@ -1,8 +1,7 @@
 /* world/light/light_tree.h: chooses a light by a binary tree over all bounded lights. At each node, a branch is chosen
  * in proportion to its importance for the point that receives light (Conty Estevez and Kulla 2018; pbrt book 12.6.3).
  * Lights without bounds (distant, infinite) are outside the tree; each that reaches the point has one slot, and so has
- * the tree. light_tree_build.c builds the
- * tree; traversal is inline, for the hot loops. */
+ * the tree. light_tree_build.c builds the tree; traversal is inline, for the hot loops. */
 #ifndef WORLD_LIGHT_LIGHT_TREE_H
 #define WORLD_LIGHT_LIGHT_TREE_H
 

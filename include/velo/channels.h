@@ -9,7 +9,6 @@
 #include "velo/camera.h"
 #include "velo/image.h"
 #include "velo/render.h"
-#include "velo/scene.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -5,7 +5,7 @@
 #define VELO_CHECK_H
 
 #include "velo/channels.h"
-#include "velo/scene.h"
+#include "velo/load.h"
 
 #ifdef __cplusplus
 extern "C" {

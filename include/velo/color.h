@@ -5,8 +5,8 @@
 #ifndef VELO_COLOR_H
 #define VELO_COLOR_H
 
-#include "velo/scene.h"
 #include "velo/schema.h"
+#include "velo/spectrum.h"
 
 #ifdef __cplusplus
 extern "C" {

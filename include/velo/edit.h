@@ -12,7 +12,7 @@
 #define VELO_EDIT_H
 
 #include "velo/base.h"
-#include "velo/scene.h"
+#include "velo/ids.h"
 
 #ifdef __cplusplus
 extern "C" {

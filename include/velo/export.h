@@ -3,7 +3,7 @@
 #ifndef VELO_EXPORT_H
 #define VELO_EXPORT_H
 
-#include "velo/scene.h"
+#include "velo/ids.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,7 +4,7 @@
 #define VELO_FOCUS_H
 
 #include "velo/camera.h"
-#include "velo/render.h"
+#include "velo/world.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,7 +4,8 @@
 #define VELO_GROUP_H
 
 #include "velo/base.h"
-#include "velo/scene.h"
+#include "velo/ids.h"
+#include "velo/load.h"
 
 #ifdef __cplusplus
 extern "C" {

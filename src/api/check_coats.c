@@ -5,6 +5,7 @@
 #include "color/color.h"
 #include "math/ggx.h"
 #include "scene/check.h"
+#include "velo/material.h"
 #include "world/material/coat.h"
 
 /* A coat's loss depends only on these numbers, so it is computed once for all coats that have the same numbers. */

@@ -5,6 +5,7 @@
 #include "scene/extent.h"
 #include "schema/schema.h"
 #include "velo/group.h"
+#include "velo/scene.h"
 
 /* Numbers of a scene's things before a file was loaded. */
 typedef struct Before {

@@ -7,7 +7,7 @@
 
 #include "math/approx.h"
 #include "math/vec.h"
-#include "velo/scene.h"
+#include "velo/spectrum.h"
 
 enum { VL_LAMBDA_MIN = 360, VL_LAMBDA_MAX = 830, VL_LAMBDA_COUNT = 471 };
 

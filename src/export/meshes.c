@@ -6,6 +6,7 @@
 
 #include "math/elementary.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 enum { ALONG = 64, ACROSS = 32 };
 

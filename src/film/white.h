@@ -2,7 +2,7 @@
 #ifndef FILM_WHITE_H
 #define FILM_WHITE_H
 
-#include "velo/scene.h"
+#include "velo/spectrum.h"
 
 /* Computes the white balance matrix (row-major, acts on XYZ) with Bradford's cone responses. It maps the white of
  * CIE daylight of this colour temperature (kelvin; a blackbody below 4000 K) to the white of the colour space. This

@@ -6,7 +6,7 @@
 #define IMAGE_MIPMAP_H
 
 #include "image/image.h"
-#include "velo/scene.h"
+#include "velo/spectrum.h"
 
 enum { VL_MIP_LEVELS = 32 };
 

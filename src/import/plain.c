@@ -8,6 +8,10 @@
 #include "import/labels.h"
 #include "import/ply/ply.h"
 #include "import/repair.h"
+#include "velo/material.h"
+#include "velo/scene.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 void vl_import_plain_settings(vlScene *scene) {
   vlSceneDefs *s = vl_scene_defs(scene);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "velo/shape.h"
 
 /* Also true for normals that are so short that their length is zero. */
 static bool is_broken(const float n[3]) {

@@ -10,6 +10,7 @@
 #include "camera/rays.h"
 #include "render/own_view.h"
 #include "trace/ground_truth/ground_truth.h"
+#include "velo/render.h"
 
 /* Length of the camera's axes if all have the same length and are at right angles; else 0. */
 static double axes_length(const double m[16]) {

@@ -4,6 +4,7 @@
 
 #include "math/motion.h"
 #include "trace/two_way/two_way.h"
+#include "velo/render.h"
 
 /* Sets the view. view->sees is false unless the camera is perspective with a round lens or a pinhole, or one of one's
  * own that projects points, has no lens and does not move (own_view.h); for the last, the caller sets view->camera. A

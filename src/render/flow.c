@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "render/channel_pass.h"
+#include "velo/shape.h"
 #include "world/shape/moving.h"
 
 /* A hit hides the point if it is nearer by more than this tolerance, relative to the size of the numbers. Rays are

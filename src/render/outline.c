@@ -9,6 +9,7 @@
 #include "math/elementary.h"
 #include "render/boxes.h"
 #include "velo/schema.h"
+#include "velo/shape.h"
 #include "world/shape/moving.h"
 
 enum { CHUNK = 256, AROUND = 256, RINGS = 64 };

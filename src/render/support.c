@@ -3,6 +3,8 @@
 #include "render/support.h"
 
 #include "render/camera_view.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 
 #define BIT VL_TRACER_BIT
 enum {

@@ -8,6 +8,9 @@
 #include "color/color.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 
 enum { MAX_OBJECTS = 0x7fffffff };
 

@@ -6,6 +6,7 @@
 
 #include "scene/scene.h"
 #include "velo/check.h"
+#include "velo/material.h"
 
 struct vlCheck {
   vlContext *context;

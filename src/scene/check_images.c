@@ -12,6 +12,10 @@
 #include "image/image.h"
 #include "scene/check.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/texture.h"
 
 /* ---- files ------------------------------------------------------------------------------------------------------- */
 

@@ -6,6 +6,10 @@
 #include "scene/check.h"
 #include "scene/solid.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
 
 typedef struct Box {
   double low[3], high[3];

@@ -9,6 +9,10 @@
 #include "scene/check.h"
 #include "scene/mesh_solid.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 /* ---- degenerate -------------------------------------------------------------------------------------------------- */
 

@@ -5,6 +5,11 @@
 
 #include "scene/check.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 uint32_t vl_check_material_inputs(const vlMaterialDef *m, vlTextureId inputs[VL_CHECK_INPUTS]) {
   return vl_row_textures(vl_kind_row(&vl_material_family, (int)m->kind), m, inputs, VL_CHECK_INPUTS);

@@ -7,6 +7,8 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "schema/schema.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 
 enum {
   OUTSIDE = 160, /* rays from the eye */

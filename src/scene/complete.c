@@ -9,6 +9,9 @@
 #include "scene/environment.h"
 #include "scene/lamps.h"
 #include "schema/schema.h"
+#include "velo/material.h"
+#include "velo/scene.h"
+#include "velo/texture.h"
 
 vlCompleteDef vl_default_complete_def(void) {
   return (vlCompleteDef){.cookie = VL_COOKIE_COMPLETE, .strength = 1.0f, .up = {0, 1, 0}, .front = {0, 0, 1}};

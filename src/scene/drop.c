@@ -4,6 +4,7 @@
 
 #include "base/machine.h"
 #include "scene/scene.h"
+#include "velo/shape.h"
 
 enum { ARRAYS = 15 };
 

@@ -6,6 +6,12 @@
 #include <string.h>
 
 #include "scene/scene.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/scene.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 /* ---- defs -------------------------------------------------------------------------------------------------------- */
 

@@ -9,6 +9,7 @@
 #include "math/approx_double.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
+#include "velo/light.h"
 
 enum { BUILT_IN_SIDE = 512, MOST_SIDE = 2048 };
 

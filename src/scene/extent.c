@@ -5,6 +5,7 @@
 
 #include "math/transform.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 static void visit_box(const vlMat4 *m, const double low[3], const double high[3], vlPointVisit *visit, void *user) {
   for (int k = 0; k < 8; k++) {

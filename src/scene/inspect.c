@@ -8,6 +8,8 @@
 #include "scene/solid.h"
 #include "schema/schema.h"
 #include "velo/check.h"
+#include "velo/light.h"
+#include "velo/shape.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -6,6 +6,7 @@
 #include "base/cookie.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/medium.h"
 
 static bool bad(vlScene *scene, const vlMediumDef *d, const char *why) {
   vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "medium \"%s\": %s", vl_short_text(d->name).text, why);

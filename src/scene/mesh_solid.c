@@ -8,6 +8,7 @@
 #include "base/free.h"
 #include "math/transform.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 void vl_mesh_solid_free(const vlScene *scene, vlMeshSolid *b) {
   VL_FREE(scene->context, b->points, b->faces3, b->part, b->parts);

@@ -3,6 +3,8 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 
 bool vl_scene_is_placed(const vlScene *scene, const vlSceneInstance *instance) {
   return !instance->hidden && scene->groups.items[instance->group.index - 1].shape_count > 0;

@@ -11,7 +11,6 @@
 #include "base/error.h"
 #include "velo/check.h"
 #include "velo/render.h"
-#include "velo/scene.h"
 #include "velo/schema.h"
 
 typedef struct vlSceneGroup {

@@ -7,6 +7,7 @@
 #include "math/motion.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 static vlResult bad(vlScene *scene, const vlShapeDef *d, const char *why) {
   return vl_scene_fail(scene, VL_ERROR_SCENE, d->source, "%s", why);

@@ -3,6 +3,7 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/texture.h"
 
 typedef struct Take {
   vlScene *scene;

@@ -6,6 +6,11 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "velo/edit.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/scene.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 /* A similarity: p' = scale * turn(p) + shift. */
 typedef struct Similarity {

@@ -7,7 +7,10 @@
 #include "color/color.h"
 #include "color/named.h"
 #include "schema/schema.h"
+#include "velo/load.h"
+#include "velo/material.h"
 #include "velo/render.h"
+#include "velo/texture.h"
 
 static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 

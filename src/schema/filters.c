@@ -1,6 +1,7 @@
 /* schema/filters.c: rows of the pixel filters. Their sizes are pbrt-v4's; Blackman-Harris is not one of
  * pbrt's. */
 #include "schema/schema.h"
+#include "velo/filter.h"
 
 #define PARAMETER(name, member, text, ...) VL_PARAMETER(FLOAT, vlPixelFilter, name, member, text, __VA_ARGS__)
 #define PIXELS(...) VL_DEFAULT(__VA_ARGS__), .unit = "pixels", .flags = VL_PARAMETER_ABOVE_LOW

@@ -4,6 +4,7 @@
 #include "base/cookie.h"
 #include "math/elementary.h"
 #include "schema/schema.h"
+#include "velo/light.h"
 
 #define PI 3.14159265358979323846
 #define DEGREES (PI / 180)

@@ -1,6 +1,7 @@
 /* schema/materials.c: rows of the materials. Names in files and defaults are those of pbrt-v4; the principled
  * material's are those of glTF. */
 #include "schema/schema.h"
+#include "velo/material.h"
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlMaterialDef, __VA_ARGS__)
 #define COUNT(...) VL_PARAMETER(COUNT, vlMaterialDef, __VA_ARGS__)

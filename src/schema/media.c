@@ -1,6 +1,7 @@
 /* schema/media.c: rows of the participating media. Names and defaults are pbrt-v4's. */
 #include "base/cookie.h"
 #include "schema/schema.h"
+#include "velo/medium.h"
 
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlMediumDef, __VA_ARGS__)
 #define FACTOR(name, member, text, ...) PARAMETER(FLOAT, name, member, text, VL_DEFAULT(__VA_ARGS__), VL_FROM(0))

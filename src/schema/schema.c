@@ -1,5 +1,6 @@
 /* schema/schema.c: the families of kinds; finds rows by name and applies their defaults. */
 #include "schema/schema.h"
+#include "velo/texture.h"
 
 #include <string.h>
 

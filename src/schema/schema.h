@@ -4,8 +4,9 @@
 #ifndef SCHEMA_SCHEMA_H
 #define SCHEMA_SCHEMA_H
 
-#include "velo/scene.h"
+#include "velo/ids.h"
 #include "velo/schema.h"
+#include "velo/spectrum.h"
 
 /* ---- for the files that hold rows --------------------------------------------------------------------------------
  * Each writes, per kind, an array `NAME_parameters` and VL_KIND_ROW(NAME, ...); the list of kinds then makes the table,
@@ -106,7 +107,7 @@ double vl_light_power(const vlLightDef *def, double luminance, double radius);
  * shape has no vertices, the box is empty (low > high). */
 void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]);
 /* Whether shapes of this kind have vertices and faces (VL_SHAPE_TRAIT_MESH). */
-bool vl_shape_is_mesh(vlShapeKind kind);
+bool vl_shape_is_mesh(uint32_t kind); /* vlShapeKind */
 
 /* The row of a kind. Null: the family has no such kind. */
 const vlKindRow *vl_kind_row(const vlKindFamily *family, int kind);

@@ -4,6 +4,7 @@
 
 #include "base/cookie.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 #define DEGREES (3.14159265358979323846 / 180)
 
@@ -166,7 +167,7 @@ void vl_shape_own_box(const vlShapeDef *def, double low[3], double high[3]) {
   box_of[def->kind](def, low, high);
 }
 
-bool vl_shape_is_mesh(vlShapeKind kind) {
+bool vl_shape_is_mesh(uint32_t kind) {
   return (vl_kind_row(&vl_shape_family, (int)kind)->traits & VL_SHAPE_TRAIT_MESH) != 0;
 }
 

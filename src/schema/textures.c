@@ -1,5 +1,6 @@
 /* schema/textures.c: rows of the textures. Names in files and defaults are pbrt-v4's. */
 #include "schema/schema.h"
+#include "velo/texture.h"
 
 #define BOOL(...) VL_PARAMETER(BOOL, vlTextureDef, __VA_ARGS__)
 #define COUNT(...) VL_PARAMETER(COUNT, vlTextureDef, __VA_ARGS__)

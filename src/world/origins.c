@@ -6,6 +6,8 @@
 #include "scene/scene.h"
 #include "schema/schema.h"
 #include "velo/channels.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 #include "world/world.h"
 
 static const char *shape_type(vlShapeKind kind) {

@@ -6,6 +6,7 @@
 #include <stdatomic.h>
 
 #include "base/array.h"
+#include "velo/world.h"
 
 typedef struct vlPart {
   vlContext *context;

@@ -10,10 +10,9 @@
 #include "base/array.h"
 #include "base/cancel.h"
 #include "color/color.h"
-#include "velo/render.h"
+#include "velo/world.h"
 #include "world/accel/accel.h"
 #include "world/light/environment_lookup.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/coat.h"
 #include "world/material/measured.h"
 #include "world/medium/medium.h"
@@ -23,7 +22,7 @@
 /* ---- shapes ------------------------------------------------------------------------------------------------------ */
 
 typedef struct vlWorldShape {
-  vlShapeKind kind;
+  uint32_t kind;        /* vlShapeKind */
   uint32_t traits;      /* bits VL_SHAPE_TRAIT_*, such as VL_SHAPE_TRAIT_MESH */
   uint32_t material;    /* index into materials */
   uint32_t first_light; /* VL_NONE: the shape emits no light; otherwise see vl_shape_light */
@@ -54,7 +53,7 @@ typedef struct vlWorldShape {
   float *radii;    /* many spheres: 1 per prim; else null */
   /* For curves. A segment has 4 control points, 2 widths and, if it is a ribbon, 2 normals, all in shape space. Each
    * segment is split into pieces; a prim is one piece. */
-  vlCurveKind curve;
+  uint32_t curve; /* vlCurveKind */
   uint32_t split; /* faces = segments << split */
   float *widths;
   double from_shape[12], to_shape[12]; /* from_shape: group from shape; to_shape: its inverse; row-major 3x4 */
@@ -137,8 +136,8 @@ typedef enum vlSmooth {
 } vlSmooth;
 
 typedef struct vlWorldMaterial {
-  vlMaterialKind kind;
-  vlBsdfKind bsdf;
+  uint32_t kind; /* vlMaterialKind */
+  uint32_t bsdf; /* vlBsdfKind */
   vlSmooth smooth;
   uint32_t traits; /* bits of the kind, such as VL_MATERIAL_OPAQUE */
   const void *own; /* data of this kind alone (vlWorldLayers, vlWorldHair, ...): a block owned by the world */
@@ -185,14 +184,8 @@ typedef struct vlEmitted {
   bool two_sided;
 } vlEmitted;
 
-/* The kinds of light of the scene, with the same numbers, and AREA: a face of an emissive shape. X(NAME, name). */
-#define VL_WORLD_LIGHT_KINDS(X) VL_LIGHT_KINDS(X) X(AREA, area)
-#define VL_WORLD_LIGHT_KIND(K, k) VL_WL_##K,
-typedef enum vlWorldLightKind { VL_WORLD_LIGHT_KINDS(VL_WORLD_LIGHT_KIND) } vlWorldLightKind;
-#undef VL_WORLD_LIGHT_KIND
-
 typedef struct vlWorldLight {
-  vlWorldLightKind kind;
+  uint32_t kind;            /* vlWorldLightKind (world/light/light_kind.h) */
   uint32_t emitted;         /* index into emitted */
   uint32_t shape, prim;     /* of an area light; for other lights shape is VL_NONE */
   float area;               /* of an area light: area of the primitive in world space */

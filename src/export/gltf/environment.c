@@ -12,6 +12,7 @@
 #include "image/pixel.h"
 #include "math/cube_map.h"
 #include "math/octahedral.h"
+#include "velo/light.h"
 
 enum { SMALLEST = 16, LARGEST = 1024, LEVELS = 7, LOBE_SAMPLES = 128 };
 

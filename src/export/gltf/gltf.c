@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "export/export.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 enum { ARRAY = 34962, ELEMENTS = 34963, TYPE_UINT = 5125, TYPE_USHORT = 5123, TYPE_FLOAT = 5126 };
 

@@ -7,6 +7,11 @@
 
 #include "base/text.h"
 #include "math/elementary.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 /* ---- inputs ------------------------------------------------------------------------------------------------------ */
 

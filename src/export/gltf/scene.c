@@ -7,6 +7,7 @@
 #include "export/export.h"
 #include "math/elementary.h"
 #include "velo/camera_file.h"
+#include "velo/light.h"
 
 /* Camera fields that glTF cannot represent. Velo's own description in the extras keeps them. */
 static const char *const beyond[] = {

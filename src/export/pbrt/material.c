@@ -3,6 +3,8 @@
 #include <stdio.h>
 
 #include "export/pbrt/pbrt.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 
 /* ---- principled -------------------------------------------------------------------------------------------------- */
 

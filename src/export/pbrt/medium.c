@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
+#include "velo/medium.h"
 
 /* `per` numbers per cell. */
 static void put_cells(vlExport *x, const char *parameter, const vlMediumDef *m, const float *v, size_t per) {

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "export/pbrt/pbrt.h"
+#include "velo/texture.h"
 
 bool vl_pbrt_knows(vlExport *x, const vlKindRow *row, const vlParameter *p) {
   if (p->flags & VL_PARAMETER_OWN) vl_export_lose(x, "%s of %s: left out", p->name, row->name);

@@ -7,6 +7,9 @@
 #include "color/color.h"
 #include "export/pbrt/pbrt.h"
 #include "velo/camera_file.h"
+#include "velo/light.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 static const char *const spaces[] = {"srgb", "dci-p3", "rec2020", "aces2065-1"};
 

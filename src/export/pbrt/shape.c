@@ -4,6 +4,9 @@
 
 #include "export/pbrt/pbrt.h"
 #include "scene/solid.h"
+#include "velo/light.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 enum { INLINE_FACES = 64 };
 

@@ -7,6 +7,7 @@
 #include "export/pbrt/pbrt.h"
 #include "image/image.h"
 #include "math/fresnel.h"
+#include "velo/texture.h"
 
 static vlExportImage *find_image(vlExport *x, const vlTextureDef *t, uint32_t variant) {
   const void *data = t->data ? t->data : (const void *)t->image;

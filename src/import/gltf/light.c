@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "import/gltf/gltf.h"
+#include "velo/light.h"
 
 bool vl_gltf_add_light(vlGltf *g, size_t node, int64_t index) {
   const vlGltfPlace *up = VL_GLTF_KEY(NULL, "extensions.KHR_lights_punctual"),

@@ -6,6 +6,9 @@
 
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 
 typedef struct Reader {
   vlGltf *g;

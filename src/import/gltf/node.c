@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "math/motion.h"
+#include "velo/shape.h"
 
 vlMat4 vl_gltf_matrix_from_trs(const double t[3], const double r[4], const double s[3]) {
   double n = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);

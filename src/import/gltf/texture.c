@@ -8,6 +8,7 @@
 #include "import/gltf/gltf.h"
 
 #include "math/elementary.h"
+#include "velo/texture.h"
 
 vlGltfTextureUse vl_gltf_use_color(void) {
   return (vlGltfTextureUse){.spectrum = true, .channel = -1, .srgb = true, .tint = {1, 1, 1, 1}, .cutoff = VL_UNSET};

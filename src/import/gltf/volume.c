@@ -6,6 +6,8 @@
 #include "import/gltf/gltf.h"
 #include "math/approx_double.h"
 #include "math/elementary.h"
+#include "velo/medium.h"
+#include "velo/texture.h"
 
 /* White light takes on `attenuationColor` after `attenuationDistance`: sigma_a = -ln(colour) / distance per channel. */
 bool vl_gltf_volume(vlGltf *g, const vlGltfPlace *at, const json_t *json, vlGltfMaterial *result) {

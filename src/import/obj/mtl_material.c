@@ -7,6 +7,9 @@
 
 #include "base/text.h"
 #include "math/elementary.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 
 static float given(float value, float otherwise) {
   return isnan(value) ? otherwise : value;

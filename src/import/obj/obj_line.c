@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "import/obj/obj.h"
+#include "velo/shape.h"
 
 /* Radius of balls and tubes over the diagonal of the vertices' box: about a pixel, as in glTF without a camera. */
 static const double THIN = 0.0015;

@@ -6,6 +6,7 @@
 #include "import/obj/obj.h"
 #include "math/approx_double.h"
 #include "math/hash.h"
+#include "velo/shape.h"
 
 /* Whether the load must stop after so many corners or triangles; looks at it now and then. */
 static bool stopped(vlObj *obj, size_t done) {

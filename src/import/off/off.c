@@ -11,6 +11,7 @@
 #include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/plain.h"
+#include "velo/scene.h"
 
 typedef struct Off {
   vlScene *scene;

@@ -11,6 +11,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/shape.h"
 
 typedef enum vlAttributeTarget {
   VL_ATTR_SHAPE,

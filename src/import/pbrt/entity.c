@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/shape.h"
 
 /* ---- parameters that outlive their directive -------------------------------------------------------------------- */
 

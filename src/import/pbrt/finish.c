@@ -3,6 +3,8 @@
 #include <math.h>
 
 #include "import/pbrt/builder.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 
 /* ---- the end ---------------------------------------------------------------------------------------------------- */
 

@@ -5,6 +5,7 @@
 
 #include "color/color.h"
 #include "import/pbrt/builder.h"
+#include "velo/light.h"
 
 /* Ignores a power or illuminance that is not positive, as in pbrt. */
 static void drop_target(double *value) {

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "import/pbrt/builder.h"
+#include "velo/material.h"
 
 bool vl_import_material_id(vlImport *import, const char *name, vlSource source, vlMaterialId *id, bool *is_interface) {
   uint32_t index;

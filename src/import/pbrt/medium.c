@@ -6,6 +6,8 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/scattering.h"
+#include "velo/medium.h"
+#include "velo/scene.h"
 
 /* ---- parameters ------------------------------------------------------------------------------------------------- */
 

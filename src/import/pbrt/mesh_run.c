@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/shape.h"
 
 enum { MOST_FACES = 256, MOST_OF_A_RUN = 1 << 20 };
 

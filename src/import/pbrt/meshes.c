@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "import/pbrt/builder.h"
 #include "import/ply/ply.h"
+#include "velo/shape.h"
 
 typedef struct Job {
   vlPlyMesh mesh;

@@ -6,6 +6,7 @@
 
 #include "import/pbrt/builder.h"
 #include "math/motion.h"
+#include "velo/shape.h"
 
 static bool differ(const vlMat4 m[2]) {
   return memcmp(&m[0], &m[1], sizeof *m) != 0;

@@ -4,7 +4,8 @@
 #define IMPORT_PBRT_PARAM_H
 
 #include "base/array.h"
-#include "velo/scene.h"
+#include "velo/ids.h"
+#include "velo/spectrum.h"
 
 typedef enum vlParamType {
   VL_PARAM_INTEGER,

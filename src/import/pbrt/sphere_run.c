@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "import/pbrt/builder.h"
+#include "velo/shape.h"
 
 enum { MOST_OF_A_RUN = 1 << 20 };
 

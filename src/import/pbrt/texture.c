@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/texture.h"
 
 bool vl_import_texture_id(vlImport *import, const char *name, bool spectrum, vlSource source, vlTextureId *id) {
   const vlNameTable *table = spectrum ? &import->spectrum_textures : &import->float_textures;

@@ -3,6 +3,7 @@
  * lobe would reach. Kinds without alpha do not change. */
 #include "math/ggx.h"
 #include "trace/stages.h"
+#include "velo/material.h"
 
 void vl_stage_regularize(vlTracing *t, uint32_t n) {
   if (!t->world->def.regularize) return;

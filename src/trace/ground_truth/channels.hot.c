@@ -6,6 +6,8 @@
  * Hits are the same as those of the tracers: rays pass through interfaces, and a hash of the ray decides mixed
  * materials. */
 #include "trace/ground_truth/scratch.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 #include "world/material/bssrdf.h"
 #include "world/material/measured_lookup.h"
 #include "world/shape/moving.h"

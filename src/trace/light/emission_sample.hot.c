@@ -4,6 +4,7 @@
 #include "math/warp.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
+#include "velo/shape.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"

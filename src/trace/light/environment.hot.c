@@ -3,6 +3,7 @@
  * each loop prefetches the memory that the next loop reads. */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
+#include "velo/texture.h"
 #include "world/texture/texture_lookup.h"
 
 enum { BLOCK = VL_SKY_BLOCK };

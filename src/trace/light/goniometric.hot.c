@@ -2,6 +2,7 @@
  * directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
 #include "math/octahedral.h"
 #include "trace/light/kinds.h"
+#include "velo/texture.h"
 #include "world/texture/texture_lookup.h"
 
 /* The image's factor for light that leaves along d (world space). */

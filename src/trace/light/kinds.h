@@ -10,6 +10,7 @@
 
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
+#include "world/light/light_kind.h"
 
 /* The input of a light sample. */
 typedef struct vlLightQuery {

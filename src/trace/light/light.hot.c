@@ -6,6 +6,8 @@
 #include "trace/light/area.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"

@@ -4,6 +4,7 @@
  * cross, so both sides must agree. */
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
+#include "velo/shape.h"
 #include "world/shape/surface_point.h"
 
 enum { ASKED = 32, ANSWERS = 8 };

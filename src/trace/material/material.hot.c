@@ -1,6 +1,8 @@
 /* trace/material/material.hot.c: shading of a run of lanes with one material: bump and normal maps, BSDF parameters
  * from textures; then shading frames for all lanes. */
+#include "velo/material.h"
 #include "trace/material/rows.h"
+#include "velo/shape.h"
 
 /* Shifts of uv for bump maps. Those below MIN_STEP are a few roundings of a uv near 1 (6e-8): the difference of heights
  * would be noise. DEFAULT_STEP is pbrt's for surfaces without a footprint. */

@@ -4,6 +4,7 @@
 
 #include "trace/medium/medium.h"
 #include "trace/stages.h"
+#include "velo/material.h"
 
 /* A shadow ray ends at this share of the way to its light. */
 #define VL_SHADOW_END (1.0f - 0x1p-21f)

@@ -24,7 +24,7 @@
 
 #include "base/isa.h"
 #include "velo/own.h"
-#include "velo/scene.h"
+#include "velo/sampler.h"
 
 /* Version of the samples, which vl_sample_sequence returns. It is increased whenever a change of the code gives other
  * samples for the same scene and settings. */

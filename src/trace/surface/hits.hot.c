@@ -3,6 +3,8 @@
  * 13.4). */
 #include "math/hash.h"
 #include "trace/stages.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 #include "world/accel/local_ray.h"
 
 /* ---- lights that rays hit ---------------------------------------------------------------------------------------- */

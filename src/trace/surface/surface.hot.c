@@ -3,6 +3,7 @@
  * computed one by one by world/shape/surface_point.c. */
 #include "math/transform.h"
 #include "trace/stages.h"
+#include "velo/shape.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 

@@ -4,6 +4,7 @@
 #define TRACE_TEXTURE_TEXTURE_RUN_H
 
 #include "trace/stages.h"
+#include "world/texture/node_kind.h"
 #include "world/texture/texture_node.h"
 
 /* A run of lanes and a stack of scratch rows for nested textures. */

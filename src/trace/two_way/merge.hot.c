@@ -7,6 +7,7 @@
  * disk. */
 #include "trace/medium/phase.h"
 #include "trace/two_way/stages.h"
+#include "velo/material.h"
 
 enum { LISTED_WORK = 32 }; /* a photon with a BSDF takes as long as so many visited ones */
 

@@ -5,7 +5,7 @@
 #define WORLD_ACCEL_ACCEL_H
 
 #include "base/context.h"
-#include "velo/render.h"
+#include "velo/world.h"
 
 #define VL_NONE 0xffffffffu
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "velo/shape.h"
 #include "world/shape/double3.h"
 #include "world/world.h"
 

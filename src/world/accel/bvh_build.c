@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/bvh.h"
 

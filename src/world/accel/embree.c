@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/isa.h"
 #include "base/machine.h"
+#include "velo/shape.h"
 #include "world/accel/bundle.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"

@@ -1,5 +1,6 @@
 /* world/light/distant.c: distant lights, infinitely far away in one direction (pbrt book 12.3), set by scale or
  * illuminance. */
+#include "velo/light.h"
 #include "world/light/lights.h"
 
 vlResult vl_compile_light_distant(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,

@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "velo/light.h"
+#include "velo/texture.h"
 #include "world/light/lights.h"
 #include "world/texture/texture_lookup.h"
 

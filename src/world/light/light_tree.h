@@ -6,7 +6,7 @@
 #define WORLD_LIGHT_LIGHT_TREE_H
 
 #include "math/vec.h"
-#include "velo/render.h"
+#include "velo/world.h"
 
 /* Bounds of the light that a set of lights emits: position, cone of directions, power. */
 typedef struct vlLightBounds {

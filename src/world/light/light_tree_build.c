@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "math/approx_double.h"
+#include "velo/shape.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 

@@ -11,6 +11,8 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/light.h"
+#include "world/light/light_kind.h"
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
 #include "world/texture/texture_lookup.h"

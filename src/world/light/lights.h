@@ -3,6 +3,7 @@
 #define WORLD_LIGHT_LIGHTS_H
 
 #include "scene/scene.h"
+#include "velo/light.h"
 #include "world/texture/texture_lookup.h"
 #include "world/world.h"
 

@@ -1,6 +1,7 @@
 /* world/light/point.c: point lights (pbrt book 12.2), set by scale or by power over the whole sphere. */
 #include <math.h>
 
+#include "velo/light.h"
 #include "world/light/lights.h"
 
 vlResult vl_compile_light_point(vlWorld *world, const vlLightDef *def, vlWorldLight *light, vlEmitted *e,

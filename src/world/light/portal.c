@@ -9,6 +9,8 @@
 #include "math/elementary.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
+#include "velo/light.h"
+#include "velo/texture.h"
 #include "world/light/lights.h"
 #include "world/texture/texture_lookup.h"
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "math/vec.h"
+#include "velo/medium.h"
 #include "world/medium/kinds.h"
 
 /* Cloud density changes with height: one majorant per slab. The absolute value of noise is at most 1.04, that of the

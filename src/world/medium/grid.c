@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "color/rgb_table.h"
+#include "velo/medium.h"
 #include "world/medium/kinds.h"
 
 static bool copy_grid(vlWorld *world, const vlMediumDef *def, const float *from, vlDenseGrid *to) {

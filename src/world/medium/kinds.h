@@ -2,6 +2,7 @@
 #ifndef WORLD_MEDIUM_KINDS_H
 #define WORLD_MEDIUM_KINDS_H
 
+#include "velo/medium.h"
 #include "world/world.h"
 
 /* There is one function per kind. It sets the box, the majorants, and the members that only this kind has. The caller

@@ -6,6 +6,8 @@
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
 #include "world/medium/kinds.h"
 #include "world/medium/medium_lookup.h"
 #include "world/world.h"

@@ -31,7 +31,7 @@ typedef struct vlSparseGrid {
 } vlSparseGrid;
 
 typedef struct vlWorldMedium {
-  vlMediumKind kind;
+  uint32_t kind;               /* vlMediumKind */
   vlSpectral sigma_a, sigma_s; /* multiplied by the medium's scale */
   vlSpectral emission;         /* scaled to the given luminance and multiplied by the medium's scale */
   float g;

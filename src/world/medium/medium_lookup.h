@@ -3,6 +3,7 @@
 #ifndef WORLD_MEDIUM_MEDIUM_LOOKUP_H
 #define WORLD_MEDIUM_MEDIUM_LOOKUP_H
 
+#include "velo/medium.h"
 #include "world/medium/cloud.h"
 #include "world/medium/grid_lookup.h"
 #include "world/world.h"

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "velo/medium.h"
 #include "world/medium/kinds.h"
 
 static void grow_box(const vlSparseGrid *g, vlWorldMedium *m) {

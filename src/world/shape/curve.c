@@ -20,6 +20,7 @@
 
 #include "base/error.h"
 #include "math/approx.h"
+#include "velo/shape.h"
 #include "world/shape/kinds.h"
 
 /* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along the ray. */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "velo/shape.h"
 
 enum { MOST_TRIANGLES = 1 << 22 }; /* take about 600 MB with their BVH */
 

@@ -6,6 +6,7 @@
 #define WORLD_SHAPE_KINDS_H
 
 #include "math/transform.h"
+#include "velo/shape.h"
 #include "world/shape/double3.h"
 #include "world/world.h"
 

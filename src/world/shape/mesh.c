@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "velo/shape.h"
 #include "world/shape/moving.h"
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {

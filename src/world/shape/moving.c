@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "math/motion.h"
 #include "scene/scene.h"
+#include "velo/shape.h"
 #include "world/shape/double3.h"
 #include "world/shape/surface_point.h"
 

@@ -2,6 +2,7 @@
  * parameters. */
 #include <math.h>
 
+#include "velo/shape.h"
 #include "world/shape/mesh.h"
 
 typedef struct Patch {

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "math/approx.h"
+#include "velo/shape.h"
 #include "world/shape/kinds.h"
 
 /* One primitive of a shape in its own space. This is shape space; if the shape is many spheres, it is shape space

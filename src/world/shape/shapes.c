@@ -6,6 +6,7 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/material.h"
 #include "world/shape/displace.h"
 #include "world/shape/moving.h"
 #include "world/shape/share.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "scene/scene.h"
+#include "velo/shape.h"
 
 /* ---- comparison -------------------------------------------------------------------------------------------------- */
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "velo/schema.h"
+#include "velo/shape.h"
 
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
   const float *m = instance->to_group;

@@ -7,6 +7,7 @@
 #include "base/file_stamp.h"
 #include "color/color.h"
 #include "image/mipmap.h"
+#include "velo/world.h"
 
 /* A constant spectrum, ready for 4 channels. In RGB mode kind is always VL_SPECTRAL_RGB. */
 typedef enum vlSpectralKind {
@@ -38,18 +39,8 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
  * (trace/texture/texture.hot.c), and the number of nodes visited (a shared input counts each time it is evaluated). */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
-/* There is one kind of node per kind of texture, except for constants: a constant texture compiles to a number or, for
- * colours, to a spectrum. */
-typedef enum vlNodeKind {
-#define VL_KIND(NAME, name) VL_NODE_##NAME,
-  VL_TEXTURE_KINDS(VL_KIND)
-#undef VL_KIND
-      VL_NODE_SPECTRUM,
-  VL_NODE_FLOAT = VL_NODE_CONSTANT
-} vlNodeKind;
-
 typedef struct vlTextureNode {
-  vlNodeKind kind;
+  uint32_t kind; /* vlNodeKind (world/texture/node_kind.h) */
   bool is_spectrum;
   uint8_t rows; /* number of scratch rows for evaluation of the node and its inputs */
   uint16_t visits;
@@ -62,8 +53,8 @@ typedef struct vlTextureNode {
   uint32_t dimension, octaves;
   float omega, variation; /* parameters of noise textures */
   int32_t image;
-  vlWrap wrap, wrap_t;
-  vlTextureFilter filter;
+  uint32_t wrap, wrap_t; /* vlWrap */
+  uint32_t filter;       /* vlTextureFilter */
   float scale;
   bool invert;
   /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a float texture reads; -1:
@@ -73,8 +64,8 @@ typedef struct vlTextureNode {
   uint8_t uv_set;
   float tint[4], bias, cutoff; /* cutoff is NaN if there is none */
   vlColorSpace space;
-  vlMapping mapping;
-  bool st_given; /* the map st gives s and t, instead of su, sv, du, dv */
+  uint32_t mapping; /* vlMapping */
+  bool st_given;    /* the map st gives s and t, instead of su, sv, du, dv */
   float su, sv, du, dv;
   float st[6], st_scale; /* map from uv to (s, t); st_scale: the largest factor by which it stretches a length */
   float v1[3], v2[3];

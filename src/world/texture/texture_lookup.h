@@ -4,6 +4,8 @@
 #ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
 #define WORLD_TEXTURE_TEXTURE_LOOKUP_H
 
+#include "velo/shape.h"
+#include "velo/texture.h"
 #include "world/world.h"
 
 /* A point at which a texture is evaluated: uv, position and normal in world space, and the footprint. The footprint has

@@ -12,6 +12,8 @@
 #include "image/image.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/texture.h"
+#include "world/texture/node_kind.h"
 #include "world/texture/texture_node.h"
 #include "world/world.h"
 

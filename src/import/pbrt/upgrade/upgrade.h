@@ -6,7 +6,6 @@
 #define IMPORT_PBRT_UPGRADE_UPGRADE_H
 
 #include "base/file_set.h"
-#include "velo/scene.h"
 #include "velo/upgrade.h"
 
 /* Part of a file's text: [start, end). */

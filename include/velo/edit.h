@@ -12,7 +12,7 @@
 #define VELO_EDIT_H
 
 #include "velo/base.h"
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,7 +3,7 @@
 #ifndef VELO_EXPORT_H
 #define VELO_EXPORT_H
 
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,8 +4,8 @@
 #define VELO_GROUP_H
 
 #include "velo/base.h"
-#include "velo/ids.h"
 #include "velo/load.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -4,7 +4,7 @@
 #ifndef VELO_LOAD_H
 #define VELO_LOAD_H
 
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -6,9 +6,9 @@
 #define VELO_RECEIPT_H
 
 #include "velo/camera.h"
-#include "velo/ids.h"
 #include "velo/load.h"
 #include "velo/own.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -3,7 +3,7 @@
 #ifndef VELO_SPECTRUM_H
 #define VELO_SPECTRUM_H
 
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -1,5 +1,5 @@
 /** @file
- * velo/tracer.h: tracers: their kinds, how a path represents radiance, how it selects a light. */
+ * velo/tracer.h: tracers: their kinds. */
 #ifndef VELO_TRACER_H
 #define VELO_TRACER_H
 
@@ -28,10 +28,6 @@ typedef enum vlTracer {
   VL_TRACER_KINDS(VL_KIND)
 #undef VL_KIND
 } vlTracer;
-/** How a path represents radiance: at 4 sampled wavelengths, or as R, G, B. */
-typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;
-/** How a light is selected: by a light BVH (pbrt book 12.6), by power, uniformly. */
-typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM } vlLightSampler;
 
 #ifdef __cplusplus
 }

@@ -3,8 +3,7 @@
 #ifndef VELO_WORLD_H
 #define VELO_WORLD_H
 
-#include "velo/ids.h"
-#include "velo/tracer.h"
+#include "velo/scene_base.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,6 +12,10 @@ extern "C" {
 /** A compiled scene. It never changes, so any number of threads and renders may share it. Its context must outlive it.
  */
 typedef struct vlWorld vlWorld;
+/** How a path represents radiance: at 4 sampled wavelengths, or as R, G, B. */
+typedef enum vlColorMode { VL_COLOR_SPECTRAL, VL_COLOR_RGB } vlColorMode;
+/** How a light is selected: by a light BVH (pbrt book 12.6), by power, uniformly. */
+typedef enum vlLightSampler { VL_LIGHT_SAMPLER_BVH, VL_LIGHT_SAMPLER_POWER, VL_LIGHT_SAMPLER_UNIFORM } vlLightSampler;
 /** The guarantee for the image's bits. PORTABLE: the same scene, options and version give the same bits on every x86-64
  * machine and for any number of threads; a crop has the same pixels as the whole image. FAST: the bits are the same
  * only on machines for which Embree, which finds the surfaces, selects the same instruction set. Between other

@@ -12,7 +12,6 @@
 #include "import/import.h"
 #include "scene/scene.h"
 #include "velo/camera_file.h"
-#include "velo/scene.h"
 
 typedef vlResult Import(vlScene *scene, const char *path, const vlLoadDef *def, vlError *error);
 

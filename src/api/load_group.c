@@ -5,7 +5,7 @@
 #include "scene/extent.h"
 #include "schema/schema.h"
 #include "velo/group.h"
-#include "velo/scene.h"
+#include "velo/shape.h"
 
 /* Numbers of a scene's things before a file was loaded. */
 typedef struct Before {

@@ -6,7 +6,6 @@
 #include "base/cookie.h"
 #include "base/text.h"
 #include "image/image.h"
-#include "velo/scene.h"
 #include "velo/texture.h"
 
 vlSaveDef vl_default_save_def(void) {

@@ -3,8 +3,8 @@
 #ifndef IMPORT_IMPORT_H
 #define IMPORT_IMPORT_H
 
-#include "velo/ids.h"
 #include "velo/load.h"
+#include "velo/scene_base.h"
 
 /* X(suffix, name) for each suffix of scene files; vl_import_NAME reads them. def may be null. */
 #define VL_SCENE_FORMATS(X) \

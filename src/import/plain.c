@@ -9,7 +9,6 @@
 #include "import/ply/ply.h"
 #include "import/repair.h"
 #include "velo/material.h"
-#include "velo/scene.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
 

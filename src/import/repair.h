@@ -3,7 +3,7 @@
 #ifndef IMPORT_REPAIR_H
 #define IMPORT_REPAIR_H
 
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 
 typedef struct vlRepairs {
   uint64_t normals, uvs, shapes; /* numbers of vertices, and of the shapes that hold them */

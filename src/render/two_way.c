@@ -70,7 +70,7 @@ struct vlTwoWayRun {
   bool starts; /* some light can start paths */
 };
 
-bool vl_two_way_tracer(vlTracer tracer) {
+bool vl_two_way_tracer(uint32_t tracer) {
   return tracer == VL_TRACER_BIDIRECTIONAL || tracer == VL_TRACER_MERGING || tracer == VL_TRACER_SPPM ||
          tracer == VL_TRACER_LIGHT_PATH;
 }

@@ -16,7 +16,7 @@ typedef struct vlTwoWayRun vlTwoWayRun;
 enum { VL_MOST_LIGHT_PATHS = 1 << 24 };
 
 /* Whether the tracer traces light paths, too. */
-bool vl_two_way_tracer(vlTracer tracer);
+bool vl_two_way_tracer(uint32_t tracer); /* vlTracer */
 
 /* trace: the def of the camera paths; afterwards the caller sets its member two_way to vl_two_way_of(run). rays:
  * determines the times of camera samples; must outlive the run. Error: MEMORY. */

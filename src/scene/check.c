@@ -6,7 +6,6 @@
 #include "base/cookie.h"
 #include "base/free.h"
 #include "base/text.h"
-#include "velo/scene.h"
 
 vlCheckDef vl_default_check_def(void) {
   return (vlCheckDef){.cookie = VL_COOKIE_CHECK, .images = true};

@@ -10,7 +10,7 @@
 #include "scene/lamps.h"
 #include "schema/schema.h"
 #include "velo/material.h"
-#include "velo/scene.h"
+#include "velo/shape.h"
 #include "velo/texture.h"
 
 vlCompleteDef vl_default_complete_def(void) {

@@ -9,7 +9,6 @@
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/medium.h"
-#include "velo/scene.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
 

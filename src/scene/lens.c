@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
-#include "velo/scene.h"
 
 /* Memory is reserved first, so that a failed allocation never leaves an object with two owners. */
 vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error) {

@@ -2,7 +2,6 @@
  * objects. */
 #include "scene/scene.h"
 #include "base/text.h"
-#include "velo/scene.h"
 #include "velo/shape.h"
 
 #include <string.h>

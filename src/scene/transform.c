@@ -8,7 +8,6 @@
 #include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
-#include "velo/scene.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
 

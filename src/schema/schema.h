@@ -4,7 +4,7 @@
 #ifndef SCHEMA_SCHEMA_H
 #define SCHEMA_SCHEMA_H
 
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 #include "velo/schema.h"
 #include "velo/spectrum.h"
 

@@ -276,10 +276,6 @@ static inline float vl_roulette_survival(float carried, uint32_t depth) {
 /* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
 uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Each kind of tracer has one function, vl_trace_ and its name; tracer/tracers.hot.c calls it. */
-#define VL_TRACER_FUNCTION(K, k) void vl_trace_##k(vlTracing *t);
-VL_TRACER_KINDS(VL_TRACER_FUNCTION)
-#undef VL_TRACER_FUNCTION
 void vl_path_tracer(vlTracing *t);
 void vl_volume_tracer(
     vlTracing *t); /* in volume.hot.c: path tracer with participating media and subsurface materials */

@@ -58,7 +58,7 @@ typedef struct vlMediaFit {
 } vlMediaFit;
 
 typedef struct vlTraceDef {
-  vlTracer tracer;
+  uint32_t tracer;               /* vlTracer */
   const struct vlOwnTracer *own; /* in place of tracer (tracer/own.h); null: none */
   const vlSampler *sampler;
   vlIsa isa;

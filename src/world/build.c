@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "scene/scene.h"
-#include "velo/scene.h"
 #include "world/world.h"
 
 /* ---- parts (part.h) ---------------------------------------------------------------------------------------------- */

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "velo/load.h"
 #include "velo/render.h"
 
 static vlCameraRecord read_as(const char *path, vlCameraDialect dialect, const char *frame) {

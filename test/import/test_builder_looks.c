@@ -1,6 +1,11 @@
 /* test/import/test_builder_looks.c: statements for materials, textures, lights and media, with defaults and attributes.
  */
 #include "import/load.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 #define W "WorldBegin\n"
 

@@ -1,5 +1,6 @@
 /* test/import/test_errors.c: every kind of error in a scene file: the exact text of its line and its place. */
 #include "import/load.h"
+#include "velo/material.h"
 
 #define W "WorldBegin\n"
 

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include "import/load.h"
+#include "velo/shape.h"
 
 static char folder[64];
 

@@ -1,7 +1,9 @@
 /* test/import/test_gltf.c: glTF files made here become the scenes that the specification defines: arrays, modes, node
  * trees, animation, deformation, tangents, cameras. */
 #include "import/gltf_load.h"
+#include "velo/material.h"
 #include "velo/render.h"
+#include "velo/shape.h"
 
 /* ---- the file ---------------------------------------------------------------------------------------------------- */
 

@@ -6,6 +6,10 @@
 #include "image/image.h"
 #include "import/gltf_load.h"
 #include "math/octahedral.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 static void is_near(double a, double b, double most) {
   if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);

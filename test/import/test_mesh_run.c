@@ -2,6 +2,7 @@
  * allocations leak nothing. */
 #include "import/load_failing.h"
 
+#include "velo/shape.h"
 #include "world/world.h"
 
 enum { BEFORE = 4096, QUADS = 60 };

@@ -1,5 +1,6 @@
 /* test/import/test_meshes.c: STL, OFF, and what PLY files hold besides polygons: strips, colours of faces, points. */
 #include "load.h"
+#include "velo/shape.h"
 
 static Loaded load(const char *name, const void *data, size_t size) {
   Loaded l;

@@ -3,6 +3,9 @@
 
 #include "failing_allocator.h"
 #include "math/hash.h"
+#include "velo/material.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 static char folder[64];
 

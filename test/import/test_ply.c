@@ -5,6 +5,7 @@
 
 #include "import/load.h"
 #include "import/ply/ply.h"
+#include "velo/shape.h"
 
 static vlContext *context;
 

@@ -1,5 +1,7 @@
 /* test/import/test_repair.c: permissive loading: what is repaired, and that it is counted. */
 #include "import/load.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 #define W "Film \"rgb\" WorldBegin\n"
 

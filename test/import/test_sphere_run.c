@@ -3,6 +3,7 @@
 #include "import/load_failing.h"
 
 #include "scene/solid.h"
+#include "velo/light.h"
 #include "world/shape/surface_point.h"
 
 enum { BEFORE = 4096, SPHERES = 60 };

@@ -4,6 +4,7 @@
 #include "image/image.h"
 #include "import/load.h"
 #include "math/octahedral.h"
+#include "velo/shape.h"
 #include "velo/upgrade.h"
 
 static char folder[200];

@@ -11,6 +11,8 @@
 
 #include "scene/lamps.h"
 #include "scene/scene.h"
+#include "velo/light.h"
+#include "velo/shape.h"
 
 typedef struct Model {
   vlContext *context;

@@ -11,7 +11,11 @@
 
 #include "failing_allocator.h"
 #include "scene/scene.h"
+#include "velo/light.h"
+#include "velo/material.h"
 #include "velo/render.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 static vlContext *context;
 static vlScene *scene;

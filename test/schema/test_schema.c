@@ -12,7 +12,9 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "velo/material.h"
 #include "velo/render.h"
+#include "velo/texture.h"
 
 static void well_formed(void **state) {
   (void)state;

@@ -8,6 +8,7 @@
 
 #include "statistics.h"
 #include "trace/sampler/sobol.h"
+#include "velo/sampler.h"
 
 enum { KINDS = VL_SAMPLER_ZSOBOL + 1, BATCH = 4096 };
 static const char *const NAMES[KINDS] = {"independent", "regular", "stratified", "nrooks", "multi-jittered",

@@ -9,6 +9,7 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
+#include "world/texture/node_kind.h"
 #include "world/texture/texture_noise.h"
 
 static uint32_t seed = 3;

@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 #include "import/gltf/gltf.h"
-#include "velo/scene.h"
 
 enum { HEIGHT = 720, SIDE = 1280 }; /* default image size: glTF has no resolution */
 

@@ -4,7 +4,6 @@
 
 #include "import/gltf/gltf.h"
 #include "math/elementary.h"
-#include "velo/scene.h"
 
 /* Rows of the image for which the size is chosen. */
 enum { POINT_ROWS = 720 };

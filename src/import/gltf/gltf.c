@@ -4,7 +4,6 @@
 
 #include "import/import.h"
 #include "import/plain.h"
-#include "velo/scene.h"
 
 bool vl_gltf_choose_variant(vlGltf *g) {
   g->variant = -1;

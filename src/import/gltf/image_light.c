@@ -9,7 +9,6 @@
 #include "math/cube_map.h"
 #include "math/octahedral.h"
 #include "velo/light.h"
-#include "velo/scene.h"
 
 typedef struct Cube {
   uint32_t side[6];

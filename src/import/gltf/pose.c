@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "import/gltf/gltf.h"
-#include "velo/scene.h"
 
 static bool pose_at(vlGltf *g, double time) {
   g->time = time;

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "import/gltf/gltf.h"
-#include "velo/scene.h"
 
 enum { MOST = 200 }; /* messages */
 

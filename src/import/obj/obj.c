@@ -9,7 +9,6 @@
 #include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/plain.h"
-#include "velo/scene.h"
 
 enum { MAX_PARTS = 4096, MAX_MATERIALS = 1 << 20 };
 enum { REPORTED_CURVES = 1, REPORTED_UNKNOWN = 2 };

@@ -11,7 +11,6 @@
 #include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/plain.h"
-#include "velo/scene.h"
 
 typedef struct Off {
   vlScene *scene;

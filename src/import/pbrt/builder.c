@@ -6,7 +6,6 @@
 
 #include "base/text.h"
 #include "import/import.h"
-#include "velo/scene.h"
 
 /* The part of a file where a directive may stand: options precede WorldBegin, the world follows it. */
 typedef enum Part { ANYWHERE, OPTIONS, WORLD } Part;

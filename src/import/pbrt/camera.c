@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/lens.h"
-#include "velo/scene.h"
 
 static const double degrees = 0.017453292519943295;
 

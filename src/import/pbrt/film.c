@@ -6,7 +6,6 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/token.h"
 #include "velo/render.h"
-#include "velo/scene.h"
 
 /* Reads the crop window. pbrt's "pixelbounds" are x0 x1 y0 y1 in pixels. "cropwindow" gives the same as fractions of
  * the image size, which are rounded up; it takes precedence. */

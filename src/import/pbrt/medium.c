@@ -7,7 +7,6 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/scattering.h"
 #include "velo/medium.h"
-#include "velo/scene.h"
 
 /* ---- parameters ------------------------------------------------------------------------------------------------- */
 

@@ -4,7 +4,7 @@
 #define IMPORT_PBRT_PARAM_H
 
 #include "base/array.h"
-#include "velo/ids.h"
+#include "velo/scene_base.h"
 #include "velo/spectrum.h"
 
 typedef enum vlParamType {

@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
-#include "velo/scene.h"
 
 /* Finds the row of the kind that the file names. Null for an unknown kind; *good then says whether the import
  * continues. */

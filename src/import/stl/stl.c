@@ -9,7 +9,6 @@
 #include "import/import.h"
 #include "import/pbrt/token.h"
 #include "import/plain.h"
-#include "velo/scene.h"
 
 enum { HEADER = 84, FACET = 50 };
 

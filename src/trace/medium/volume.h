@@ -4,7 +4,6 @@
 
 #include "trace/medium/medium.h"
 #include "trace/stages.h"
-#include "velo/material.h"
 
 /* A shadow ray ends at this share of the way to its light. */
 #define VL_SHADOW_END (1.0f - 0x1p-21f)
@@ -42,7 +41,7 @@ static inline uint32_t vl_medium_beyond(const vlWorldShape *s, vlVec3 g, vlVec3 
 }
 
 static inline bool vl_is_interface(const vlWorld *world, uint32_t shape) {
-  return world->materials.items[world->shapes.items[shape].material].kind == VL_MATERIAL_INTERFACE;
+  return world->shapes.items[shape].pass_shadow;
 }
 
 /* A block of rays on their way through media and interfaces: the n rays of rows from the block's first lane on. The

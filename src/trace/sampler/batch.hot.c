@@ -3,6 +3,7 @@
 #include "trace/sampler/cells.h"
 #include "trace/sampler/halton.h"
 #include "trace/sampler/sobol.h"
+#include "velo/sampler.h"
 
 static void independent_1d(const vlSampler *s, uint32_t n, const int32_t *px, const int32_t *py, const uint32_t *index,
                            uint32_t dimension, float *u) {

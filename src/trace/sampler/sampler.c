@@ -14,8 +14,7 @@ static uint32_t floor_sqrt(uint32_t x) {
   return r;
 }
 
-void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
-                     uint32_t spp) {
+void vl_sampler_init(vlSampler *sampler, uint32_t kind, uint32_t seed, uint32_t width, uint32_t height, uint32_t spp) {
   enum { SET_MAX = 1 << 20 };
   uint32_t count = spp ? spp : 1;
   uint32_t set = count < SET_MAX ? count : SET_MAX, root = floor_sqrt(set);
@@ -44,7 +43,7 @@ void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint
 
 /* By the sampler's row: a sampler that can go on without end has one sequence for any number of samples; the others lay
  * out cells for exactly the planned number. */
-uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp) {
+uint32_t vl_sampler_sequence(uint32_t kind, uint32_t spp) {
   const vlKindFamily *samplers = vl_kind_family_find("samplers");
   if ((uint32_t)kind < samplers->kind_count && samplers->rows[kind]->traits & VL_SAMPLER_TRAIT_OPEN)
     return VL_SEQUENCE_LENGTH;

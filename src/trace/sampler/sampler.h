@@ -24,14 +24,13 @@
 
 #include "base/isa.h"
 #include "velo/own.h"
-#include "velo/sampler.h"
 
 /* Version of the samples, which vl_sample_sequence returns. It is increased whenever a change of the code gives other
  * samples for the same scene and settings. */
 enum { VL_SAMPLE_SEQUENCE = 2 };
 
 typedef struct vlSampler {
-  vlSamplerKind kind;
+  uint32_t kind; /* vlSamplerKind */
   uint32_t seed;
   uint32_t spp;              /* length of the sequence, samples per pixel */
   uint32_t width, height;    /* size of the whole image, pixels */
@@ -48,14 +47,13 @@ typedef struct vlSampler {
 
 /* Initialises a sampler. spp: the length of the sequence; every kind accepts any spp >= 1, and 0 counts as 1. Images
  * may have up to 65536 x 65536 pixels. */
-void vl_sampler_init(vlSampler *sampler, vlSamplerKind kind, uint32_t seed, uint32_t width, uint32_t height,
-                     uint32_t spp);
+void vl_sampler_init(vlSampler *sampler, uint32_t kind, uint32_t seed, uint32_t width, uint32_t height, uint32_t spp);
 
 /* The default length of a sequence, for a render of spp samples per pixel. For kinds with cells it is spp. For kinds
  * that can go on without end it is constant, so that a sample is the same for any spp
  * (docs/decisions/0014-one-sequence.md). */
 enum { VL_SEQUENCE_LENGTH = 1 << 16 };
-uint32_t vl_sampler_sequence(vlSamplerKind kind, uint32_t spp);
+uint32_t vl_sampler_sequence(uint32_t kind, uint32_t spp);
 
 /* px, py: pixel; index: sample index in [0, spp). Arrays hold VL_PAD(n) elements; padding lanes are computed too. */
 typedef struct vlSamplerKernels {

@@ -2,6 +2,7 @@
  * bounce samples a uniform direction on the sphere; only lights that the walk hits contribute. Specular lobes are never
  * sampled, so that specular surfaces are black. */
 #include "math/warp.h"
+#include "trace/tracer/kinds.h"
 #include "trace/two_way/stages.h"
 
 void vl_trace_random_walk(vlTracing *t) {

@@ -1,6 +1,7 @@
 /* trace/tracer/tracers.hot.c: calls the tracer, and defines the tracers that end at the first hit: raycast and ambient
  * occlusion. The path tracer is in path.hot.c. */
 #include "math/warp.h"
+#include "trace/tracer/kinds.h"
 #include "trace/tracer/own.h"
 #include "trace/two_way/stages.h"
 

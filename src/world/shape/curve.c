@@ -22,6 +22,7 @@
 #include "math/approx.h"
 #include "velo/shape.h"
 #include "world/shape/kinds.h"
+#include "world/shape/tables.h"
 
 /* Bezier control points in ray coordinates: x and y are perpendicular to the ray, z is along the ray. */
 typedef struct Cubic {

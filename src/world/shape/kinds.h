@@ -6,7 +6,6 @@
 #define WORLD_SHAPE_KINDS_H
 
 #include "math/transform.h"
-#include "velo/shape.h"
 #include "world/shape/double3.h"
 #include "world/world.h"
 
@@ -66,9 +65,5 @@ typedef struct vlShapeFunctions {
   const vlShapeFunctions vl_shape_functions_##kind = {                                                      \
       prefix##_compile, prefix##_bounds, prefix##_intersect, prefix##_point, prefix##_sample, prefix##_pdf, \
   };
-/* Declares the table of every kind. A missing table is a link error. */
-#define VL_SHAPE_DECLARE(K, k) extern const vlShapeFunctions vl_shape_functions_##k;
-VL_SHAPE_KINDS(VL_SHAPE_DECLARE)
-#undef VL_SHAPE_DECLARE
 
 #endif

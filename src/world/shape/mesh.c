@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "velo/shape.h"
 #include "world/shape/moving.h"
+#include "world/shape/tables.h"
 
 static vlResult fail_shape(const vlShapeDef *def, vlError *error, const char *what) {
   return vl_fail_at(error, VL_ERROR_SCENE, def->source.file, def->source.line, def->source.column, "%s", what);

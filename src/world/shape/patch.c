@@ -4,6 +4,7 @@
 
 #include "velo/shape.h"
 #include "world/shape/mesh.h"
+#include "world/shape/tables.h"
 
 typedef struct Patch {
   double p00[3], p10[3], p01[3], p11[3];

@@ -7,6 +7,7 @@
 #include "math/approx.h"
 #include "velo/shape.h"
 #include "world/shape/kinds.h"
+#include "world/shape/tables.h"
 
 /* One primitive of a shape in its own space. This is shape space; if the shape is many spheres, it is shape space
  * translated so that this sphere is at the origin. */

@@ -6,6 +6,7 @@
 
 #include "velo/schema.h"
 #include "velo/shape.h"
+#include "world/shape/tables.h"
 
 void vl_ray_to_group(const vlWorldInstance *instance, double o[3], double d[3]) {
   const float *m = instance->to_group;

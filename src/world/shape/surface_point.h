@@ -3,6 +3,7 @@
 #ifndef WORLD_SHAPE_SURFACE_POINT_H
 #define WORLD_SHAPE_SURFACE_POINT_H
 
+#include "velo/shape.h"
 #include "world/shape/kinds.h"
 
 /* Transforms a world-space ray to the space of an instance's group; t is unchanged. */

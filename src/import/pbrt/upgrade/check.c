@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "import/import.h"
 #include "import/pbrt/upgrade/upgrade.h"
-#include "velo/scene.h"
 
 /* A file without WorldBegin is part of a scene and is not checked. What velo does not render is no mistake of the
  * upgrade (permissive), nor is a file that the old scene lacks, too. The images that are made of the old ones are not

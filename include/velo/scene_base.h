@@ -1,8 +1,8 @@
 /** @file
- * velo/ids.h: what a description is made of: ids of its parts, places in files, labels. A scene (velo/scene.h)
- * gives the ids. */
-#ifndef VELO_IDS_H
-#define VELO_IDS_H
+ * velo/scene_base.h: the scene itself, and what its parts have in common: ids, places in files, labels. A header that
+ * only points at parts includes this one instead of all of velo/scene.h. */
+#ifndef VELO_SCENE_BASE_H
+#define VELO_SCENE_BASE_H
 
 #include "velo/base.h"
 
@@ -47,8 +47,6 @@ typedef struct vlMediumId {
   uint32_t index; /**< from 1; 0: vacuum */
 } vlMediumId;
 
-/* The defs, which describe one part each: velo/texture.h, material.h, medium.h, light.h, shape.h. A header that only
- * points at them includes this one. */
 /** Describes a texture (velo/texture.h). */
 typedef struct vlTextureDef vlTextureDef;
 /** Describes a material (velo/material.h). */
@@ -76,6 +74,35 @@ typedef struct vlLabel {
   const char *path;  /**< all names that apply, from the root down, with / between: nodes, mesh, material */
   const char *place; /**< indices in a file without lines: nodes[3].meshes[1].primitives[0] */
 } vlLabel;
+
+/** The scene's defs, never null. The scene owns them and what their pointers point at. May be changed until the scene
+ * is destroyed. */
+VL_API vlSceneDefs *vl_scene_defs(vlScene *scene);
+/** Copies camera, image size and crop from another scene of the same context. The objects of the camera's lens are
+ * copied, too, so that `from` may be destroyed afterwards. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_take_camera(vlScene *scene, vlScene *from, vlError *error);
+/** Focuses the scene's camera, which must have a lens of many elements, at a distance from its film, in scene units.
+ * ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_refocus(vlScene *scene, double distance, vlError *error);
+
+/** Creates an empty scene. ARGUMENT, MEMORY. */
+VL_API vlResult vl_scene_create(vlContext *context, vlScene **scene);
+/** Null is allowed. */
+VL_API void vl_scene_destroy(vlScene *scene);
+/** The scene's first error; VL_OK if there is none. error may be null. */
+VL_API vlResult vl_scene_result(const vlScene *scene, vlError *error);
+
+/** The size of a scene. */
+typedef struct vlSceneInfo {
+  /** Numbers of objects. Objects of a group count once, however many instances it has; emissive_shapes also count as
+   * shapes. */
+  uint64_t shapes, triangles, vertices, textures, materials, lights, emissive_shapes, groups, instances, media;
+} vlSceneInfo;
+/** Counts the contents of a scene. */
+VL_API void vl_scene_info(const vlScene *scene, vlSceneInfo *info);
+/** The number of objects of a kind in the scene. family: name of a family of velo/schema.h: "materials", "textures",
+ * "media", "lights" or "shapes"; the result for other names is 0. */
+VL_API uint64_t vl_scene_kind_count(const vlScene *scene, const char *family, uint32_t kind);
 
 #ifdef __cplusplus
 }

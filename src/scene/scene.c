@@ -3,6 +3,10 @@
 #include "scene/scene.h"
 #include "base/text.h"
 #include "velo/shape.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
+#include "velo/texture.h"
 
 #include <string.h>
 

@@ -10,6 +10,7 @@
 #include "velo/material.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
+#include "velo/medium.h"
 
 /* A similarity: p' = scale * turn(p) + shift. */
 typedef struct Similarity {

@@ -5,6 +5,7 @@
 
 #include "import/gltf_writer.h"
 #include "import/load.h"
+#include "velo/shape.h"
 
 static char folder[64];
 

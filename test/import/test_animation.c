@@ -1,5 +1,6 @@
 /* test/import/test_animation.c: several glTF animations at once; an automatic camera frames a whole animation. */
 #include "import/gltf_load.h"
+#include "velo/shape.h"
 
 static void is_near(double a, double b, double most) {
   if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);

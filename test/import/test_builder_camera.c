@@ -1,5 +1,6 @@
 /* test/import/test_builder_camera.c: statements for pbrt's and the lecture's cameras, and the defs of the image. */
 #include "import/load.h"
+#include "velo/shape.h"
 
 #define W "WorldBegin\n"
 

@@ -1,6 +1,7 @@
 /* test/import/test_errors.c: every kind of error in a scene file: the exact text of its line and its place. */
 #include "import/load.h"
 #include "velo/material.h"
+#include "velo/shape.h"
 
 #define W "WorldBegin\n"
 

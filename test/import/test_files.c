@@ -4,6 +4,7 @@
 
 #include "import/load.h"
 #include "velo/shape.h"
+#include "velo/material.h"
 
 static char folder[64];
 

@@ -2,6 +2,7 @@
  * that share a mesh and joints, eight influences, many morph targets, Unicode names, deep and wide node trees, hidden
  * nodes, interleaved arrays, nearly empty files. */
 #include "import/gltf_load.h"
+#include "velo/shape.h"
 
 static void is_near(double a, double b, double most) {
   if (!(fabs(a - b) <= most)) fail_msg("%.9g is not %.9g", a, b);

@@ -1,6 +1,8 @@
 /* test/import/test_motion.c: pbrt's animated transforms: moving shapes become groups and instances with two poses at
  * pbrt's times; moving parts of objects move with each instance; the camera's two poses. */
 #include "import/load.h"
+#include "velo/light.h"
+#include "velo/shape.h"
 
 #define W "WorldBegin\n"
 

@@ -1,6 +1,7 @@
 /* test/import/test_names.c: names of files reach shapes, materials and instances: glTF, OBJ, PLY. */
 #include "import/gltf_load.h"
 #include "velo/check.h"
+#include "velo/shape.h"
 
 static void is_label(const vlLabel *l, const char *name, const char *path, const char *place) {
   assert_string_equal(l->name, name);

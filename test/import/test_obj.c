@@ -6,6 +6,7 @@
 #include "velo/material.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
+#include "velo/light.h"
 
 static char folder[64];
 

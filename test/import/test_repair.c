@@ -2,6 +2,8 @@
 #include "import/load.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
+#include "velo/light.h"
+#include "velo/material.h"
 
 #define W "Film \"rgb\" WorldBegin\n"
 

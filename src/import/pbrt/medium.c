@@ -7,6 +7,7 @@
 #include "import/pbrt/builder.h"
 #include "import/pbrt/scattering.h"
 #include "velo/medium.h"
+#include "velo/light.h"
 
 /* ---- parameters ------------------------------------------------------------------------------------------------- */
 

@@ -2,13 +2,14 @@
  * objects. */
 #include "scene/scene.h"
 #include "base/text.h"
-#include "velo/shape.h"
+
+#include <string.h>
+
 #include "velo/light.h"
 #include "velo/material.h"
 #include "velo/medium.h"
+#include "velo/shape.h"
 #include "velo/texture.h"
-
-#include <string.h>
 
 vlResult vl_scene_fail(vlScene *scene, vlResult code, vlSource source, const char *format, ...) {
   if (scene->error.code != VL_OK) return scene->error.code;

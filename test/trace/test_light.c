@@ -15,6 +15,7 @@
 
 #include "trace/stages.h"
 #include "velo/velo.h"
+#include "world/light/light_kind.h"
 
 enum { TRIES = 200 * 1000 };
 

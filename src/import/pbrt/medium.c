@@ -6,8 +6,9 @@
 #include "base/text.h"
 #include "import/pbrt/builder.h"
 #include "import/pbrt/scattering.h"
-#include "velo/medium.h"
 #include "velo/light.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
 
 /* ---- parameters ------------------------------------------------------------------------------------------------- */
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "math/approx_double.h"
 #include "velo/shape.h"
+#include "world/light/light_kind.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 

@@ -8,9 +8,9 @@
 #include "velo/edit.h"
 #include "velo/light.h"
 #include "velo/material.h"
+#include "velo/medium.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
-#include "velo/medium.h"
 
 /* A similarity: p' = scale * turn(p) + shift. */
 typedef struct Similarity {

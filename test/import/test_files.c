@@ -3,8 +3,8 @@
 #include <zlib.h>
 
 #include "import/load.h"
-#include "velo/shape.h"
 #include "velo/material.h"
+#include "velo/shape.h"
 
 static char folder[64];
 

@@ -3,10 +3,10 @@
 
 #include "failing_allocator.h"
 #include "math/hash.h"
+#include "velo/light.h"
 #include "velo/material.h"
 #include "velo/shape.h"
 #include "velo/texture.h"
-#include "velo/light.h"
 
 static char folder[64];
 

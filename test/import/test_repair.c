@@ -1,9 +1,9 @@
 /* test/import/test_repair.c: permissive loading: what is repaired, and that it is counted. */
 #include "import/load.h"
-#include "velo/shape.h"
-#include "velo/texture.h"
 #include "velo/light.h"
 #include "velo/material.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 #define W "Film \"rgb\" WorldBegin\n"
 

@@ -16,9 +16,8 @@ spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavele
 }
 
 /* Beer's law: exp(-sigma_t distance), sigma_t = sigma_a + sigma_s. */
-spectrum transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
-                       const wavelengths *lambda) {
-  if (!is_homogeneous(m)) return more_transmittance(w, m, r, distance, s, lambda);
+spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda) {
+  if (!is_homogeneous(m)) return more_transmittance(m, r, distance, s, lambda);
   spectrum t = plus(coefficient(m, &m->sigma_a, lambda), coefficient(m, &m->sigma_s, lambda));
   for (int i = 0; i < CHANNELS; i++) t.c[i] = t.c[i] > 0 ? exp(-t.c[i] * distance) : 1;
   return t;
@@ -26,10 +25,10 @@ spectrum transmittance(const world *w, const vlMediumDef *m, ray r, double dista
 
 /* The distance is drawn with the density sigma_s exp(-sigma_s x) of one channel; absorption is a factor. The result is
  * divided by the mean density over all channels, so that each may have been the one (balance heuristic). */
-bool scatters_before(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
-                     const wavelengths *lambda, spectrum *throughput, spectrum *emitted) {
-  if (!is_homogeneous(m)) return scatters_in_more(w, m, r, distance, s, lambda, throughput, emitted);
-  *emitted = plus(*emitted, times(*throughput, emission_along(w, m, *distance, lambda)));
+bool scatters_before(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
+                     spectrum *throughput, spectrum *emitted) {
+  if (!is_homogeneous(m)) return scatters_in_more(m, r, distance, s, lambda, throughput, emitted);
+  *emitted = plus(*emitted, times(*throughput, emission_along(m, *distance, lambda)));
   spectrum sigma_s = coefficient(m, &m->sigma_s, lambda);
   uint32_t channels = channels_of(lambda);
   double by = sigma_s.c[choose(s, channels)];
@@ -42,7 +41,7 @@ bool scatters_before(const world *w, const vlMediumDef *m, ray r, double *distan
     density += passes * (scatters ? sigma_s.c[i] : 1) / channels;
   }
   if (scatters) *throughput = times(*throughput, sigma_s);
-  *throughput = times(*throughput, transmittance(w, m, r, *distance, s, lambda));
+  *throughput = times(*throughput, transmittance(m, r, *distance, s, lambda));
   *throughput = density > 0 ? scaled(1 / density, *throughput) : gray(0);
   return scatters;
 }

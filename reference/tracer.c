@@ -48,7 +48,7 @@ static spectrum visibility(const path *p, ray r, double distance, const vlMedium
     bool found = find_hit(p->w, r, p->s, &at);
     if (found && material_at(p->w, &at, p->s)->kind != VL_MATERIAL_INTERFACE) return gray(0);
     double step = found ? at.t : distance;
-    if (inside) share = times(share, transmittance(p->w, inside, r, step, p->s, p->lambda));
+    if (inside) share = times(share, transmittance(inside, r, step, p->s, p->lambda));
     if (!found || largest(share) == 0) return share;
     inside = medium_beyond(p->w, &at, r.direction, inside);
     distance -= step;
@@ -118,7 +118,7 @@ spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t ma
     double distance = found ? at.t : (double)INFINITY;
     spectrum emission = gray(0);
     bsdf b;
-    bool in_medium = p.inside && scatters_before(w, p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
+    bool in_medium = p.inside && scatters_before(p.inside, p.r, &distance, s, lambda, &p.throughput, &emission);
     if (p.depth < max_depth) p.radiance = plus(p.radiance, emission);
     if (in_medium) {
       at = (shade_record){.point = add(p.r.origin, scale(distance, p.r.direction))};

@@ -190,12 +190,11 @@ const vlMediumDef *medium_beyond(const world *w, const shade_record *at, vector 
 /* sigma_a or sigma_s, per unit of length. */
 spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavelengths *lambda);
 /* The share of light that is left after a distance along the ray. */
-spectrum transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
-                       const wavelengths *lambda);
+spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda);
 /* Draws where a path along the ray scatters, before a distance; the throughput becomes what is left there, over the
  * density of the draw. False: not before `distance`. Adds what the medium emits on the way. */
-bool scatters_before(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
-                     const wavelengths *lambda, spectrum *throughput, spectrum *emitted);
+bool scatters_before(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
+                     spectrum *throughput, spectrum *emitted);
 /* How the medium scatters light that goes on towards wo. */
 bsdf phase_function(const vlMediumDef *m, vector wo);
 

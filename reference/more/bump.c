@@ -2,27 +2,23 @@
  * coordinates (a, b); so the displaced surface is one, too, and its slopes are differences. */
 #include "more.h"
 
-static vector displaced(const world *w, const vlMaterialDef *m, const shade_record *at, double a, double b) {
+/* The point at (a, b), with `share` of its displacement. */
+static vector displaced(const world *w, const vlMaterialDef *m, const shade_record *at, double a, double b,
+                        double share) {
   shade_record near = {.arrival = at->arrival, .time = at->time};
   shape_surface(w, at->what, a, b, &near);
-  return add(near.point, scale(number_at(w, m->displacement, &near), near.shading_normal));
-}
-
-static vector point_of(const world *w, const shade_record *at, double a, double b) {
-  shade_record near = {.arrival = at->arrival, .time = at->time};
-  shape_surface(w, at->what, a, b, &near);
-  return near.point;
+  return add(near.point, scale(share * number_at(w, m->displacement, &near), near.shading_normal));
 }
 
 static void follow_bumps(const world *w, const vlMaterialDef *m, shade_record *at) {
   const double d = 1e-5;
-  vector along_a = subtract(displaced(w, m, at, at->a + d, at->b), displaced(w, m, at, at->a - d, at->b));
-  vector along_b = subtract(displaced(w, m, at, at->a, at->b + d), displaced(w, m, at, at->a, at->b - d));
+  vector along_a = subtract(displaced(w, m, at, at->a + d, at->b, 1), displaced(w, m, at, at->a - d, at->b, 1));
+  vector along_b = subtract(displaced(w, m, at, at->a, at->b + d, 1), displaced(w, m, at, at->a, at->b - d, 1));
   vector n = cross(along_a, along_b);
   if (length(n) == 0) return;
   /* the tangent is a mixture of the slopes, and becomes the same mixture of the new ones */
-  vector pa = subtract(point_of(w, at, at->a + d, at->b), point_of(w, at, at->a - d, at->b));
-  vector pb = subtract(point_of(w, at, at->a, at->b + d), point_of(w, at, at->a, at->b - d));
+  vector pa = subtract(displaced(w, m, at, at->a + d, at->b, 0), displaced(w, m, at, at->a - d, at->b, 0));
+  vector pb = subtract(displaced(w, m, at, at->a, at->b + d, 0), displaced(w, m, at, at->a, at->b - d, 0));
   double aa = dot(pa, pa), ab = dot(pa, pb), bb = dot(pb, pb), area2 = aa * bb - ab * ab;
   double ta = dot(at->tangent, pa), tb = dot(at->tangent, pb);
   if (area2 > 0) {

@@ -6,7 +6,7 @@
 
 #include "microfacet.h"
 
-static bsdf coat_of(const bsdf *b) {
+bsdf coat_of(const bsdf *b) {
   double a = b->more.coat_alpha_x, c = b->more.coat_alpha_y;
   return (bsdf){.kind = BSDF_DIELECTRIC, .ior = b->ior, .alpha_x = a, .alpha_y = c};
 }
@@ -15,8 +15,6 @@ static bsdf coat_of(const bsdf *b) {
 static double absorbed(double height, vector w) {
   return height > 0 ? exp(-height / fabs(w.z)) : 1;
 }
-
-/* ---- the coat's surface ------------------------------------------------------------------------------------------ */
 
 static vector mirror_normal(const bsdf *coat, vector w, sampler *s) {
   return is_smooth(coat) ? make_vector(0, 0, 1) : sample_visible_normal(coat, w, s);
@@ -42,8 +40,6 @@ static double go_back(const bsdf *coat, vector from, sampler *s, vector *to) {
   return reflected_by_glass(dot(from, m), coat->ior) * masking(coat, from, *to);
 }
 
-/* ---- the base ---------------------------------------------------------------------------------------------------- */
-
 static spectrum base_value(const bsdf *b, vector wo, vector wi) {
   double density;
   if (wo.z <= 0 || wi.z <= 0) return gray(0);
@@ -64,8 +60,6 @@ static spectrum sample_base(const bsdf *b, vector wo, sampler *s, vector *wi) {
   spectrum value = conductor_value(b, wo, next.wi, &density);
   return density > 0 ? scaled(1 / density, value) : gray(0);
 }
-
-/* ---- a smooth metal under a smooth coat -------------------------------------------------------------------------- */
 
 /* The sum of all reflections: F + T^2 R a^2 / (1 - F R a^2), R of the metal, a what one way through the coat leaves. */
 static spectrum all_reflections(const bsdf *b, vector wo) {
@@ -104,8 +98,6 @@ static spectrum haze_from(const bsdf *b, vector travel, double z, vector wi, vec
 static bool is_all_smooth(const bsdf *b, const bsdf *coat) {
   return b->more.metal && is_smooth(coat) && is_smooth(b);
 }
-
-/* ---- the walk ---------------------------------------------------------------------------------------------------- */
 
 /* A mirror under a rough coat: no light that comes in at wi has just the direction that the mirror needs. So paths ask
  * the coat for wi where they leave, not where they are scattered. */
@@ -164,7 +156,6 @@ static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, samp
   return sum;
 }
 
-/* ---- directions -------------------------------------------------------------------------------------------------- */
 
 /* Roughly what the base's mirrors look like from above. */
 static bsdf seen_base(const bsdf *b) {

@@ -2,7 +2,7 @@
 #pragma once
 #include "color.h"
 
-typedef enum more_kind { MORE_COATED, MORE_HAIR, MORE_DIFFUSE_TRANSMISSION, MORE_THIN_GLASS } more_kind;
+typedef enum more_kind { MORE_COATED, MORE_HAIR, MORE_TRANSLUCENT, MORE_THIN_GLASS, MORE_PRINCIPLED } more_kind;
 
 typedef struct more_bsdf {
   more_kind kind;
@@ -16,4 +16,8 @@ typedef struct more_bsdf {
   double beta_m, beta_n, tilt; /* hair: roughness along and around; angle of the scales */
   spectrum absorption;         /* hair: per radius */
   spectrum transmittance;      /* diffuse transmission */
+  /* principled: shares of metal, of the dielectric that transmits, of diffuse light that goes on, of the coat */
+  double metallic, clear, passed_on, coat;
+  spectrum f0; /* principled: what the dielectric reflects of light along the normal, and of grazing light */
+  double f90;
 } more_bsdf;

@@ -1,8 +1,6 @@
 /* more/materials.c: the materials of more/, by kind. */
 #include "more.h"
 
-/* ---- hair -------------------------------------------------------------------------------------------------------- */
-
 /* The absorption of the two pigments: pbrt book 9.9.7. */
 static const vlSpectrum eumelanin = {.kind = VL_SPECTRUM_RGB, .scale = 1, .rgb = {0.419f, 0.697f, 1.37f}};
 static const vlSpectrum pheomelanin = {.kind = VL_SPECTRUM_RGB, .scale = 1, .rgb = {0.187f, 0.4f, 1.05f}};
@@ -34,8 +32,6 @@ static void make_hair(const world *w, const vlMaterialDef *m, const shade_record
   b->more.absorption = hair_absorption(w, m, at, b->more.beta_n, lambda);
 }
 
-/* ---- the others -------------------------------------------------------------------------------------------------- */
-
 /* A metal's index of refraction is relative to the coat. */
 static void make_coated(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
                         bsdf *b) {
@@ -63,7 +59,7 @@ static spectrum scaled_share(double scale, spectrum share) {
 
 static void make_diffuse_transmission(const world *w, const vlMaterialDef *m, const shade_record *at,
                                       const wavelengths *lambda, bsdf *b) {
-  b->more.kind = MORE_DIFFUSE_TRANSMISSION;
+  b->more.kind = MORE_TRANSLUCENT;
   spectrum r = spectrum_at(w, &m->reflectance, VL_PARAMETER_ALBEDO, at, lambda);
   spectrum t = spectrum_at(w, &m->transmittance, VL_PARAMETER_ALBEDO, at, lambda);
   b->reflectance = scaled_share((double)m->scale, r);
@@ -76,12 +72,11 @@ static void make_thin_glass(const vlMaterialDef *m, wavelengths *lambda, bsdf *b
   b->ior = ior_of(&m->eta, lambda);
 }
 
-/* ---- all kinds --------------------------------------------------------------------------------------------------- */
-
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b) {
   switch (m->kind) {
     case VL_MATERIAL_HAIR: make_hair(w, m, at, lambda, b); break;
     case VL_MATERIAL_DIFFUSE_TRANSMISSION: make_diffuse_transmission(w, m, at, lambda, b); break;
+    case VL_MATERIAL_PRINCIPLED: make_principled(w, m, at, lambda, b); break;
     case VL_MATERIAL_THIN_DIELECTRIC: make_thin_glass(m, lambda, b); break;
     default: make_coated(w, m, at, lambda, b);
   }
@@ -90,8 +85,9 @@ void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {
   switch (b->more.kind) {
     case MORE_HAIR: return hair_value(b, wo, wi, density);
-    case MORE_DIFFUSE_TRANSMISSION: return diffuse_transmission_value(b, wo, wi, density);
+    case MORE_TRANSLUCENT: return diffuse_transmission_value(b, wo, wi, density);
     case MORE_THIN_GLASS: return gray(0);
+    case MORE_PRINCIPLED: return principled_value(b, wo, wi, density);
     default: return coated_value(b, wo, wi, s, density);
   }
 }
@@ -99,7 +95,8 @@ spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   switch (b->more.kind) {
     case MORE_HAIR: sample_hair(b, wo, s, result); return true;
-    case MORE_DIFFUSE_TRANSMISSION: return sample_diffuse_transmission(b, wo, s, result);
+    case MORE_TRANSLUCENT: return sample_diffuse_transmission(b, wo, s, result);
+    case MORE_PRINCIPLED: return sample_principled(b, wo, s, result);
     case MORE_THIN_GLASS: sample_thin_glass(b, wo, s, result); return true;
     default: return sample_coated(b, wo, s, result);
   }

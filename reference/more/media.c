@@ -6,8 +6,7 @@ bool is_homogeneous(const vlMediumDef *m) {
 }
 
 /* The integral of sigma_a L exp(-sigma_t x) over the distance. */
-spectrum emission_along(const world *w, const vlMediumDef *m, double distance, const wavelengths *lambda) {
-  (void)w;
+spectrum emission_along(const vlMediumDef *m, double distance, const wavelengths *lambda) {
   spectrum a = coefficient(m, &m->sigma_a, lambda), s = coefficient(m, &m->sigma_s, lambda);
   const color *emission = find_color(&m->emission, VL_PARAMETER_ILLUMINANT);
   spectrum result = scaled((double)m->emission_scale, times(a, color_at(emission, lambda)));
@@ -18,7 +17,7 @@ spectrum emission_along(const world *w, const vlMediumDef *m, double distance, c
   return result;
 }
 
-/* ---- grids: values at the centres of the cells of a box, linear between them, 0 from outside -----------------------
+/* ---- grids: values at the centres of the cells of a box, linear between them, 0 outside ---------------------------
  */
 
 static bool cell_value(const vlMediumDef *m, const float *values, const long at[3], const wavelengths *lambda,
@@ -101,13 +100,11 @@ static ray in_box(const vlMediumDef *m, ray r, double distance) {
   return q;
 }
 
-/* ---- delta tracking (Woodcock 1965): the medium is filled up to the majorant with particles that do nothing --------
+/* ---- delta tracking (Woodcock 1965): the medium is filled up to the majorant with particles that do nothing -------
  */
 
 /* At each particle that a way meets, the share of those that let the light through. */
-spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
-                            const wavelengths *lambda) {
-  (void)w;
+spectrum more_transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda) {
   ray q = in_box(m, r, distance);
   double most = majorant(m, lambda);
   spectrum left = gray(1), sigma[3];
@@ -121,9 +118,8 @@ spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double 
 }
 
 /* A particle scatters with a probability, else the path goes on; both keep what absorption leaves. */
-bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
-                      const wavelengths *lambda, spectrum *throughput, spectrum *emitted) {
-  (void)w;
+bool scatters_in_more(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
+                      spectrum *throughput, spectrum *emitted) {
   ray q = in_box(m, r, *distance);
   double most = majorant(m, lambda);
   spectrum sigma[3];

@@ -30,6 +30,12 @@ spectrum absorption_of_hair_color(spectrum looks, double beta_n);
 spectrum diffuse_transmission_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_diffuse_transmission(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 void sample_thin_glass(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
+/* more/principled.c; and coated.c: the coat alone, as glass. */
+bsdf coat_of(const bsdf *b);
+void make_principled(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
+                     bsdf *b);
+spectrum principled_value(const bsdf *b, vector wo, vector wi, double *density);
+bool sample_principled(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 /* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. A texel of a normal map, its
  * x and y times a factor. */
 void tilt_normal(const double rgb[4], double factor, shade_record *at);
@@ -62,12 +68,11 @@ double emission_factor(const world *w, const light *l);
 
 /* more/media.c: what a homogeneous medium emits along a distance; media that are not the same everywhere, along a ray.
  * As in medium.h. */
-spectrum emission_along(const world *w, const vlMediumDef *m, double distance, const wavelengths *lambda);
+spectrum emission_along(const vlMediumDef *m, double distance, const wavelengths *lambda);
 bool is_homogeneous(const vlMediumDef *m);
-spectrum more_transmittance(const world *w, const vlMediumDef *m, ray r, double distance, sampler *s,
-                            const wavelengths *lambda);
-bool scatters_in_more(const world *w, const vlMediumDef *m, ray r, double *distance, sampler *s,
-                      const wavelengths *lambda, spectrum *throughput, spectrum *emitted);
+spectrum more_transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda);
+bool scatters_in_more(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
+                      spectrum *throughput, spectrum *emitted);
 
 /* more/motion.c: the motion of an instance; null: it is at rest. The pose of what moves at a time, as a transform from
  * where it is at its first pose. */

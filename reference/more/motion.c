@@ -131,15 +131,12 @@ static double opening(const vlCamera *c, double share) {
 /* A rolling shutter opens later for each row, or column, in the order in which they are read. The share of the time is
  * drawn under the shutter's curve, as points under that of a filter (film.c). */
 double sample_time(const vlCamera *c, uint32_t column, uint32_t row, sampler *s) {
-  double share, most = c->shutter_points == 0 ? 1 : 0, read = 0;
+  double share, most = c->shutter_points == 0 ? 1 : 0;
   for (uint32_t i = 0; i < c->shutter_points; i++) most = fmax(most, c->shutter_value[i]);
   do share = next_number(s);
   while (next_number(s) * most >= opening(c, share));
-  switch (c->readout_direction) {
-    case VL_READOUT_DOWN: read = (double)row / c->height; break;
-    case VL_READOUT_UP: read = (double)(c->height - 1 - row) / c->height; break;
-    case VL_READOUT_RIGHT: read = (double)column / c->width; break;
-    case VL_READOUT_LEFT: read = (double)(c->width - 1 - column) / c->width; break;
-  }
-  return c->shutter_open + read * c->readout + share * (c->shutter_close - c->shutter_open);
+  bool columns = c->readout_direction == VL_READOUT_RIGHT || c->readout_direction == VL_READOUT_LEFT;
+  double at = columns ? column : row, count = columns ? c->width : c->height;
+  if (c->readout_direction == VL_READOUT_UP || c->readout_direction == VL_READOUT_LEFT) at = count - 1 - at;
+  return c->shutter_open + at / count * c->readout + share * (c->shutter_close - c->shutter_open);
 }

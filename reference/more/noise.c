@@ -17,8 +17,7 @@ static const unsigned char permutation[256] = {
     181, 199, 106, 157, 184, 84,  204, 176, 115, 121, 50,  45,  127, 4,   150, 254, 138, 236, 205, 93,  222, 114,
     67,  29,  24,  72,  243, 141, 128, 195, 78,  66,  215, 61,  156, 180};
 
-/* Each point with whole coordinates has one of twelve slopes; here is that slope's plane at (x, y, z) from the point.
- */
+/* Each point with whole coordinates has one of twelve slopes; this is its plane at (x, y, z) from the point. */
 static double plane_at(long i, long j, long k, double x, double y, double z) {
   int h = permutation[(permutation[(permutation[i & 255] + j) & 255] + k) & 255] & 15;
   double u = h < 8 || h == 12 || h == 13 ? x : y;

@@ -30,15 +30,16 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
 
 /* ---- values ------------------------------------------------------------------------------------------------------ */
 
-/* The share of the second input in a mixture of two. */
-static double share_of_second(const world *w, const vlTextureDef *def, const shade_record *at) {
-  switch (def->kind) {
-    case VL_TEXTURE_MIX: return number_at(w, def->amount, at);
-    case VL_TEXTURE_DIRECTION_MIX: /* the first where the normal is along the direction */
-      return 1 - fabs(dot(at->normal, normalize(from_floats(def->direction))));
-    case VL_TEXTURE_DOTS: return is_in_dot(texture_coordinates(def, at)) ? 1 : 0;
-    default: return 0;
-  }
+/* The shares of the inputs a to d: a mixture has two; a bilinear texture has them at the corners of its square. */
+static void shares_of(const world *w, const vlTextureDef *def, const shade_record *at, double share[4]) {
+  square_point st = texture_coordinates(def, at);
+  bool corners = def->kind == VL_TEXTURE_BILERP;
+  double s = corners ? st.x : 0, second = corners ? st.y : 0;
+  if (def->kind == VL_TEXTURE_MIX) second = number_at(w, def->amount, at);
+  if (def->kind == VL_TEXTURE_DIRECTION_MIX) /* the first where the normal is along the direction */
+    second = 1 - fabs(dot(at->normal, normalize(from_floats(def->direction))));
+  if (def->kind == VL_TEXTURE_DOTS) second = is_in_dot(st) ? 1 : 0;
+  for (int k = 0; k < 4; k++) share[k] = (k & 1 ? second : 1 - second) * (k & 2 ? s : 1 - s);
 }
 
 double more_number(const world *w, const vlTextureDef *def, const shade_record *at) {
@@ -46,14 +47,11 @@ double more_number(const world *w, const vlTextureDef *def, const shade_record *
   if (def->kind == VL_TEXTURE_FBM) return fbm(p, (double)def->omega, def->octaves);
   if (def->kind == VL_TEXTURE_WRINKLED) return turbulence(p, (double)def->omega, def->octaves);
   if (def->kind == VL_TEXTURE_WINDY) return windy_waves(p);
-  if (def->kind != VL_TEXTURE_BILERP) {
-    double share = share_of_second(w, def, at);
-    return (1 - share) * number_at(w, def->float_a, at) + share * number_at(w, def->float_b, at);
-  }
-  square_point st = texture_coordinates(def, at);
-  double low = (1 - st.y) * number_at(w, def->float_a, at) + st.y * number_at(w, def->float_b, at);
-  double high = (1 - st.y) * number_at(w, def->float_c, at) + st.y * number_at(w, def->float_d, at);
-  return (1 - st.x) * low + st.x * high;
+  const vlFloatInput inputs[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
+  double share[4], sum = 0;
+  shares_of(w, def, at, share);
+  for (int k = 0; k < 4; k++) sum += share[k] == 0 ? 0 : share[k] * number_at(w, inputs[k], at);
+  return sum;
 }
 
 spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole role, const shade_record *at,
@@ -64,18 +62,13 @@ spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole 
     marble(p, (double)def->omega, def->octaves, (double)def->variation, rgb);
     return texel_spectrum(VL_SPACE_SRGB, rgb, role, lambda);
   }
-  spectrum a = spectrum_at(w, &def->spectrum_a, role, at, lambda);
-  spectrum b = spectrum_at(w, &def->spectrum_b, role, at, lambda);
-  if (def->kind != VL_TEXTURE_BILERP) {
-    double share = share_of_second(w, def, at);
-    return plus(scaled(1 - share, a), scaled(share, b));
-  }
-  square_point st = texture_coordinates(def, at);
-  spectrum c = spectrum_at(w, &def->spectrum_c, role, at, lambda);
-  spectrum d = spectrum_at(w, &def->spectrum_d, role, at, lambda);
-  spectrum low = plus(scaled(1 - st.y, a), scaled(st.y, b));
-  spectrum high = plus(scaled(1 - st.y, c), scaled(st.y, d));
-  return plus(scaled(1 - st.x, low), scaled(st.x, high));
+  const vlSpectrumInput *inputs[4] = {&def->spectrum_a, &def->spectrum_b, &def->spectrum_c, &def->spectrum_d};
+  double share[4];
+  spectrum sum = gray(0);
+  shares_of(w, def, at, share);
+  for (int k = 0; k < 4; k++)
+    if (share[k] != 0) sum = plus(sum, scaled(share[k], spectrum_at(w, inputs[k], role, at, lambda)));
+  return sum;
 }
 
 void adjust_texel(const vlTextureDef *def, uint32_t channels, double value[4]) {

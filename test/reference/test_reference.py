@@ -112,6 +112,28 @@ def haze_between_a_smooth_coat_and_a_smooth_metal_agrees_with_velo():
 
 
 @case
+def principled_materials_agree_with_velo():
+    path, size = os.path.join(SOURCE, "scenes/reference/principled.pbrt"), ("--resolution", "32x24")
+    z = worst_z(render_velo(path, "velo_principled.exr", 1024, *size), render(path, "principled.exr", 512, *size))
+    assert z < 4.5, "z = %.1f" % z
+
+
+@case
+def a_principled_sheet_agrees_with_velo():
+    """In RGB: by wavelengths the colour of transmitted light is one per channel of RGB, which the reference renderer refuses."""
+    text = ('WorldBegin\nLightSource "infinite" "rgb L" [ .5 .6 .4 ]\nLightSource "distant" "point3 from" [ 1 2 -3 ] "point3 to" [ 0 0 0 ] "rgb L" [ 2 1 1 ]\n'
+            'LightSource "point" "point3 from" [ .3 .2 1 ] "rgb I" [ 1 2 3 ]\n'
+            'Material "principled" "rgb basecolor" [ .9 .6 .3 ] "float metallic" .2 "float roughness" .5 "float transmission" .8 "bool thinwalled" true '
+            '"float clearcoat" .5 "float clearcoatroughness" .4\nRotate 20 1 0 0\nShape "disk" "float radius" .9\nReverseOrientation\n'
+            'Translate 0 .9 .2\nShape "disk" "float radius" .5\n')
+    path = scene("sheet.pbrt", text)
+    z = worst_z(render_velo(path, "velo_sheet.exr", 2048, "--color", "rgb"), render(path, "sheet.exr", 1024, "--color", "rgb"))
+    assert z < 4.5, "z = %.1f" % z
+    result = run(REFERENCE, path, "-o", os.path.join(WORK, "refused.exr"), "--spp", "1")
+    assert result.returncode == 3 and "a principled sheet in a spectral render is not part of" in result.stderr, result.stderr
+
+
+@case
 def procedural_textures_bumps_and_normal_maps_agree_with_velo():
     path, size = os.path.join(SOURCE, "scenes/reference/textures.pbrt"), ("--resolution", "32x24")
     z = worst_z(render_velo(path, "velo_textures.exr", 1024, *size), render(path, "textures.exr", 512, *size))
@@ -269,6 +291,7 @@ def sides_under_mirroring_transforms_agree_with_velo():
 @case
 def a_white_furnace_is_white():
     for name, material in (("diffuse", '"diffuse" "rgb reflectance" [ 1 1 1 ]'),
+                           ("principled", '"principled" "rgb basecolor" [ 1 1 1 ] "float metallic" .4 "float roughness" .7'),
                            ("glass", '"dielectric" "float eta" 1.5 "float roughness" 0')):
         path = scene(name + ".pbrt", 'WorldBegin\nLightSource "infinite" "rgb L" [ 1 1 1 ]\nMaterial ' + material +
                      '\nShape "sphere" "float radius" 0.8\n')

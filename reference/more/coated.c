@@ -6,59 +6,22 @@
 
 #include "microfacet.h"
 
+/* The coat's surface, and what lies under it, as BSDFs of their own. */
 bsdf coat_of(const bsdf *b) {
-  double a = b->more.coat_alpha_x, c = b->more.coat_alpha_y;
-  return (bsdf){.kind = BSDF_DIELECTRIC, .ior = b->ior, .alpha_x = a, .alpha_y = c};
+  double x = b->more.coat_alpha_x, y = b->more.coat_alpha_y;
+  return (bsdf){.kind = BSDF_DIELECTRIC, .frame = IDENTITY, .ior = b->ior, .alpha_x = x, .alpha_y = y};
+}
+
+static bsdf base_of(const bsdf *b) {
+  bsdf base = *b;
+  base.kind = b->more.metal ? BSDF_CONDUCTOR : BSDF_DIFFUSE;
+  base.frame = IDENTITY;
+  return base;
 }
 
 /* The share of light that is left after a height of the coat. */
 static double absorbed(double height, vector w) {
   return height > 0 ? exp(-height / fabs(w.z)) : 1;
-}
-
-static vector mirror_normal(const bsdf *coat, vector w, sampler *s) {
-  return is_smooth(coat) ? make_vector(0, 0, 1) : sample_visible_normal(coat, w, s);
-}
-
-/* G / G1: what masking leaves of a sample drawn by visible normals. */
-static double masking(const bsdf *coat, vector from, vector to) {
-  return is_smooth(coat) ? 1 : visible_from_both(coat, from, to) / visible(coat, from);
-}
-
-/* Light goes through the coat's surface. The result is its weight, 0 where it does not get through. */
-static double go_through(const bsdf *coat, vector from, sampler *s, vector *to, double *eta) {
-  vector m = mirror_normal(coat, from, s);
-  if (!refract(from, m, coat->ior, eta, to) || from.z * to->z >= 0) return 0;
-  return (1 - reflected_by_glass(dot(from, m), coat->ior)) * masking(coat, from, *to);
-}
-
-/* Light inside is reflected back down at the coat's surface. */
-static double go_back(const bsdf *coat, vector from, sampler *s, vector *to) {
-  vector m = mirror_normal(coat, from, s);
-  *to = reflect(from, m);
-  if (from.z * to->z <= 0) return 0;
-  return reflected_by_glass(dot(from, m), coat->ior) * masking(coat, from, *to);
-}
-
-static spectrum base_value(const bsdf *b, vector wo, vector wi) {
-  double density;
-  if (wo.z <= 0 || wi.z <= 0) return gray(0);
-  return b->more.metal ? conductor_value(b, wo, wi, &density) : scaled(wi.z / PI, b->reflectance);
-}
-
-/* Draws a direction; the result is its weight. */
-static spectrum sample_base(const bsdf *b, vector wo, sampler *s, vector *wi) {
-  bsdf_sample next;
-  if (!b->more.metal) {
-    *wi = sample_cosine_hemisphere(s);
-    return b->reflectance;
-  }
-  sample_conductor(b, wo, s, &next);
-  *wi = next.wi;
-  if (next.specular) return next.weight;
-  double density = 0;
-  spectrum value = conductor_value(b, wo, next.wi, &density);
-  return density > 0 ? scaled(1 / density, value) : gray(0);
 }
 
 /* The sum of all reflections: F + T^2 R a^2 / (1 - F R a^2), R of the metal, a what one way through the coat leaves. */
@@ -105,57 +68,53 @@ static bool asks_at_exit(const bsdf *b, const bsdf *coat) {
   return b->more.metal && !is_smooth(coat) && b->alpha_x < coat->alpha_x;
 }
 
-/* What light from wi adds where it is scattered at height z into the direction that the walk came from, -travel. */
+/* What light from wi adds where it is scattered at height z into the direction that the walk came from, -travel. Only
+ * what comes through the coat counts: as light, not as radiance, which is divided by the square of the index. */
 static spectrum light_from(const bsdf *b, const bsdf *coat, vector travel, double z, bool at_base, vector wi,
                            sampler *s) {
-  vector in; /* the direction of light from wi inside */
-  double eta;
-  double through = go_through(coat, wi, s, &in, &eta);
-  if (through == 0) return gray(0);
-  through *= fabs(wi.z / in.z);
-  if (!at_base && is_all_smooth(b, coat)) return scaled(through, haze_from(b, travel, z, wi, in));
-  through *= absorbed(b->more.coat_thickness - z, in);
-  if (at_base) return scaled(through, base_value(b, negate(travel), negate(in)));
-  return scaled(through * phase(b->more.coat_g, negate(travel), negate(in)), b->more.coat_albedo);
+  bsdf_sample in;
+  if (!sample_bsdf(coat, wi, s, &in) || in.wi.z >= 0) return gray(0);
+  double through = in.weight.c[0] * square(b->ior) * fabs(wi.z / in.wi.z), density;
+  if (!at_base && is_all_smooth(b, coat)) return scaled(through, haze_from(b, travel, z, wi, in.wi));
+  through *= absorbed(b->more.coat_thickness - z, in.wi);
+  bsdf base = base_of(b);
+  if (at_base) return scaled(through, bsdf_value(&base, negate(travel), negate(in.wi), s, &density));
+  return scaled(through * phase(b->more.coat_g, negate(travel), negate(in.wi)), b->more.coat_albedo);
 }
 
 static bool has_haze(const bsdf *b) {
   return largest(b->more.coat_albedo) > 0 && b->more.coat_thickness > 0;
 }
 
-/* One walk from wo. Its height is z: the base's is 0. */
+/* One walk from wo. Its height is z: the base's is 0. It ends where light is reflected before it is in, or goes out. */
 static spectrum walk(const bsdf *b, const bsdf *coat, vector wo, vector wi, sampler *s) {
-  double eta, z = b->more.coat_thickness;
+  double z = b->more.coat_thickness, density;
   bool at_exit = asks_at_exit(b, coat), medium = has_haze(b);
-  vector travel;
-  double entered = go_through(coat, wo, s, &travel, &eta);
-  spectrum sum = gray(0), throughput = gray(entered / square(eta));
+  bsdf base = base_of(b);
+  bsdf_sample next;
+  if (!sample_bsdf(coat, wo, s, &next) || next.wi.z >= 0) return gray(0);
+  spectrum sum = gray(0), throughput = next.weight;
+  vector travel = next.wi;
   for (uint32_t depth = 0; depth < b->more.coat_depth && largest(throughput) > 0; depth++) {
     double end = travel.z < 0 ? 0 : b->more.coat_thickness;
     double flight = medium ? -log1p(-next_number(s)) * travel.z : travel.z * (double)INFINITY;
-    bool scatters = fabs(flight) < fabs(end - z);
+    bool scatters = fabs(flight) < fabs(end - z), at_base = !scatters && travel.z < 0, at_coat = !scatters && !at_base;
     if (!medium) throughput = scaled(absorbed(fabs(end - z), travel), throughput);
     z = scatters ? z + flight : end;
-    bool at_base = !scatters && end == 0 && travel.z < 0;
-    if (!scatters && !at_base) { /* at the coat, from inside: that is seen from above, at -travel */
-      double ignored;
-      if (at_exit) sum = plus(sum, times(throughput, dielectric_value(coat, negate(travel), wi, &ignored)));
-      throughput = scaled(go_back(coat, negate(travel), s, &travel), throughput);
-      continue;
-    }
-    if (!at_exit) sum = plus(sum, times(throughput, light_from(b, coat, travel, z, at_base, wi, s)));
-    if (at_base) {
-      throughput = times(throughput, sample_base(b, negate(travel), s, &travel));
-      if (travel.z <= 0) break;
-    } else {
+    if (at_coat && at_exit) sum = plus(sum, times(throughput, bsdf_value(coat, negate(travel), wi, s, &density)));
+    if (!at_coat && !at_exit) sum = plus(sum, times(throughput, light_from(b, coat, travel, z, at_base, wi, s)));
+    if (scatters) {
       throughput = times(throughput, b->more.coat_albedo);
       frame f = make_frame(negate(travel), make_vector(0.3, 0.5, 0.8));
       travel = from_local(f, sample_phase(b->more.coat_g, s));
+      continue;
     }
+    if (!sample_bsdf(at_base ? &base : coat, negate(travel), s, &next) || next.wi.z * travel.z >= 0) break;
+    throughput = times(throughput, next.weight);
+    travel = next.wi;
   }
   return sum;
 }
-
 
 /* Roughly what the base's mirrors look like from above. */
 static bsdf seen_base(const bsdf *b) {
@@ -205,11 +164,11 @@ bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   bool reflects = next_number(s) < reflected;
   result->specular = reflects && is_smooth(&coat);
   if (all_smooth) result->weight = scaled(1 / reflected, all_reflections(b, o));
+  bool by_mirrors = !reflects && b->more.metal && !all_smooth && next_number(s) < 0.8;
   vector wi = sample_cosine_hemisphere(s);
-  if (reflects)
-    wi = reflect(o, mirror_normal(&coat, o, s));
-  else if (b->more.metal && !all_smooth && next_number(s) < 0.8)
-    wi = reflect(o, sample_visible_normal(&base, o, s));
+  if (result->specular) wi = make_vector(-o.x, -o.y, o.z);
+  if (reflects && !result->specular) wi = reflect(o, sample_visible_normal(&coat, o, s));
+  if (by_mirrors) wi = reflect(o, sample_visible_normal(&base, o, s));
   result->wi = wo.z < 0 ? negate(wi) : wi;
   return wi.z > 0;
 }

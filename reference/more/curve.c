@@ -62,17 +62,12 @@ static int roots_of(const double *c, int degree, bool rising, double *roots) {
   return count;
 }
 
+/* De Casteljau: between the four points at u lie three, between these two, and between these the curve's point. */
 static vector curve_point(const curve *c, double u, vector *tangent) {
-  double power[3][4], at[3], slope[3];
-  to_powers(c->p[0].x, c->p[1].x, c->p[2].x, c->p[3].x, power[0]);
-  to_powers(c->p[0].y, c->p[1].y, c->p[2].y, c->p[3].y, power[1]);
-  to_powers(c->p[0].z, c->p[1].z, c->p[2].z, c->p[3].z, power[2]);
-  for (int i = 0; i < 3; i++) {
-    at[i] = polynomial(power[i], 3, u);
-    slope[i] = power[i][1] + u * (2 * power[i][2] + u * 3 * power[i][3]);
-  }
-  *tangent = make_vector(slope[0], slope[1], slope[2]);
-  return make_vector(at[0], at[1], at[2]);
+  vector low = mix(c->p[0], c->p[1], u), middle = mix(c->p[1], c->p[2], u), high = mix(c->p[2], c->p[3], u);
+  vector before = mix(low, middle, u), after = mix(middle, high, u);
+  *tangent = scale(3, subtract(after, before));
+  return mix(before, after, u);
 }
 
 /* A ribbon's normal turns at a constant rate between its ends (slerp). */

@@ -109,24 +109,20 @@ static void chances(const lobes *l, double chance[LAST + 1]) {
   for (int p = 0; p <= LAST; p++) chance[p] = mean_of(l->a[p]) / sum;
 }
 
-static spectrum all_lobes(const bsdf *b, const lobes *l, vector wi, double *density) {
-  angles i = angles_of(wi);
-  double chance[LAST + 1];
-  spectrum sum = gray(0);
-  chances(l, chance);
-  *density = 0;
-  for (int p = 0; p <= LAST; p++) {
-    double shape = along_hair(i, tilted(l, b, p), l->variance[p]) * around_hair(l, p, i.phi - l->o.phi);
-    sum = plus(sum, scaled(shape, l->a[p]));
-    *density += chance[p] * shape;
-  }
-  return sum;
-}
-
 /* The lobes are densities per solid angle: the model has no cosine with a normal. */
 spectrum hair_value(const bsdf *b, vector wo, vector wi, double *density) {
   lobes l = make_lobes(b, wo);
-  return all_lobes(b, &l, wi, density);
+  angles i = angles_of(wi);
+  double chance[LAST + 1];
+  spectrum sum = gray(0);
+  chances(&l, chance);
+  *density = 0;
+  for (int p = 0; p <= LAST; p++) {
+    double shape = along_hair(i, tilted(&l, b, p), l.variance[p]) * around_hair(&l, p, i.phi - l.o.phi);
+    sum = plus(sum, scaled(shape, l.a[p]));
+    *density += chance[p] * shape;
+  }
+  return sum;
 }
 
 void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
@@ -148,8 +144,6 @@ void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   phi += l.o.phi;
   result->wi = make_vector(sine_i, cosine_i * cos(phi), cosine_i * sin(phi));
 }
-
-/* ---- absorption -------------------------------------------------------------------------------------------------- */
 
 /* The coefficient that gives many hairs together a colour (Chiang et al. 2016, eq. 9). */
 spectrum absorption_of_hair_color(spectrum looks, double beta_n) {

@@ -1,8 +1,6 @@
-/* more/lights.c: the brightness of lights, and the lights of more/. */
+/* more/lights.c: the images that lights show (pbrt book 12.2, 12.3), and the brightness of lights. */
 #include "more.h"
 #include "octahedral.h"
-
-/* ---- images (pbrt book 12.2, 12.3) ------------------------------------------------------------------------------- */
 
 /* The pixel at a point of the unit square, which starts at the image's top left corner. */
 static void pixel_at_point(const light *l, square_point p, double rgb[4]) {
@@ -50,8 +48,6 @@ bool is_through_portal(const light *l, vector from, vector direction) {
   return t > 0 && dot(n, direction) > 0 && dot(p, x) >= 0 && dot(p, x) <= dot(x, x) && dot(p, y) >= 0 &&
          dot(p, y) <= dot(y, y);
 }
-
-/* ---- brightness -------------------------------------------------------------------------------------------------- */
 
 /* The luminances of all pixels times their solid angles: the power of a lamp of factor 1. Of the sky, also times the
  * cosine: the illuminance of a surface that faces up, light space +z. */

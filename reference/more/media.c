@@ -17,9 +17,7 @@ spectrum emission_along(const vlMediumDef *m, double distance, const wavelengths
   return result;
 }
 
-/* ---- grids: values at the centres of the cells of a box, linear between them, 0 outside ---------------------------
- */
-
+/* A grid has values at the centres of the cells of a box; they are linear between them, and 0 outside. */
 static bool cell_value(const vlMediumDef *m, const float *values, const long at[3], const wavelengths *lambda,
                        spectrum *value) {
   long nx = (long)m->nx, ny = (long)m->ny, nz = (long)m->nz, cell = (at[2] * ny + at[1]) * nx + at[0];
@@ -100,10 +98,8 @@ static ray in_box(const vlMediumDef *m, ray r, double distance) {
   return q;
 }
 
-/* ---- delta tracking (Woodcock 1965): the medium is filled up to the majorant with particles that do nothing -------
- */
-
-/* At each particle that a way meets, the share of those that let the light through. */
+/* Delta tracking (Woodcock 1965): the medium is filled up to the majorant with particles that do nothing. At each
+ * particle that a way meets, the share of those that let the light through is left. */
 spectrum more_transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda) {
   ray q = in_box(m, r, distance);
   double most = majorant(m, lambda);

@@ -3,15 +3,18 @@
 #pragma once
 #include "world.h"
 
-/* more/shapes.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
+/* more/patch.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
 uint32_t more_corners(const vlShapeDef *def);
 bool meet_more(const world *w, const primitive *p, ray r, meeting *m);
 void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
 void bound_more(const world *w, primitive *p);
 
-/* more/patch.c, more/curve.c */
-bool meet_patch(const primitive *p, ray r, meeting *m);
-void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
+/* The point at the share t of the way from a to b. */
+static inline vector mix(vector a, vector b, double t) {
+  return add(scale(1 - t, a), scale(t, b));
+}
+
+/* more/curve.c */
 bool meet_curve(const world *w, const primitive *p, ray r, meeting *m);
 void curve_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
 void bound_curve(const world *w, primitive *p);
@@ -21,15 +24,12 @@ void bound_curve(const world *w, primitive *p);
 void more_bsdf_at(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda, bsdf *b);
 spectrum more_bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_more_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* more/coated.c, more/hair.c, more/simple.c. Sampling finds wi; the weight only if specular. A coat draws numbers. */
+/* more/coated.c, more/hair.c. Sampling finds wi; the weight only if specular. A coat draws numbers. */
 spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum hair_value(const bsdf *b, vector wo, vector wi, double *density);
 void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum absorption_of_hair_color(spectrum looks, double beta_n);
-spectrum diffuse_transmission_value(const bsdf *b, vector wo, vector wi, double *density);
-bool sample_diffuse_transmission(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-void sample_thin_glass(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 /* more/principled.c; and coated.c: the coat alone, as glass. */
 bsdf coat_of(const bsdf *b);
 void make_principled(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,

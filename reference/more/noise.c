@@ -50,26 +50,25 @@ static double noise(vector p) {
   return between(layer[0], layer[1], step(z));
 }
 
-/* Octaves of noise, each finer than the one before it by 1.99. */
-double fbm(vector p, double omega, uint32_t octaves) {
+/* Octaves of noise, each finer than the one before it by 1.99; or of its absolute value. */
+static double octaves_of(vector p, double omega, uint32_t octaves, bool absolute) {
   double sum = 0, frequency = 1, amplitude = 1;
   for (uint32_t i = 0; i < octaves; i++) {
-    sum += amplitude * noise(scale(frequency, p));
+    double value = noise(scale(frequency, p));
+    sum += amplitude * (absolute ? fabs(value) : value);
     frequency *= 1.99;
     amplitude *= omega;
   }
   return sum;
 }
 
-/* The same of the noise's absolute value. pbrt-v4 adds its mean, 0.2, for the octave after the last one. */
+double fbm(vector p, double omega, uint32_t octaves) {
+  return octaves_of(p, omega, octaves, false);
+}
+
+/* pbrt-v4 adds the absolute value's mean, 0.2, for the octave after the last one. */
 double turbulence(vector p, double omega, uint32_t octaves) {
-  double sum = 0, frequency = 1, amplitude = 1;
-  for (uint32_t i = 0; i < octaves; i++) {
-    sum += amplitude * fabs(noise(scale(frequency, p)));
-    frequency *= 1.99;
-    amplitude *= omega;
-  }
-  return sum + 0.2 * amplitude;
+  return octaves_of(p, omega, octaves, true) + 0.2 * pow(omega, octaves);
 }
 
 /* Waves as high as a slow wind is strong. */

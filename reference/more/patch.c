@@ -1,9 +1,7 @@
-/* more/patch.c: bilinear patches, p(u, v) between four corners p00, p10, p01, p11 (pbrt book 6.6). */
+/* more/patch.c: bilinear patches, p(u, v) between four corners p00, p10, p01, p11 (pbrt book 6.6); and the choice
+ * between patches and curves. */
 #include "more.h"
-
-static vector mix(vector a, vector b, double t) {
-  return add(scale(1 - t, a), scale(t, b));
-}
+#include "program/program.h"
 
 static double triple(vector a, vector b, vector c) {
   return dot(a, cross(b, c));
@@ -25,7 +23,7 @@ static int roots_in_unit_interval(double a, double b, double c, double u[2]) {
 }
 
 /* For each u the patch has a line. Its distance from the ray is zero where a quadratic in u is zero (Reshetov 2019). */
-bool meet_patch(const primitive *p, ray r, meeting *m) {
+static bool meet_patch(const primitive *p, ray r, meeting *m) {
   vector p00 = p->corner[0], p10 = p->corner[1], p01 = p->corner[2], p11 = p->corner[3], d = r.direction;
   double a = dot(cross(subtract(p10, p00), subtract(p01, p11)), d);
   double c = dot(cross(subtract(p00, r.origin), d), subtract(p01, p00));
@@ -74,7 +72,7 @@ static void patch_coordinates(const vlShapeDef *def, const uint32_t *face, const
   if (fabs(d) > 1e-12) record->tangent = scale(1 / d, subtract(scale(dv[1], dpdu), scale(du[1], dpdv)));
 }
 
-void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
+static void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
   const placement *where = &w->placements[p->placement];
   const uint32_t *face = where->def->indices + 4 * (size_t)p->face;
   double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
@@ -87,4 +85,26 @@ void patch_surface(const world *w, const primitive *p, double u, double v, shade
   patch_coordinates(where->def, face, weights, u, v, dpdu, dpdv, record);
   double area = length(by_edges);
   record->area_density = area > 0 ? 1 / area : 0;
+}
+
+uint32_t more_corners(const vlShapeDef *def) {
+  return def->kind == VL_SHAPE_BILINEAR || def->kind == VL_SHAPE_CURVES ? 4 : 0;
+}
+
+static bool is_curve(const world *w, const primitive *p) {
+  return w->placements[p->placement].def->kind == VL_SHAPE_CURVES;
+}
+
+bool meet_more(const world *w, const primitive *p, ray r, meeting *m) {
+  return is_curve(w, p) ? meet_curve(w, p, r, m) : meet_patch(p, r, m);
+}
+
+void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record) {
+  if (is_curve(w, p)) curve_surface(w, p, a, b, record);
+  if (!is_curve(w, p)) patch_surface(w, p, a, b, record);
+}
+
+void bound_more(const world *w, primitive *p) {
+  if (is_curve(w, p)) bound_curve(w, p);
+  for (int k = 0; k < 4; k++) include_point(p, p->corner[k]);
 }

@@ -1,6 +1,5 @@
 /* more/textures.c: mixtures, bilinear and procedural textures, and texture coordinates from points (pbrt book 10.2). */
 #include "more.h"
-/* ---- texture coordinates ----------------------------------------------------------------------------------------- */
 
 static vector in_texture_space(const vlTextureDef *def, const shade_record *at) {
   matrix texture_from_world = load_matrix(def->texture_from_world);
@@ -27,8 +26,6 @@ square_point more_coordinates(const vlTextureDef *def, const shade_record *at) {
     default: return (square_point){0, 0};
   }
 }
-
-/* ---- values ------------------------------------------------------------------------------------------------------ */
 
 /* The shares of the inputs a to d: a mixture has two; a bilinear texture has them at the corners of its square. */
 static void shares_of(const world *w, const vlTextureDef *def, const shade_record *at, double share[4]) {

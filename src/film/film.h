@@ -120,7 +120,8 @@ void vl_film_commit_pass(vlFilm *film);
 void vl_film_abandon_pass(vlFilm *film);
 
 /* Memory for the code that adds samples. It is kept with the film, so that repeated renders of one film allocate
- * nothing. Zeroed when new, else unchanged since the last call; null: out of memory. Valid until the next call. */
+ * nothing. Zeroed when new, and when the size differs from that of the last call; else unchanged since that call. Null:
+ * out of memory. Valid until the next call. */
 void *vl_film_scratch(vlFilm *film, size_t size);
 
 /* Adds the sums and the sample count of another film of the same size and crop. The sums are the same bits as if all

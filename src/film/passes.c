@@ -210,7 +210,7 @@ void vl_film_clear(vlFilm *film) {
 }
 
 void *vl_film_scratch(vlFilm *film, size_t size) {
-  if (film->scratch_size < size) {
+  if (film->scratch_size != size) {
     vl_free(film->context, film->scratch);
     film->scratch = vl_alloc_zero(film->context, size, 1);
     film->scratch_size = film->scratch ? size : 0;

@@ -87,7 +87,7 @@ static bool ask(const vlWorld *world, const vlCamera *camera, Room *room, uint32
   const double *m = camera->world_from_camera;
   const float eye[3] = {(float)m[3], (float)m[7], (float)m[11]};
   unsigned state = vl_accel_enter();
-  vl_trace_scratch_begin(scratch);
+  vl_trace_scratch_begin(scratch, world);
   kernels->light_media(world, eye, light_medium);
   kernels->trace(world, &def, scratch, &batch);
   vl_accel_leave(state);
@@ -109,7 +109,7 @@ vlResult vl_media_differ(const vlWorld *world, const vlCamera *camera, bool *dif
   if (!world->media.count) return VL_OK;
   vlContext *context = world->context;
   Room *room = vl_alloc_zero(context, 1, sizeof *room);
-  vlTraceScratch *scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size());
+  vlTraceScratch *scratch = vl_alloc_zero(context, 1, vl_trace_scratch_size(world));
   uint32_t *light_medium = vl_alloc_zero(context, world->lights.count + 1, sizeof *light_medium);
   bool good = room && scratch && light_medium;
   if (good) *differ = ask(world, camera, room, light_medium, scratch);

@@ -51,11 +51,13 @@ static vlResult make_memory(Call *c, vlError *error) {
   r->paths = vl_alloc_zero(c->context, c->lanes, sizeof *r->paths);
   r->vertices = vl_alloc_array(c->context, (size_t)c->lanes * r->most_vertices, sizeof *r->vertices);
   r->contributions = vl_alloc_array(c->context, (size_t)c->lanes * r->most_contributions, sizeof *r->contributions);
-  c->worker.scratch = vl_alloc_zero(c->context, 1, round_up(vl_trace_scratch_size()));
+  c->worker.scratch = vl_alloc_zero(c->context, 1, round_up(vl_trace_scratch_size(c->run.world)));
   c->worker.rows = vl_alloc_zero(c->context, (size_t)VL_RENDER_ROWS * VL_ROW_SIZE, sizeof(float));
   c->worker.recorder = r;
   bool all = r->paths && r->vertices && r->contributions && c->worker.scratch && c->worker.rows;
-  return all ? VL_OK : vl_fail_memory(error);
+  if (!all) return vl_fail_memory(error);
+  vl_trace_scratch_begin(c->worker.scratch, c->run.world);
+  return VL_OK;
 }
 
 static void free_memory(Call *c) {

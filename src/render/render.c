@@ -113,7 +113,7 @@ static size_t grids_size(void) {
 
 uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlRenderDef *def) {
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
-  uint64_t each = round_up(vl_trace_scratch_size()) + rows + (vl_shares_samples(film, def) ? grids_size() : 0);
+  uint64_t each = round_up(vl_trace_scratch_size(world)) + rows + (vl_shares_samples(film, def) ? grids_size() : 0);
   uint64_t bytes = vl_context_threads(world->context) * each;
   return vl_two_way_tracer(def->tracer) ? bytes + vl_two_way_memory(world, film, def) : bytes;
 }
@@ -122,7 +122,7 @@ uint64_t vl_render_memory(const vlWorld *world, const vlFilmDef *film, const vlR
  * memory. */
 static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error) {
   uint32_t threads = vl_context_threads(context);
-  size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size());
+  size_t head = round_up(threads * sizeof *r->workers), scratch = round_up(vl_trace_scratch_size(r->world));
   size_t rows = round_up((size_t)VL_RENDER_ROWS * VL_ROW_SIZE * sizeof(float));
   size_t grids = r->shares ? grids_size() : 0;
   char *block = vl_film_scratch(r->film, head + threads * (scratch + rows + grids));
@@ -132,7 +132,7 @@ static vlResult make_workers(vlRenderRun *r, vlContext *context, vlError *error)
   for (uint32_t i = 0; i < threads; i++) {
     char *own = block + head + i * (scratch + rows + grids);
     r->workers[i].scratch = (vlTraceScratch *)(void *)own;
-    vl_trace_scratch_begin(r->workers[i].scratch);
+    vl_trace_scratch_begin(r->workers[i].scratch, r->world);
     r->workers[i].rows = (float *)(void *)(own + scratch);
     if (grids) r->workers[i].grids = (vlSharedGrid *)(void *)(own + scratch + rows);
   }

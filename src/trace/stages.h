@@ -41,6 +41,12 @@ static inline float vl_path_time(const vlPaths *p, uint32_t i) {
   return p->time ? p->time[p->lane[i]] : 0.0f;
 }
 
+/* The world's times of the first n paths, in `room`; null if nothing moves. */
+static inline const float *vl_path_times(const vlPaths *p, uint32_t n, float *room) {
+  for (uint32_t i = 0; p->time && i < n; i++) room[i] = vl_path_time(p, i);
+  return p->time ? room : NULL;
+}
+
 typedef struct vlHits {
   VL_ROW uint32_t shape[VL_ROW_SIZE], prim[VL_ROW_SIZE], instance[VL_ROW_SIZE], material[VL_ROW_SIZE];
   VL_ROW float t[VL_ROW_SIZE]; /* distance along the ray, set for shapes other than triangles; it identifies the
@@ -129,7 +135,9 @@ static inline void vl_shadow_move(vlShadowRays *q, uint32_t i, uint32_t k) {
   for (int c = 0; c < 4; c++) q->radiance[c][k] = q->radiance[c][i];
 }
 
-enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS };
+/* Materials are evaluated for VL_MATERIAL_LANES lanes at a time, so that the stack of rows for nested textures and bump
+ * maps is small. A multiple of VL_LANES. */
+enum { VL_BUMP_ROWS = 9, VL_TEXTURE_ROWS = VL_NODE_ROWS + VL_BUMP_ROWS, VL_MATERIAL_LANES = 48 };
 
 /* Additional data of paths through media (volume.hot.c). u and l are the path's rescaled densities (pbrt book 14.2.2):
  * u for the directions as they were sampled, l as if light sampling had drawn the last direction. */
@@ -152,11 +160,10 @@ typedef struct vlVolumeScratch {
   VL_ROW float shadow_beta[4][VL_ROW_SIZE], shadow_u[4][VL_ROW_SIZE], shadow_l[4][VL_ROW_SIZE],
       shadow_odds[VL_ROW_SIZE];
   VL_ROW float shadow_passed[3][VL_ROW_SIZE]; /* vlTraceScratch.passed at the shadow ray's origin */
-  VL_ROW uint32_t kept[VL_ROW_SIZE];          /* indices of the scattered paths that go on */
+  VL_ROW uint32_t kept[VL_ROW_SIZE];          /* indices of the paths of `scattered` that go on */
 } vlVolumeScratch;
 
-/* Working memory for paths through subsurface materials (subsurface.hot.c). It is used only if the world has such
- * materials. */
+/* Working memory for paths through subsurface materials (subsurface.hot.c). */
 typedef struct vlSubsurfaceScratch {
   vlPaths paths; /* copy of all paths of the bounce */
   vlVolumeRows rows;
@@ -174,6 +181,8 @@ typedef struct vlSubsurfaceScratch {
   VL_ROW float from[VL_ROW_SIZE];
 } vlSubsurfaceScratch;
 
+/* vl_trace_scratch_size says how large it is for a world, and vl_trace_scratch_begin sets the pointers to what the
+ * world needs of the rest. */
 struct vlTraceScratch {
   vlPaths a, b;
   vlHits hits_a, hits_b;
@@ -182,9 +191,8 @@ struct vlTraceScratch {
   vlShade shade;
   vlLightSamples light;
   vlShadowRays shadow;
-  vlOccluders occluders;                           /* of the shadow rays so far */
-  VL_ROW float rows[VL_TEXTURE_ROWS][VL_ROW_SIZE]; /* stack of rows for nested textures */
-  VL_ROW float time[VL_ROW_SIZE]; /* the world's time of the rays of `a`; only set if something moves */
+  vlOccluders occluders;                                     /* of the shadow rays so far */
+  VL_ROW float textures[VL_TEXTURE_ROWS][VL_MATERIAL_LANES]; /* stack of rows for nested textures */
   VL_ROW uint32_t order[VL_ROW_SIZE];
   /* By lane of the batch, only if vlWorld.by_channel: transmittance of the path so far through all that attenuates by
    * channel, for each channel of linear sRGB. vl_channels_at gives the transmittance at a wavelength from these three;
@@ -192,9 +200,8 @@ struct vlTraceScratch {
   VL_ROW float passed[3][VL_ROW_SIZE];
   VL_ROW uint8_t scattered[VL_ROW_SIZE]; /* by lane of the batch, only with regularisation: 1 if a non-specular lobe has
                                             scattered the path */
-  VL_ROW uint32_t slot[VL_ROW_SIZE]; /* while sorting: where each material's lanes start; later: the lanes that go on */
-  vlVolumeScratch volume;
-  vlSubsurfaceScratch subsurface;
+  vlVolumeScratch *volume;               /* null: the world has neither media nor subsurface materials */
+  vlSubsurfaceScratch *subsurface;       /* null: the world has no subsurface materials */
 };
 
 /* A batch in progress. The paths and hits of a bounce arrive in s->a and s->hits_a, are sorted into s->b and

@@ -32,8 +32,8 @@ static Fixture *begin(void) {
   Fixture *f = calloc(1, sizeof *f);
   assert_int_equal(vl_context_create(NULL, &f->context), VL_OK);
   assert_int_equal(vl_scene_create(f->context, &f->scene), VL_OK);
-  f->scratch = aligned_alloc(64, (vl_trace_scratch_size() + 63) / 64 * 64);
-  memset(f->scratch, 0, vl_trace_scratch_size());
+  f->scratch = aligned_alloc(64, sizeof *f->scratch);
+  memset(f->scratch, 0, sizeof *f->scratch);
   return f;
 }
 

@@ -413,8 +413,8 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
 
 static void lights_are_seen(void **state) {
   (void)state;
-  vlTraceScratch *t = aligned_alloc(64, (vl_trace_scratch_size() + 63) / 64 * 64);
-  memset(t, 0, vl_trace_scratch_size());
+  vlTraceScratch *t = aligned_alloc(64, sizeof *t);
+  memset(t, 0, sizeof *t);
   uint32_t wrong = 0;
   for (int k = 0; k < KINDS; k++)
     for (Map map = 0; map < MAPS && kinds[k].light; map++)

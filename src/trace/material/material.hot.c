@@ -247,16 +247,25 @@ static void follow_hero(vlPaths *p, uint32_t first, uint32_t last) {
   }
 }
 
+static void evaluate(vlTextureRun *r, const vlWorldMaterial *m) {
+  r->top = 0;
+  if (m->displacement >= 0) bump(r, m->displacement);
+  if (m->normal_map >= 0) normal_map(r, m->normal_map);
+  r->top = 0;
+  parameters[m->bsdf](r, m);
+  if (r->world->by_channel) tints(r, m);
+}
+
 void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  vlTextureRun r = {.world = world, .s = s, .paths = &s->b, .surface = &s->surface, .first = first, .last = last};
   for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.no_cosine[i] = 1.0f;
   for (uint32_t i = first; m->one_sided && i < last; i++) s->surface.side[i] = 1.0f;
-  if (m->displacement >= 0) bump(&r, m->displacement);
-  if (m->normal_map >= 0) normal_map(&r, m->normal_map);
-  r.top = 0;
-  parameters[m->bsdf](&r, m);
-  if (world->by_channel) tints(&r, m);
+  vlTextureRun r = {.world = world, .s = s, .paths = &s->b, .surface = &s->surface, .last = first};
+  while (r.last < last) {
+    r.first = r.last;
+    r.last = last - r.first < VL_MATERIAL_LANES ? last : r.first + VL_MATERIAL_LANES;
+    evaluate(&r, m);
+  }
   if (m->dispersive) follow_hero(&s->b, first, last);
 }
 

@@ -22,7 +22,7 @@ void vl_fit_surfaces(const vlTracing *t, uint32_t n) {
   const vlPaths *p = &s->b;
   for (uint32_t i = 0; i < n; i++)
     vl_fit_border(t, p->lane[i], s->hits_b.shape[i], vl_lane3(f->gx, f->gy, f->gz, i), vl_lane3(p->dx, p->dy, p->dz, i),
-                  s->volume.b.medium[i]);
+                  s->volume->b.medium[i]);
 }
 
 /* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is no border. */
@@ -39,7 +39,7 @@ static uint32_t before_light(const vlTracing *t, uint32_t k, uint32_t light_shap
 }
 
 void vl_fit_shadows(const vlTracing *t, uint32_t count) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlShadowRays *q = &t->s->shadow;
   for (uint32_t k = 0; k < count; k++) {
     float passes =

@@ -17,13 +17,13 @@ static inline float vl_some_odds(float odds) {
 /* Sets vlVolumeScratch.shadow_passed of shadow ray k, which leaves a vertex in a medium, or surface lane i in a
  * direction with cosine wi_z to the normal. */
 static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t k, uint32_t lane) {
-  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->volume.shadow_passed[c][k] = t->s->passed[c][lane];
+  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->volume->shadow_passed[c][k] = t->s->passed[c][lane];
 }
 static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i, float wi_z) {
   float passed[3];
   if (!t->world->by_channel) return;
   vl_passed_on(t->s, i, wi_z, passed);
-  for (int c = 0; c < 3; c++) t->s->volume.shadow_passed[c][k] = passed[c];
+  for (int c = 0; c < 3; c++) t->s->volume->shadow_passed[c][k] = passed[c];
 }
 
 static inline void vl_volume_copy(const vlVolumeRows *a, uint32_t i, vlVolumeRows *b, uint32_t k) {
@@ -79,7 +79,7 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
  * Returns the number of copies. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
 /* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns the number of paths that
- * go on; s->order lists them. */
+ * go on; volume.kept lists them. */
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 /* Sets the initial media of the n paths of a. medium: by lane; null: all paths start in the camera's medium. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
@@ -88,8 +88,8 @@ void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
  * materials. */
 void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
-/* Appends the paths order[k] of volume.scattered to the n paths of a. Returns their new number. */
-uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n);
+/* Appends the first `count` paths of volume.kept to the n paths of a. Returns their new number. */
+uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n);
 /* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the transmittance; the
  * path's densities are relative to the density of light sampling. */
 void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
@@ -103,7 +103,7 @@ void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t 
 /* The inverse of the mean density of path i of a over the techniques that could have made it. light_pdf: density of
  * light sampling; 0 if light sampling could not make this path. */
 static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, float light_pdf) {
-  const vlVolumeRows *v = &t->s->volume.a;
+  const vlVolumeRows *v = &t->s->volume->a;
   float density[4];
   for (int c = 0; c < 4; c++) density[c] = v->u[c][i] + (light_pdf > 0.0f ? v->l[c][i] * light_pdf : 0.0f);
   return 1.0f / vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
@@ -112,7 +112,7 @@ static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, fl
 /* The mean density of shadow ray k over the channels and over light sampling and BSDF or phase sampling (pdf; 0: light
  * sampling alone). */
 static inline float vl_volume_shadow_density(const vlTracing *t, uint32_t k, float pdf) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   float density[4];
   for (int c = 0; c < 4; c++)
     density[c] = v->density[c][k] * (v->shadow_l[c][k] * v->light_pdf[k] + v->shadow_u[c][k] * pdf);

@@ -64,7 +64,7 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
 /* Stores how the ray of lane i ended. given: radiance that media added. */
 static void end_lane(vlTracing *t, uint32_t i, uint32_t event, float odds, const float given[4]) {
   vlHits *h = &t->s->hits_a;
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   uint32_t lane = t->s->a.lane[i];
   v->event[i] = (uint8_t)event;
   v->odds[lane] = vl_some_odds(odds);
@@ -82,7 +82,7 @@ static void open_lanes(vlTracing *t, vlTravel *k, uint32_t first, const float *t
   const float none[4] = {0, 0, 0, 0};
   k->count = 0;
   for (uint32_t i = 0; i < k->f.n; i++) {
-    bool through = t->s->volume.a.medium[first + i] != VL_NONE || vl_meets_interface(t->world, &k->x, i);
+    bool through = t->s->volume->a.medium[first + i] != VL_NONE || vl_meets_interface(t->world, &k->x, i);
     if (through)
       k->open[k->count++] = i;
     else
@@ -92,22 +92,17 @@ static void open_lanes(vlTracing *t, vlTravel *k, uint32_t first, const float *t
 }
 
 /* The block of rays from lane `first` on. */
-static void begin_block(vlTracing *t, vlTravel *k, uint32_t first, uint32_t n, const float *t_max) {
+static void begin_block(vlTracing *t, vlTravel *k, uint32_t first, uint32_t n, const float *t_max, float *time) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
   vlHits *h = &s->hits_a;
-  vlVolumeRows *v = &s->volume.a;
+  vlVolumeRows *v = &s->volume->a;
   vlFlights *f = &k->f;
   f->n = n;
-  f->rays = (vlRays){p->ox + first,
-                     p->oy + first,
-                     p->oz + first,
-                     p->dx + first,
-                     p->dy + first,
-                     p->dz + first,
-                     NULL,
-                     t_max ? t_max + first : NULL,
-                     p->time ? s->time + first : NULL};
+  f->rays = (vlRays){p->ox + first,        p->oy + first, p->oz + first, p->dx + first,
+                     p->dy + first,        p->dz + first, NULL,          t_max ? t_max + first : NULL,
+                     p->time ? time : NULL};
+  for (uint32_t i = 0; p->time && i < n; i++) time[i] = vl_path_time(p, first + i);
   for (int c = 0; c < 4; c++) {
     f->beta[c] = p->beta[c] + first;
     f->lambda[c] = p->lambda[c] + first;
@@ -155,14 +150,14 @@ static void arrive(vlTracing *t, const vlTravel *k, uint32_t first, uint32_t i, 
   const vlFlights *f = &k->f;
   const float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
   for (int c = 0; t->world->by_channel && c < 3; c++) t->s->passed[c][t->s->a.lane[first + i]] = f->passed[c][i];
-  t->s->volume.t[first + i] = f->t[i];
+  t->s->volume->t[first + i] = f->t[i];
   end_lane(t, first + i, event, f->odds[i], given);
 }
 
 /* Traces the lanes of a block through media and interfaces to their events. Their origins remain those of their last
  * scattering, which the densities of light sampling need. */
 static void travel_block(vlTracing *t, vlTravel *k, uint32_t first, bool emission) {
-  uint32_t *medium = t->s->volume.a.medium + first;
+  uint32_t *medium = t->s->volume->a.medium + first;
   begin_flights(t, k, first);
   for (int step = 0; step < 1024 && k->count > 0; step++) { /* a bound; no ray crosses so many interfaces */
     uint32_t on = 0;
@@ -195,7 +190,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
                      s->shade.u0);
-  VL_ROW float odds[VL_FLIGHTS];
+  VL_ROW float odds[VL_FLIGHTS], time[VL_FLIGHTS] = {0};
   vlTravel k;
   vl_travel_start(&k);
   k.f.paths = p;
@@ -203,11 +198,11 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   k.f.purpose = VL_KEY_FLIGHT;
   k.f.odds = odds;
   for (uint32_t first = 0; first < n; first += VL_FLIGHTS) {
-    begin_block(t, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max);
+    begin_block(t, &k, first, n - first < VL_FLIGHTS ? n - first : VL_FLIGHTS, t_max, time);
     open_lanes(t, &k, first, t_min);
     if (k.count) travel_block(t, &k, first, emission);
   }
-  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume.event[i] == VL_IN_SKY ? 0.0f : 1.0f;
+  for (uint32_t i = 0; camera && i < n; i++) t->batch->alpha[i] = s->volume->event[i] == VL_IN_SKY ? 0.0f : 1.0f;
 }
 
 /* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
@@ -240,7 +235,7 @@ static void emission(vlTracing *t, uint32_t n) {
   const vlHits *h = &t->s->hits_a;
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    uint8_t event = t->s->volume.event[i];
+    uint8_t event = t->s->volume->event[i];
     if (event == VL_IN_SKY) missed[count++] = i;
     if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, i);
     if (count == VL_SKY_BLOCK) {
@@ -255,7 +250,7 @@ static void emission(vlTracing *t, uint32_t n) {
 
 static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   const vlPaths *p = &v->scattered;
   if (t->world->lights.count == 0) return;
   vl_stage_light_samples(t, n, p, dimension);
@@ -273,7 +268,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
 
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   vlPaths *p = &v->scattered;
   vlShade *sh = &s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
@@ -297,14 +292,14 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
     p->pdf[i] = pdf;
     p->specular[i] = 0;
     vl_note_scattered(t, p->lane[i]);
-    s->order[count++] = i;
+    v->kept[count++] = i;
   }
   return count;
 }
 
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   vlPaths *p = &v->scattered;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++)
@@ -332,30 +327,30 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
 }
 
 /* Scatters the lanes of a in media and writes the new rays to volume.scattered. Returns the number of paths that go
- * on; s->order lists them. */
+ * on; volume.kept lists them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
   if (count == 0) return 0;
-  if (t->batch->recorder) vl_record_scattering(t, &t->s->volume.scattered, count);
+  if (t->batch->recorder) vl_record_scattering(t, &t->s->volume->scattered, count);
   phase_light(t, count, depth, dimension);
   uint32_t on = vl_volume_phase_scatter(t, count, depth + 1, dimension);
-  if (t->batch->recorder) vl_record_phase(t, &t->s->volume.scattered, count, on, depth + 1);
+  if (t->batch->recorder) vl_record_phase(t, &t->s->volume->scattered, count, on, depth + 1);
   return on;
 }
 
 /* ---- scattering on surfaces -------------------------------------------------------------------------------------- */
 
-/* Makes the shadow rays of all n light samples, each at the place of its lane, as vl_volume_push_shadow does. s->slot
- * tells which contribute. */
-static void make_shadows(vlTracing *t, uint32_t n) {
+/* Makes the shadow rays of all n light samples, each at the place of its lane, as vl_volume_push_shadow does. lit: 1
+ * for those that contribute. */
+static void make_shadows(vlTracing *t, uint32_t n, uint32_t lit[VL_ROW_SIZE]) {
   vlTraceScratch *s = t->s;
   const vlPaths *p = &s->b;
   const vlShade *sh = &s->shade;
   const vlSurface *f = &s->surface;
   const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
-  vlVolumeScratch *v = &s->volume;
-  uint32_t padded = VL_PAD(n), *lit = s->slot;
+  vlVolumeScratch *v = s->volume;
+  uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float v0 = sh->value[0][i], v1 = sh->value[1][i], v2 = sh->value[2][i], v3 = sh->value[3][i];
@@ -383,17 +378,17 @@ static void make_shadows(vlTracing *t, uint32_t n) {
 
 static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   const vlPaths *p = &s->b;
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
   vl_stage_light_samples(t, n, p, dimension);
   vl_stage_light_bsdf(t, n);
-  make_shadows(t, n);
-  uint32_t count = 0;
+  uint32_t count = 0, lit[VL_ROW_SIZE];
+  make_shadows(t, n, lit);
   for (uint32_t i = 0; i < n; i++) {
-    if (!s->slot[i]) continue;
+    if (!lit[i]) continue;
     /* Light samples through a subsurface material are taken at the exit (subsurface.hot.c). */
     bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
                 (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
@@ -415,13 +410,13 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
 }
 
 void vl_volume_sorted(vlTracing *t, uint32_t n) {
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   if (t->world->media.count || t->world->has_subsurface) vl_volume_permute(&v->a, &v->b, t->s->order, n);
 }
 
 void vl_volume_go_on(vlTracing *t, uint32_t count) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   if (!t->world->media.count && !t->world->has_subsurface) return;
   vl_volume_permute(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
@@ -436,7 +431,7 @@ void vl_volume_go_on(vlTracing *t, uint32_t count) {
 
 static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
   n = vl_stage_sort(t, n);
   if (n == 0) return 0;
@@ -454,22 +449,18 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- the tracer -------------------------------------------------------------------------------------------------- */
 
-uint32_t vl_volume_append(vlTracing *t, const uint32_t *order, uint32_t count, uint32_t n) {
-  vlPaths *a = &t->s->a;
-  const vlPaths *b = &t->s->volume.scattered;
-  vlVolumeRows *va = &t->s->volume.a;
-  const vlVolumeRows *vb = &t->s->volume.c;
+uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n) {
+  vlVolumeScratch *v = t->s->volume;
   for (uint32_t k = 0; k < count; k++, n++) {
-    uint32_t i = order[k];
-    vl_path_copy(b, i, a, n);
-    vl_volume_copy(vb, i, va, n);
+    vl_path_copy(&v->scattered, v->kept[k], &t->s->a, n);
+    vl_volume_copy(&v->c, v->kept[k], &v->a, n);
   }
   return n;
 }
 
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
   vlPaths *p = &t->s->a;
-  vlVolumeRows *rows = &t->s->volume.a;
+  vlVolumeRows *rows = &t->s->volume->a;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;
     rows->medium[i] = medium ? medium[p->lane[i]] : t->world->camera_medium;
@@ -478,7 +469,6 @@ void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
 }
 
 void vl_volume_tracer(vlTracing *t) {
-  vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
   vl_volume_start(t, n, NULL);
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
@@ -487,9 +477,7 @@ void vl_volume_tracer(vlTracing *t) {
     if (t->batch->recorder) vl_volume_record_travel(t, n, depth);
     if (depth >= t->def->max_depth) break;
     uint32_t inside = scatter_in_media(t, n, depth);
-    uint32_t *kept = s->volume.kept;
-    for (uint32_t k = 0; k < inside; k++) kept[k] = s->order[k];
     n = scatter_on_surfaces(t, n, depth);
-    n = vl_volume_append(t, kept, inside, n);
+    n = vl_volume_append(t, inside, n);
   }
 }

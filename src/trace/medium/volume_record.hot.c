@@ -23,7 +23,7 @@ static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const v
 
 static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
   const vlPaths *p = &t->s->a;
-  const vlVolumeScratch *s = &t->s->volume;
+  const vlVolumeScratch *s = t->s->volume;
   vlPathVertex *v = vl_record_arrival(t, i, depth);
   if (!v) return;
   float inv = vl_volume_inverse_density(t, i, 0.0f);
@@ -42,7 +42,7 @@ static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPaths *p = &t->s->a;
   const vlHits *h = &t->s->hits_a;
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   for (uint32_t i = 0; i < n; i++) {
     record_arrival(t, i, depth);
     vlPathContribution from_medium = {.event = VL_PATH_LIGHT_MEDIUM, .type = "medium", .weight = 1.0f};
@@ -66,7 +66,7 @@ void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
 
 void vl_volume_record_shadows(vlTracing *t, uint32_t count) {
   const vlShadowRays *q = &t->s->shadow;
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlLightSamples *l = &t->s->light;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = v->from[k];

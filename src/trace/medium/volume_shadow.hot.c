@@ -6,7 +6,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
                                const float value[4], float pdf, uint32_t medium, uint32_t count) {
   vlShadowRays *q = &t->s->shadow;
   const vlLightSamples *l = &t->s->light;
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
   float length = VL_INFINITY;
   if (!l->distant[i]) { /* unit length: distances to interfaces are needed */
@@ -35,7 +35,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
  * are open. */
 static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t first, uint32_t n, float *lambda[4]) {
   const vlShadowRays *q = &t->s->shadow;
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   vlFlights *f = &k->f;
   f->n = n;
   f->rays = (vlRays){q->ox + first, q->oy + first,    q->oz + first,
@@ -121,14 +121,14 @@ void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32
   for (uint32_t i = 0; i < VL_FLIGHTS; i++) ids[0][i] = VL_NONE;
   for (uint32_t first = 0; first < count; first += VL_FLIGHTS) {
     begin_block(t, p, &k, first, count - first < VL_FLIGHTS ? count - first : VL_FLIGHTS, rows);
-    pass_block(t, &k, t->s->volume.shadow_medium + first);
+    pass_block(t, &k, t->s->volume->shadow_medium + first);
   }
-  for (uint32_t i = 0; i < count; i++) t->s->volume.shadow_odds[i] = vl_some_odds(t->s->volume.shadow_odds[i]);
+  for (uint32_t i = 0; i < count; i++) t->s->volume->shadow_odds[i] = vl_some_odds(t->s->volume->shadow_odds[i]);
 }
 
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
   vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
   t->batch->shadow_rays += count;

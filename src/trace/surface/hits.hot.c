@@ -102,8 +102,8 @@ void vl_closest_hits(vlTracing *t, uint32_t n, bool camera) {
   vlPaths *p = &t->s->a;
   vlHits *h = &t->s->hits_a;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
-  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, p->time ? t->s->time : NULL};
-  for (uint32_t i = 0; rays.time && i < n; i++) t->s->time[i] = vl_path_time(p, i);
+  VL_ROW float time[VL_ROW_SIZE];
+  vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time)};
   vl_accel_closest(t->world, n, &rays, camera, h->shape, h->prim, h->instance, h->t);
 }
 

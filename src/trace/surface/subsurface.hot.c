@@ -26,7 +26,7 @@ typedef struct Entry {
 } Entry;
 
 static Entry entry_of(const vlTracing *t, uint32_t j) {
-  const vlSubsurfaceScratch *x = &t->s->subsurface;
+  const vlSubsurfaceScratch *x = t->s->subsurface;
   Entry e = {t->world->materials.items[x->material[j]].subsurface->table,
              vl_lane3(x->px, x->py, x->pz, j),
              vl_lane3(x->nx, x->ny, x->nz, j),
@@ -43,7 +43,7 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
  * the surfaces. Keeps a copy of a in the scratch memory. Returns the number of probes. */
 static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   const vlShade *sh = &s->shade;
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
@@ -65,15 +65,15 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
       x->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
     }
     x->entry_eta_scale[j] = sh->eta_scale[i];
-    x->medium[j] = s->volume.b.medium[i];
+    x->medium[j] = s->volume->b.medium[i];
   }
   if (count == 0) return 0;
   x->paths = s->a;
-  x->rows = s->volume.a;
+  x->rows = s->volume->a;
   vl_permute_paths(&x->paths, &s->b, x->place, count);
-  vl_volume_permute(&x->rows, &s->volume.b, x->place, count);
+  vl_volume_permute(&x->rows, &s->volume->b, x->place, count);
   for (uint32_t j = 0; j < count; j++) {
-    s->volume.b.medium[j] = x->medium[j]; /* the medium outside, to which the path returns */
+    s->volume->b.medium[j] = x->medium[j]; /* the medium outside, to which the path returns */
     s->b.eta_scale[j] /= x->entry_eta_scale[j];
   }
   return count;
@@ -82,7 +82,7 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
 /* Sets probe j to a segment that extends `half` to either side of o. It is clipped to the sphere around the world, so
  * that ray origins are not needlessly far away. */
 static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
-  vlSubsurfaceScratch *x = &t->s->subsurface;
+  vlSubsurfaceScratch *x = t->s->subsurface;
   vlPaths *p = &t->s->b;
   const float *c = t->world->center;
   float radius = 1.001f * t->world->radius;
@@ -99,7 +99,7 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
 /* Samples the probes: origin and direction of the paths of b, x->length (0: none). */
 static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   vlPaths *p = &s->b;
   vlShade *sh = &s->shade;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS, sh->u0);
@@ -139,7 +139,7 @@ static float past_crossing(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
 /* Records one crossing of probe j, whose ids are in hits_b. Returns false if it was the last crossing. */
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   vlHits *h = &s->hits_b;
   if (h->shape[j] == VL_NONE) return false;
   vlVec3 o = vl_lane3(s->b.ox, s->b.oy, s->b.oz, j), d = vl_lane3(s->b.dx, s->b.dy, s->b.dz, j);
@@ -162,11 +162,11 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
  * crossings; x->hits keeps one of them. */
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   const vlPaths *p = &s->b;
   vlShadowRays *q = &s->shadow;
   vlHits *to = &s->hits_a;
-  uint32_t *under_way = s->slot, active = 0;
+  uint32_t under_way[VL_BATCH], active = 0;
   for (uint32_t j = 0; j < n; j++)
     if (x->length[j] > 0.0f) under_way[active++] = j;
   for (int step = 0; active > 0 && step < MOST_CROSSINGS; step++) {
@@ -203,12 +203,12 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
 /* Copies the probes with a crossing to paths of a; x->entry has their probes. Returns their number. */
 static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++)
     if (x->found[j]) x->entry[count++] = j;
   vl_permute_paths(&s->b, &s->a, x->entry, count);
-  vl_volume_permute(&s->volume.b, &s->volume.a, x->entry, count);
+  vl_volume_permute(&s->volume->b, &s->volume->a, x->entry, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t j = x->entry[i];
     s->hits_b.shape[i] = x->hits.shape[j];
@@ -227,9 +227,9 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
 static void weigh_exit(vlTracing *t, uint32_t i) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->a;
-  vlVolumeRows *rows = &s->volume.a;
+  vlVolumeRows *rows = &s->volume->a;
   const vlSurface *f = &s->surface;
-  uint32_t j = s->subsurface.entry[i];
+  uint32_t j = s->subsurface->entry[i];
   Entry e = entry_of(t, j);
   int hero = vl_volume_hero(t, p, i);
   vlFrame frame = vl_frame_from_z(e.n);
@@ -250,7 +250,7 @@ static void weigh_exit(vlTracing *t, uint32_t i) {
     arrives[c] = area * vl_bssrdf_at(e.table, &albedo, r * e.sigma[c]);
     density[c] = area * sum / whole;
   }
-  float inv = density[hero] > 0.0f ? (float)s->subsurface.found[j] / density[hero] : 0.0f;
+  float inv = density[hero] > 0.0f ? (float)s->subsurface->found[j] / density[hero] : 0.0f;
   for (int c = 0; c < 4; c++) {
     p->beta[c][i] *= arrives[c] * inv;
     rows->u[c][i] *= density[hero] > 0.0f ? density[c] / density[hero] : 1.0f;
@@ -278,7 +278,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   const vlPaths *p = &s->a;
   const vlSurface *f = &s->surface;
   const vlLightSamples *l = &s->light;
-  vlVolumeRows *rows = &s->volume.a;
+  vlVolumeRows *rows = &s->volume->a;
   if (t->world->lights.count == 0) return;
   vl_stage_light_samples(t, n, p, dimension);
   uint32_t count = 0;
@@ -299,10 +299,10 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
 /* Samples the exits' next rays, and moves them to their paths' places. */
 static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   vlPaths *p = &s->a;
   const vlSurface *f = &s->surface;
-  vlVolumeRows *rows = &s->volume.a;
+  vlVolumeRows *rows = &s->volume->a;
   vlShade *sh = &s->shade;
   t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV, sh->u1, sh->u2);
   for (uint32_t i = 0; i < n; i++) {
@@ -337,7 +337,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
 
 uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlSubsurfaceScratch *x = &s->subsurface;
+  vlSubsurfaceScratch *x = s->subsurface;
   uint32_t dimension = VL_DIM_SUBSURFACE + depth * VL_DIM_STRIDE;
   uint32_t probes = take_refracted(t, n);
   if (probes == 0) return n;
@@ -358,7 +358,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
     count += x->alive[k];
   }
   vl_permute_paths(&x->paths, &s->a, s->order, count);
-  vl_volume_permute(&x->rows, &s->volume.a, s->order, count);
+  vl_volume_permute(&x->rows, &s->volume->a, s->order, count);
   return count;
 }
 

@@ -3,6 +3,8 @@
 #ifndef TRACE_TEXTURE_TEXTURE_RUN_H
 #define TRACE_TEXTURE_TEXTURE_RUN_H
 
+#include <stddef.h>
+
 #include "trace/stages.h"
 #include "world/texture/node_kind.h"
 #include "world/texture/texture_node.h"
@@ -13,8 +15,8 @@ typedef struct vlTextureRun {
   vlTraceScratch *s;
   const vlPaths *paths;
   const vlSurface *surface;
-  uint32_t first, last;
-  uint32_t top; /* first free row */
+  uint32_t first, last; /* at most VL_MATERIAL_LANES lanes */
+  uint32_t top;         /* first free row */
   const float *shift_u, *shift_v, *shift_x, *shift_y,
       *shift_z; /* offsets added to uv and position, for bump maps; or null */
   bool rgb;     /* spectra are evaluated as linear sRGB, 0 in the fourth row, for nodes with vl_node_has_rgb_colors */
@@ -23,11 +25,14 @@ typedef struct vlTextureRun {
 /* Evaluates a texture. Results go to lanes [first, last) of out, whose rows have the size of the whole batch. */
 void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
-/* Takes a scratch row; the caller frees it by restoring r->top. */
+/* Takes a scratch row, of which only lanes [first, last) exist; the caller frees it by restoring r->top. The stack
+ * cannot overflow: world/texture/textures.c limits nesting. */
 static inline float *vl_texture_row(vlTextureRun *r) {
-  return r->s->rows[r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top]; /* the stack cannot overflow:
-                                                                          world/texture/textures.c limits nesting */
+  uint32_t row = r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top;
+  float *stack = (float *)(void *)((char *)r->s + offsetof(vlTraceScratch, textures)); /* within the scratch memory */
+  return stack + row * VL_MATERIAL_LANES - r->first;
 }
+_Static_assert(offsetof(vlTraceScratch, textures) >= sizeof(float[VL_BATCH]), "a row less `first` is in the memory");
 
 /* Interpolates the vertex attributes (uv sets, colours) of lane i's triangle at the point. */
 static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,

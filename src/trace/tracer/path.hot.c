@@ -85,7 +85,7 @@ static uint32_t make_shadow_rays(vlTracing *t, uint32_t n) {
   const vlShade *sh = &s->shade;
   const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
-  uint32_t padded = VL_PAD(n), *lit = s->slot;
+  uint32_t padded = VL_PAD(n), lit[VL_ROW_SIZE];
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {
@@ -179,8 +179,8 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   }
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
   uint32_t padded = VL_PAD(n);
-  uint32_t *alive = s->slot;
-  float *broken = s->rows[0];
+  uint32_t alive[VL_ROW_SIZE];
+  float broken[VL_ROW_SIZE];
   /* must vectorise */
   VL_SIMD
   for (uint32_t i = 0; i < padded; i++) {

@@ -42,8 +42,8 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
 void vl_record_name_light(const vlWorld *world, uint32_t light, vlPathContribution *to);
 /* The n paths of p scatter in media: densities are normalised. */
 void vl_record_scattering(vlTracing *t, const vlPaths *p, uint32_t n);
-/* The same paths after the phase function was sampled; s->order lists the `count` paths that go on. depth: as in
- * vl_volume_phase_scatter. */
+/* The same paths after the phase function was sampled; volume.kept lists the `count` paths that go on. depth: as
+ * in vl_volume_phase_scatter. */
 void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count, uint32_t depth);
 /* The n probes of b were followed: paths whose probe found no exit end. */
 void vl_record_probes(vlTracing *t, uint32_t n);

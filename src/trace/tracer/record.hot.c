@@ -257,7 +257,7 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
     v->fate = most > 0.0f ? VL_PATH_ROULETTE : VL_PATH_ABSORBED;
   }
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = t->s->order[k];
+    uint32_t i = t->s->volume->kept[k];
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v) continue;
     v->fate = VL_PATH_ON;
@@ -269,7 +269,7 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
 void vl_record_probes(vlTracing *t, uint32_t n) {
   for (uint32_t j = 0; j < n; j++) {
     vlPathVertex *v = last_vertex(t, t->s->b.lane[j]);
-    if (v && !t->s->subsurface.found[j]) v->fate = VL_PATH_ABSORBED;
+    if (v && !t->s->subsurface->found[j]) v->fate = VL_PATH_ABSORBED;
   }
 }
 
@@ -300,7 +300,7 @@ void vl_record_exits(vlTracing *t, uint32_t n) {
 }
 
 void vl_record_left(vlTracing *t, uint32_t n) {
-  const vlSubsurfaceScratch *x = &t->s->subsurface;
+  const vlSubsurfaceScratch *x = t->s->subsurface;
   const vlPaths *p = &t->s->a;
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);

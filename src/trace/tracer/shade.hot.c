@@ -48,8 +48,8 @@ uint32_t vl_stage_sort(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   uint32_t materials = (uint32_t)world->materials.count, count = 0;
   if (materials <= VL_BATCH) {
-    uint32_t *start = s->slot;
-    for (uint32_t m = 0; m <= materials && m < VL_BATCH; m++) start[m] = 0;
+    uint32_t start[VL_BATCH]; /* where each material's lanes start */
+    for (uint32_t m = 0; m < materials; m++) start[m] = 0;
     uint32_t total = 0;
     for (uint32_t i = 0; i < n; i++)
       if (s->hits_a.shape[i] != VL_NONE) start[world->rank[s->hits_a.material[i]]]++;

@@ -11,7 +11,8 @@ static void start_paths(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
-  t->s->a.time = t->s->b.time = t->s->volume.scattered.time = b->time;
+  t->s->a.time = t->s->b.time = b->time;
+  if (t->s->volume) t->s->volume->scattered.time = b->time;
   if (b->lambda[0]) {
     t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
     float shared = way ? way->shared : -1.0f;

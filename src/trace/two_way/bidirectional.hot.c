@@ -15,7 +15,7 @@ static float hit_weight(const vlTracing *t, const vlPaths *p, uint32_t i, float 
 static void add_radiance(vlTracing *t, const vlPaths *p, uint32_t i, const float radiance[4], float weight) {
   if (vl_has_media(t)) {
     float u[4];
-    for (int c = 0; c < 4; c++) u[c] = t->s->volume.a.u[c][i];
+    for (int c = 0; c < 4; c++) u[c] = t->s->volume->a.u[c][i];
     weight /= vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
   }
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * weight;
@@ -69,8 +69,8 @@ static void emission(vlTracing *t, uint32_t n, bool first) {
   const vlHits *h = &t->s->hits_a;
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    uint8_t event = t->s->volume.event[i];
-    if (vl_has_media(t) && event != VL_IN_SKY && event != VL_ON_SURFACE) continue;
+    uint8_t event = vl_has_media(t) ? t->s->volume->event[i] : VL_ON_SURFACE;
+    if (event != VL_IN_SKY && event != VL_ON_SURFACE) continue;
     if (h->shape[i] == VL_NONE)
       missed[count++] = i;
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
@@ -114,8 +114,8 @@ static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) 
     const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
     uint32_t medium =
         vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
-                         vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume.b.medium[i]);
-    uint32_t next = vl_volume_push_shadow(t, &s->b, &s->volume.b, i, o, value, sh->pdf[i], medium, count);
+                         vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume->b.medium[i]);
+    uint32_t next = vl_volume_push_shadow(t, &s->b, &s->volume->b, i, o, value, sh->pdf[i], medium, count);
     vl_shadow_from_surface(t, count, i, sh->wi[2][i]);
     return next;
   }
@@ -141,11 +141,9 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
   vl_stage_light_samples(t, n, p, dimension);
   vl_stage_light_bsdf(t, n);
   const vlLightSamples *l = &s->light;
-  float(*wi)[VL_ROW_SIZE] = s->rows;
-  float *pdf = s->rows[3], *light_ways = s->rows[4];
   uint32_t count = 0, *lane_of = r->count;
   for (uint32_t i = 0; i < VL_PAD(n); i++)
-    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;
     float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
@@ -155,17 +153,17 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
     vlPoint point;
     __builtin_memset(&point, 0, sizeof point);
     point.p = vl_lane3(l->tx, l->ty, l->tz, i);
-    light_ways[count] =
+    r->light_ways[count] =
         vl_abs(vl_dot(w, g)) * vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
-    pdf[count] = l->delta[i] ? 0.0f : sh->pdf[i];
+    r->light_pdf[count] = l->delta[i] ? 0.0f : sh->pdf[i];
     r->own[count] = l->pdf[i];
     lane_of[count] = i;
     count = push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count);
   }
-  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = lane_of[k];
-    r->others[k] = pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * light_ways[k];
+    r->others[k] = r->light_pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * r->light_ways[k];
   }
   vl_two_way_shadows(t, p, count, depth);
 }
@@ -178,12 +176,11 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   const vlPaths *p = &s->b;
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
   vl_volume_go_on(t, count);
-  float(*wi)[VL_ROW_SIZE] = s->rows + 1;
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
     r->pdf[i] = sh->pdf[i];
   }
-  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n);
   const vlTwoWay *way = t->def->two_way;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
@@ -208,7 +205,7 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
     if (depth == 0) smooth[lane] = 0;
     if (depth - smooth[lane] < t->def->max_depth) continue;
     s->hits_a.shape[i] = VL_NONE;
-    s->volume.event[i] = VL_AT_END;
+    if (vl_has_media(t)) s->volume->event[i] = VL_AT_END;
   }
 }
 
@@ -220,7 +217,7 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t d
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
-  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume.b, n);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume->b, n);
   arrive(t, n, depth);
   direct_light(t, n, depth, dimension);
   if (t->def->two_way->inner.paths) vl_stage_connect(t, n, depth);
@@ -245,10 +242,9 @@ void vl_bidirectional_tracer(vlTracing *t) {
     emission(t, n, depth == 0);
     if (way->light_only || depth >= most) break;
     if (way->apart) end_long(t, n, depth);
-    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = t->s->volume.kept;
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0;
     if (media) inside = vl_eye_in_media(t, n, depth, dimension);
-    for (uint32_t k = 0; k < inside; k++) kept[k] = t->s->order[k];
     n = on_surfaces(t, n, depth, dimension);
-    if (media) n = vl_volume_append(t, kept, inside, n);
+    if (media) n = vl_volume_append(t, inside, n);
   }
 }

@@ -31,13 +31,13 @@ static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
              .ways = r->a[i] * vl_abs(z) * VL_INV_PI + r->b[i] + t->def->two_way->merged,
              .diffuse = vl_is_inner_end(t, i),
              .room = t->def->max_depth - depth - 1,
-             .air = vl_has_media(t) ? vl_air(t->world, s->volume.b.medium[i]) : 0};
+             .air = vl_has_media(t) ? vl_air(t->world, s->volume->b.medium[i]) : 0};
   for (int c = 0; c < 4; c++) e.tint[c] = s->b.beta[c][i] * (e.diffuse ? s->shade.reflectance[c][i] : 1.0f);
   return e;
 }
 
 static vlEnd end_in_medium(const vlTracing *t, uint32_t i, uint32_t depth) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   const vlTwoWayRows *r = t->batch->two_way;
   uint32_t medium = v->c.medium[i];
@@ -143,7 +143,7 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
   enum { AHEAD = 8 };
   uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
   bool drawn[AHEAD];
-  const vlPaths *p = inside ? &t->s->volume.scattered : &t->s->b;
+  const vlPaths *p = inside ? &t->s->volume->scattered : &t->s->b;
   for (uint32_t k = 0; k < n + AHEAD; k++) {
     uint32_t slot = k % AHEAD, i = k - AHEAD;
     if (k >= AHEAD && drawn[slot]) {
@@ -162,7 +162,7 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
 void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count) {
   float far[3];
   vl_unpack_passed(light, far);
-  for (int k = 0; k < 3; k++) t->s->volume.shadow_passed[k][count] = far[k] * eye[k];
+  for (int k = 0; t->s->volume && k < 3; k++) t->s->volume->shadow_passed[k][count] = far[k] * eye[k];
   for (int c = 0; c < 4; c++) t->s->shadow.radiance[c][count] *= vl_joined_factor(far, eye, p->lambda[c][i]);
 }
 
@@ -176,7 +176,7 @@ static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float w
 }
 
 /* Adds lane i's connection to a vertex as shadow ray `count`. */
-static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float forth, uint32_t count) {
+static void push(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertex *x = &way->inner.vertices[vertex];
@@ -184,15 +184,16 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float 
   const vlSurface *f = &s->surface;
   vlShadowRays *q = &s->shadow;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-  vlVec3 w = vl_lane3(s->rows[9], s->rows[10], s->rows[11], i), xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
+  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i), xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
   vlVec3 xp = vl_vec3(x->p[0], x->p[1], x->p[2]);
   float inv2 = 1.0f / vl_length2(vl_sub(xp, at)), there = vl_abs(vl_dot(xg, w));
   float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), w) * VL_INV_PI;
   r->own[count] = way->connect;
-  r->others[count] =
-      inv2 * ((r->a[i] * r->rev[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) + x->back * forth * there);
+  r->others[count] = inv2 * ((r->a[i] * r->rev[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
+                             x->back * r->forth[i] * there);
+  float factor = r->factor[i];
   factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->b, i) ? 0.25f : 1.0f);
-  for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * s->rows[3 + c][i] * x->power[c] * factor;
+  for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * r->value[c][i] * x->power[c] * factor;
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
   vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
@@ -202,24 +203,24 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float 
 }
 
 /* The same in worlds with media. */
-static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, float factor, float forth, uint32_t count) {
+static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
-  vlVec3 w = vl_lane3(s->rows[9], s->rows[10], s->rows[11], i);
+  vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i);
   const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
   vlConnection c = {.i = i,
                     .at = at,
                     .o = vl_offset_origin(at, g, f->offset[i], w),
                     .w = w,
-                    .value = {s->rows[3][i], s->rows[4][i], s->rows[5][i], s->rows[6][i]},
-                    .forth = forth,
+                    .value = {r->value[0][i], r->value[1][i], r->value[2][i], r->value[3][i]},
+                    .forth = r->forth[i],
                     .ways = r->a[i] * r->rev[i] + r->b[i] + t->def->two_way->merged,
                     .cosine = vl_abs(vl_dot(g, w)),
-                    .factor = factor,
-                    .medium = vl_medium_beyond(shape, g, w, s->volume.b.medium[i])};
-  vl_push_connection(t, &s->b, &s->volume.b, &c, vertex, count);
+                    .factor = r->factor[i],
+                    .medium = vl_medium_beyond(shape, g, w, s->volume->b.medium[i])};
+  vl_push_connection(t, &s->b, &s->volume->b, &c, vertex, count);
 }
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
@@ -227,10 +228,9 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &s->surface;
   const vlLightVertices *inner = &t->def->two_way->inner;
-  float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7], *factor = s->rows[8];
   if (depth + 2 > t->def->max_depth) return;
   uint32_t found = 0;
-  vl_choose_vertices(t, n, depth, false, r->first, factor);
+  vl_choose_vertices(t, n, depth, false, r->first, r->factor);
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(f->nx, f->ny, f->nz, i);
     if (r->first[i] != VL_NONE) {
@@ -238,22 +238,22 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
       w = vl_normalize(vl_sub(vl_vec3(p[0], p[1], p[2]), vl_lane3(f->px, f->py, f->pz, i)));
       found++;
     }
-    s->light.wx[i] = s->rows[9][i] = w.x;
-    s->light.wy[i] = s->rows[10][i] = w.y;
-    s->light.wz[i] = s->rows[11][i] = w.z;
+    s->light.wx[i] = r->toward[0][i] = w.x;
+    s->light.wy[i] = r->toward[1][i] = w.y;
+    s->light.wz[i] = r->toward[2][i] = w.z;
   }
   if (!found) return;
-  vl_stage_there_and_back(t, r, n, wi, value, forth);
+  vl_stage_there_and_back(t, r, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (r->first[i] == VL_NONE) continue;
-    float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
+    float sum = r->value[0][i] + r->value[1][i] + r->value[2][i] + r->value[3][i];
     if (!(sum > 0.0f) && sum == sum) continue;
     if (vl_has_media(t))
-      push_in_media(t, i, r->first[i], factor[i], forth[i], count);
+      push_in_media(t, i, r->first[i], count);
     else
-      push(t, i, r->first[i], factor[i], forth[i], count);
-    join_from_surface(t, i, r->first[i], wi[2][i], count++);
+      push(t, i, r->first[i], count);
+    join_from_surface(t, i, r->first[i], r->wi[2][i], count++);
   }
   vl_two_way_shadows(t, &s->b, count, depth + VL_CONNECTION_KEY);
 }

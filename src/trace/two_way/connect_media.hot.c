@@ -74,7 +74,7 @@ float vl_connection_survival(const vlTracing *t, uint32_t lane, float expected) 
 void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows, const vlConnection *c,
                         uint32_t vertex, uint32_t count) {
   const vlLightVertex *x = &t->def->two_way->inner.vertices[vertex];
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   vlTwoWayRows *r = t->batch->two_way;
   vlShadowRays *q = &t->s->shadow;
   float connect = t->def->two_way->connect, gives, back, ways = x->back, cosine;
@@ -110,14 +110,13 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
 }
 
 void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   vlTwoWayRows *r = t->batch->two_way;
   const vlTwoWay *way = t->def->two_way;
   uint32_t count = 0, *chosen = r->first;
-  float *factor = t->s->rows[0];
   if (depth + 2 > t->def->max_depth) return;
-  vl_choose_vertices(t, n, depth, true, chosen, factor);
+  vl_choose_vertices(t, n, depth, true, chosen, r->factor);
   for (uint32_t i = 0; i < n; i++) {
     if (chosen[i] == VL_NONE) continue;
     const vlLightVertex *x = &way->inner.vertices[chosen[i]];
@@ -133,7 +132,7 @@ void vl_connect_from_media(vlTracing *t, uint32_t n, uint32_t depth) {
                       .forth = phase,
                       .ways = r->a[i] * phase + r->b[i] + way->merged_volume,
                       .cosine = r->cosine[i],
-                      .factor = factor[i],
+                      .factor = r->factor[i],
                       .medium = medium};
     vl_push_connection(t, p, &v->c, &c, chosen[i], count);
     if (t->world->by_channel) {

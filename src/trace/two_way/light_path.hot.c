@@ -7,7 +7,7 @@
 /* Longer paths carry almost nothing, and would need memory for their photons. */
 enum { LIGHT_BOUNCES = 255 };
 
-void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[3][VL_ROW_SIZE]) {
+void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlShade *sh = &s->shade;
   const vlSurface *f = &s->surface;
@@ -19,10 +19,7 @@ void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[
     r->wo[0][i] = x;
     r->wo[1][i] = y;
     r->wo[2][i] = z;
-    float a = wi[0][i], b = wi[1][i], c = wi[2][i];
-    sh->wo[0][i] = a;
-    sh->wo[1][i] = b;
-    sh->wo[2][i] = c;
+    for (int k = 0; k < 3; k++) sh->wo[k][i] = r->wi[k][i];
   }
   vl_stage_light_bsdf(t, n);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
@@ -31,16 +28,15 @@ void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n, const float wi[
   }
 }
 
-void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n, float wi[3][VL_ROW_SIZE],
-                             float value[4][VL_ROW_SIZE], float forth[VL_ROW_SIZE]) {
+void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n) {
   const vlShade *sh = &t->s->shade;
   vl_stage_light_bsdf(t, n);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
-    for (int c = 0; c < 4; c++) value[c][i] = sh->value[c][i];
-    forth[i] = sh->pdf[i];
+    for (int k = 0; k < 3; k++) rows->wi[k][i] = sh->wi[k][i];
+    for (int c = 0; c < 4; c++) rows->value[c][i] = sh->value[c][i];
+    rows->forth[i] = sh->pdf[i];
   }
-  vl_stage_reverse(t, rows, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, rows, n);
 }
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
@@ -74,19 +70,19 @@ static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   uint32_t n = b->n, count = 0;
   bool rgb = world->def.color == VL_COLOR_RGB;
   if (!rgb) wavelengths(t, r, b);
-  float *u = s->shade.u0, *u1 = s->shade.u1, *v1 = s->shade.u2, *u2 = s->rows[0], *v2 = s->rows[1];
+  float *u = s->shade.u0, *u1 = s->shade.u1, *v1 = s->shade.u2, *u2 = r->wi[0], *v2 = r->wi[1];
   t->sampler->get_1d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_TIME, u);
   t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_FILM, u1, v1);
   t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_LENS, u2, v2);
-  p->time = s->b.time = s->volume.scattered.time = b->time;
+  p->time = s->b.time = b->time;
+  if (s->volume) s->volume->scattered.time = b->time;
   for (uint32_t i = 0; i < n; i++) {
     float lambda[4];
     for (int c = 0; c < 4; c++) lambda[c] = rgb ? 0.0f : r->rows[4 + c][i];
     vlEmission e = vl_emission_sample(world, t->def->two_way, lambda, u[i], u1[i], v1[i], u2[i], v2[i]);
     float most = vl_max(vl_max(e.flux[0], e.flux[1]), vl_max(e.flux[2], e.flux[3]));
     if (!e.valid || !(most > 0.0f) || !(most < VL_INFINITY)) continue;
-    uint32_t *medium = s->volume.shadow_medium; /* not used yet */
-    if (vl_has_media(t) && !start_medium(t, &e, &medium[i])) continue;
+    if (vl_has_media(t) && !start_medium(t, &e, &s->volume->shadow_medium[i])) continue;
     uint32_t k = count++;
     vl_set_lane3(p->ox, p->oy, p->oz, k, e.o);
     vl_set_lane3(p->dx, p->dy, p->dz, k, e.d);
@@ -209,7 +205,7 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
     x->bounce = (depth + 1) & 255u;
     x->alone = vl_hero_only(p, i);
     x->inside = 0;
-    x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume.b.medium[i]) & 15u : 0;
+    x->air = vl_has_media(t) ? vl_air(t->world, t->s->volume->b.medium[i]) & 15u : 0;
     r->first[count] = t->world->by_channel ? vl_pack_passed(t->s, lane) : 0;
     count += sum > 0.0f && sum < VL_INFINITY;
   }
@@ -225,15 +221,13 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   const vlPaths *p = &s->b;
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
   vl_volume_go_on(t, count);
-  float(*wi)[VL_ROW_SIZE] = s->rows + 1;
-  float *ns = s->rows[4]; /* |wo . shading normal| / |wi . shading normal| */
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) wi[k][i] = sh->wi[k][i];
+    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
     r->pdf[i] = sh->pdf[i];
     float z = vl_abs(sh->wi[2][i]);
-    ns[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
+    r->turn[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
   }
-  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n);
   float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k], lane = s->a.lane[k];
@@ -244,7 +238,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
                          : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
     bool inner = !(sh->flags[i] & VL_SAMPLED_SPECULAR) && vl_is_inner_end(t, i) && pdf > 0.0f;
     r->link[lane] = inner ? connect / pdf : 0.0f;
-    float turn = r->cosine[i] > 0.0f ? ns[i] * cosine / r->cosine[i] * sh->eta_scale[i] : 0.0f;
+    float turn = r->cosine[i] > 0.0f ? r->turn[i] * cosine / r->cosine[i] * sh->eta_scale[i] : 0.0f;
     for (int c = 0; c < 4; c++) s->a.beta[c][k] *= turn;
     s->a.eta_scale[k] = 1.0f;
   }
@@ -257,7 +251,7 @@ static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
   vl_stage_shade(t, n);
-  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume.b, n);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume->b, n);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
   if (t->def->two_way->inner.paths && !last) leave_vertices(t, r, b, n, depth);
@@ -279,19 +273,18 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   vl_passed_start(&t, batch->n);
   uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
   bool media = vl_has_media(&t);
-  if (media) vl_volume_start(&t, n, scratch->volume.shadow_medium);
+  if (media) vl_volume_start(&t, n, scratch->volume->shadow_medium);
   vl_show_lights(&t, r, batch, n);
   for (uint32_t depth = 0; n > 0 && depth < most && !vl_is_cancelled(def->cancel); depth++) {
     if (media)
       vl_volume_travel(&t, n, depth, false);
     else
       vl_stage_hits(&t, n, false);
-    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0, *kept = scratch->volume.kept;
+    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0;
     bool last = depth + 1 == most;
     if (media) inside = vl_light_in_media(&t, r, batch, n, depth, dimension, last);
-    for (uint32_t k = 0; k < inside; k++) kept[k] = scratch->order[k];
     n = on_surfaces(&t, r, batch, n, depth, dimension, last);
-    if (media) n = vl_volume_append(&t, kept, inside, n);
+    if (media) n = vl_volume_append(&t, inside, n);
   }
   batch->bounce_rays += rest.bounce_rays;
   batch->shadow_rays += rest.shadow_rays;

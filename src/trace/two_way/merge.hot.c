@@ -64,7 +64,7 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
   /* the weight H / (H + others), divided by H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
-  return x->alone && vl_hero_only(x->medium ? &t->s->volume.scattered : &t->s->b, i) ? 0.25f * weight : weight;
+  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->b, i) ? 0.25f * weight : weight;
 }
 
 /* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of the whole path is not the
@@ -74,7 +74,7 @@ static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   for (int c = 0; c < 4; c++) power[c] = x->power[c];
   if (!t->world->by_channel) return;
   const vlTraceScratch *s = t->s;
-  const vlPaths *p = x->medium ? &s->volume.scattered : &s->b;
+  const vlPaths *p = x->medium ? &s->volume->scattered : &s->b;
   uint32_t lane = p->lane[i];
   float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
   if (!x->medium) vl_passed_on(s, i, wi_z, eye);
@@ -100,7 +100,6 @@ static void add_listed(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   const vlPaths *p = &s->b;
   const vlPhoton *photons = t->def->two_way->map.photons;
-  float(*wi)[VL_ROW_SIZE] = s->rows, (*value)[VL_ROW_SIZE] = s->rows + 3, *forth = s->rows[7];
   uint32_t most = 0;
   for (uint32_t i = 0; i < n; i++) most = r->count[i] > most ? r->count[i] : most;
   for (uint32_t round = 0; round < most; round++) {
@@ -111,13 +110,14 @@ static void add_listed(vlTracing *t, uint32_t n) {
       s->light.wy[i] = has ? w[1] : s->surface.ny[i];
       s->light.wz[i] = has ? w[2] : s->surface.nz[i];
     }
-    vl_stage_there_and_back(t, r, n, wi, value, forth);
+    vl_stage_there_and_back(t, r, n);
     for (uint32_t i = 0; i < n; i++) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
-      float weight = pair_weight(t, i, x, forth[i], r->rev[i]), power[4];
-      joined_power(t, i, x, wi[2][i], power);
-      for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * value[c][i] * power[c] * weight;
+      float weight = pair_weight(t, i, x, r->forth[i], r->rev[i]), power[4];
+      joined_power(t, i, x, r->wi[2][i], power);
+      for (int c = 0; c < 4; c++)
+        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * r->value[c][i] * power[c] * weight;
     }
   }
   for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
@@ -164,7 +164,7 @@ void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
 
 void vl_stage_merge_media(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPhotonMap *map = &t->def->two_way->map;
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   if (!map->buckets) return;
   for (uint32_t i = 0; i < n; i++) {

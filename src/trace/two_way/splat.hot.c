@@ -68,7 +68,7 @@ bool vl_two_way_arrives(const vlTracing *t, vlTwoWayRows *r, uint32_t k, float p
   for (int c = 0; c < 4; c++) passes[c] = 1.0f;
   if (s->shadow.occluded[k]) return false;
   if (vl_has_media(t)) {
-    const vlVolumeScratch *v = &s->volume;
+    const vlVolumeScratch *v = s->volume;
     float density[4];
     for (int c = 0; c < 4; c++) {
       passes[c] = v->shadow_beta[c][k];
@@ -94,8 +94,8 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
   float *value[4], *lambda[4], *inv_pdf[4];
   for (int c = 0; c < 4; c++) {
     value[c] = r->rows[c];
-    lambda[c] = s->rows[c];
-    inv_pdf[c] = s->rows[4 + c];
+    lambda[c] = r->splat_lambda[c];
+    inv_pdf[c] = r->splat_inv_pdf[c];
   }
   uint32_t visible = 0;
   for (uint32_t k = 0; k < count; k++) {
@@ -125,7 +125,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
   vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   q->t_max[count] = vl_min(end, VL_ONE_MINUS_EPSILON);
   if (vl_has_media(t)) { /* unit length: distances to interfaces on the way are needed */
-    vlVolumeScratch *v = &s->volume;
+    vlVolumeScratch *v = s->volume;
     q->t_max[count] = vl_min(end, 1.0f - 0x1p-21f) * vl_length(d);
     d = vl_normalize(d);
     v->shadow_medium[count] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, d, v->b.medium[i]);
@@ -150,37 +150,35 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   vlShadowRays *q = &s->shadow;
   if (way->eye.lens_radius > 0.0f)
     t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
-  float(*wi)[VL_ROW_SIZE] = s->rows; /* the textures' stack is not in use */
-  float *per_square = s->rows[3], *end = s->rows[4];
-  float *fx = s->rows[5], *fy = s->rows[6], *fz = s->rows[7], *weight = s->rows[8];
   vl_look_from(t, r, n, f->px, f->py, f->pz);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t k = i < n ? i : n - 1, lane = p->lane[k];
     vlCameraSample view = vl_view_of(t, r, k, lane, vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
     vlVec3 w = view.w;
-    wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
-    wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
-    wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
+    r->wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
+    r->wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
+    r->wi[2][i] = vl_dot(w, vl_lane3(f->nx, f->ny, f->nz, i));
     float cosine = vl_abs(vl_dot(w, vl_lane3(f->gx, f->gy, f->gz, i)));
-    per_square[i] = view.seen ? cosine * view.per_square : 0.0f; /* density of the camera path's first vertex here */
-    end[i] = view.end;
-    weight[i] = view.weight;
+    r->per_square[i] = view.seen ? cosine * view.per_square : 0.0f; /* density of the camera path's first vertex here */
+    r->end[i] = view.end;
+    r->weight[i] = view.weight;
     r->x[i] = view.x;
     r->y[i] = view.y;
-    vl_set_lane3(fx, fy, fz, i, view.from);
+    vl_set_lane3(r->eye[0], r->eye[1], r->eye[2], i, view.from);
   }
-  vl_stage_reverse(t, r, n, (const float(*)[VL_ROW_SIZE])wi);
+  vl_stage_reverse(t, r, n);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
-    if (!(per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
-    push(t, i, count, vl_vec3(fx[i], fy[i], fz[i]), end[i], wi[2][i]);
+    if (!(r->per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
+    push(t, i, count, vl_lane3(r->eye[0], r->eye[1], r->eye[2], i), r->end[i], r->wi[2][i]);
     r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
-    r->own[count] = way->paths / per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
+    r->own[count] =
+        way->paths / r->per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
     for (int c = 0; c < 4; c++)
-      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv * weight[i];
+      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv * r->weight[i];
     r->x[count] = r->x[i];
     r->y[count] = r->y[i];
     count++;
@@ -192,7 +190,7 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) 
   const vlTwoWay *way = t->def->two_way;
   if (!way->eye.sees || way->light_only) return;
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = &s->volume;
+  vlVolumeScratch *v = s->volume;
   vlShade *sh = &s->shade;
   const vlPaths *p = &s->a;
   vlShadowRays *q = &s->shadow;

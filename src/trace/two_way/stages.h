@@ -29,6 +29,22 @@ typedef struct vlTwoWayRows {
   VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
   VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in media: the extinction */
   VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: the directions that are evaluated forth and back */
+  union {
+    struct {                                                  /* camera paths */
+      VL_ROW float value[4][VL_ROW_SIZE], forth[VL_ROW_SIZE]; /* vl_stage_there_and_back */
+      VL_ROW float toward[3][VL_ROW_SIZE];                    /* world: towards the vertex of a connection */
+      VL_ROW float factor[VL_ROW_SIZE];                       /* vl_choose_vertices */
+      /* by light sample: its density by the BSDF; the density of light paths that arrive from there */
+      VL_ROW float light_pdf[VL_ROW_SIZE], light_ways[VL_ROW_SIZE];
+    };
+    struct { /* light paths */
+      /* of connections to the camera: density of camera rays' first vertex; end of the ray; point on the lens */
+      VL_ROW float per_square[VL_ROW_SIZE], end[VL_ROW_SIZE], weight[VL_ROW_SIZE], eye[3][VL_ROW_SIZE];
+      VL_ROW float splat_lambda[4][VL_ROW_SIZE], splat_inv_pdf[4][VL_ROW_SIZE];
+      VL_ROW float turn[VL_ROW_SIZE]; /* |wo . shading normal| / |wi . shading normal| */
+    };
+  };
   VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points: first of lanes, later of splats */
   VL_ROW float own[VL_ROW_SIZE], others[VL_ROW_SIZE]; /* by shadow ray: density of this strategy and of the others */
   VL_ROW float
@@ -100,7 +116,7 @@ void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
 /* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
  * camera paths, which sample lights and merge. vl_light_in_media is for light paths, which store photons and connect
- * to the camera. Both return the number of paths that go on, and s->order lists them. last: no path goes on. */
+ * to the camera. Both return the number of paths that go on, and volume.kept lists them. last: no path goes on. */
 uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                            uint32_t dimension, bool last);
@@ -124,13 +140,12 @@ void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const floa
 /* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh light paths. */
 void vl_measure_camera_rays(const vlTracing *t);
 
-/* Writes to rows->rev the density of sampling wo if the path had come from wi (local), and to shade.value the BSDF's
+/* Writes to rows->rev the density of sampling wo if the path had come from rows->wi, and to shade.value the BSDF's
  * value f(wi, wo) |cos wo|. Keeps shade.wo; overwrites shade.wi, shade.pdf and the light samples' wx, wy, wz. */
-void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n, const float wi[3][VL_ROW_SIZE]);
-/* Evaluates the BSDFs for the light samples' directions, and vl_stage_reverse for the way back. wi: those directions
- * (local); value: the BSDFs' values of the way there; forth: its densities. */
-void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n, float wi[3][VL_ROW_SIZE],
-                             float value[4][VL_ROW_SIZE], float forth[VL_ROW_SIZE]);
+void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n);
+/* Evaluates the BSDFs for the light samples' directions, and vl_stage_reverse for the way back. Writes to rows->wi
+ * those directions (local), to rows->value the BSDFs' values of the way there, to rows->forth its densities. */
+void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n);
 
 /* A ray that leaves a light. */
 typedef struct vlEmission {
@@ -185,7 +200,7 @@ static inline bool vl_has_media(const vlTracing *t) {
 }
 /* The odds (vlFlight.odds) of the path's last flight. */
 static inline float vl_last_odds(const vlTracing *t, uint32_t lane) {
-  return vl_has_media(t) ? t->s->volume.odds[lane] : 1.0f;
+  return vl_has_media(t) ? t->s->volume->odds[lane] : 1.0f;
 }
 static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
   return t->batch->eyes ? &t->batch->eyes[lane] : &t->def->two_way->eye;
@@ -194,7 +209,7 @@ static inline const vlCameraView *vl_eye_of(const vlTracing *t, uint32_t lane) {
  * that products with it are finite. */
 static inline float vl_linked(const vlTracing *t, const vlTwoWayRows *r, uint32_t lane, float distance, float inv) {
   float linked = r->link[lane] * distance * distance * inv;
-  return vl_has_media(t) ? vl_min(linked / t->s->volume.odds[lane], 1e25f) : linked;
+  return vl_has_media(t) ? vl_min(linked / t->s->volume->odds[lane], 1e25f) : linked;
 }
 /* 1 + a uniform medium, if this is below 16; else 0. It tells whether the ends of a connection are in the same air. */
 static inline uint32_t vl_air(const vlWorld *world, uint32_t medium) {

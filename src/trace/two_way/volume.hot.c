@@ -17,13 +17,13 @@ void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t
 }
 
 static float extinction(const vlTracing *t, uint32_t i) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   return vl_medium_extinction(&t->world->media.items[v->c.medium[i]], vl_lane3(p->ox, p->oy, p->oz, i));
 }
 
 static float phase_of(const vlTracing *t, uint32_t i, vlVec3 w) { /* w: unit, away from the vertex */
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   return vl_phase(t->world->media.items[v->c.medium[i]].g,
                   vl_dot(vl_lane3(v->scattered.dx, v->scattered.dy, v->scattered.dz, i), w));
 }
@@ -31,7 +31,7 @@ static float phase_of(const vlTracing *t, uint32_t i, vlVec3 w) { /* w: unit, aw
 /* ---- camera paths ------------------------------------------------------------------------------------------------ */
 
 static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   vlTwoWayRows *r = t->batch->two_way;
   for (uint32_t i = 0; i < n; i++) {
@@ -49,7 +49,7 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
 static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlWorld *world = t->world;
   const vlTwoWay *way = t->def->two_way;
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   vlTwoWayRows *r = t->batch->two_way;
   const vlLightSamples *l = &t->s->light;
@@ -75,10 +75,10 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
 
 /* Samples new directions and updates the carried densities. */
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
-  const vlPaths *p = &t->s->volume.scattered;
+  const vlPaths *p = &t->s->volume->scattered;
   uint32_t count = vl_volume_phase_scatter(t, n, depth + 1, dimension);
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = t->s->order[k];
+    uint32_t i = t->s->volume->kept[k];
     float pdf = p->pdf[i];
     r->carry[p->lane[i]] = (r->a[i] * pdf + r->b[i] + t->def->two_way->merged_volume) * r->cosine[i] / pdf;
     r->link[p->lane[i]] = t->def->two_way->connect / pdf;
@@ -99,7 +99,7 @@ uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
 /* ---- light paths ------------------------------------------------------------------------------------------------- */
 
 static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
@@ -120,7 +120,7 @@ static void arrive_from_light(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_
 
 /* Stores photons. A channel that does not scatter here has no power. */
 static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -154,7 +154,7 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
 /* Stores vertices that camera paths connect to. */
 static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
   const vlTwoWay *way = t->def->two_way;
-  const vlVolumeScratch *v = &t->s->volume;
+  const vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
@@ -188,7 +188,7 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
 static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlTwoWay *way = t->def->two_way;
   if (!way->eye.sees) return;
-  vlVolumeScratch *v = &t->s->volume;
+  vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
   vlShade *sh = &t->s->shade;
   vlShadowRays *q = &t->s->shadow;

@@ -1,5 +1,6 @@
 /* camera/drawing.c: vl_camera_outline: a camera as lines, faces and labels in world space. */
 #include "velo/drawing.h"
+#include "math/double3.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,10 +75,6 @@ static void label(Pen *p, vlDrawingPart part, const double at[3], const char *te
   snprintf(l->text, sizeof l->text, "%s", text);
 }
 
-static double dot3(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* to = from + s d */
 static void go(const double from[3], const double d[3], double s, double to[3]) {
   for (int i = 0; i < 3; i++) to[i] = from[i] + s * d[i];
@@ -104,7 +101,7 @@ static void axis_of(const vlCamera *c, int i, double axis[3]) {
 static bool at_depth(const Pen *p, double x, double y, double depth, double point[3]) {
   double o[3], d[3];
   if (!vl_camera_unproject(p->camera, x, y, o, d)) return false;
-  double along = p->flat ? dot3(d, p->forward) : 1.0;
+  double along = p->flat ? vl_dot3(d, p->forward) : 1.0;
   if (!(along > 1e-6)) return false;
   go(o, d, depth / along, point);
   return true;

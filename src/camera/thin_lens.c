@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "camera/optics.h"
 #include "camera/parts.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 
 static const double agreement = 1e-6; /* relative; values written with 7 digits agree */
@@ -106,14 +107,13 @@ static vlResult tilt(const vlCameraDef *def, double focal_mm, vlCamera *camera, 
 }
 
 bool vl_camera_focus_at(const vlCamera *camera, const double p[3], double *distance) {
-  const double *m = camera->camera_from_world;
   double c[3];
-  for (int i = 0; i < 3; i++) c[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  vl_map_point(camera->camera_from_world, p, c);
   const vlLens *l = &camera->lens;
   if (vl_camera_sees_ahead(camera->projection))
     *distance = (c[2] + l->tilt[0] * c[0] + l->tilt[1] * c[1]) / (1.0 - l->hinge[0] * c[0] - l->hinge[1] * c[1]);
   else
-    *distance = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
+    *distance = vl_norm3(c);
   return *distance > 0.0 && isfinite(*distance);
 }
 

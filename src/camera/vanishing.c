@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "camera/parts.h"
 #include "camera/points.h"
+#include "math/double3.h"
 #include "velo/vanishing.h"
 
 /* Vanishing points farther than this many focal lengths count as infinite: their directions are within 1e-9 radians of
@@ -131,15 +132,6 @@ static vlResult orthocentre(const vlVanishingDef *d, double p[2], vlError *error
   return VL_OK;
 }
 
-static void cross3(const double a[3], const double b[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void normalize3(double v[3]) {
-  double length = vl_length3(v[0], v[1], v[2]);
-  for (int i = 0; i < 3; i++) v[i] /= length;
-}
-
 vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef *camera, vlError *error) {
   vl_error_clear(error);
   if (!def || !camera) return vl_fail(error, VL_ERROR_ARGUMENT, "vanishing points: def or camera is null");
@@ -179,17 +171,17 @@ vlResult vl_camera_from_vanishing_points(const vlVanishingDef *def, vlCameraDef 
     v[0] = sign * (def->points[i][0] - p[0]);
     v[1] = sign * (def->points[i][1] - p[1]);
     v[2] = sign * f;
-    normalize3(v);
+    vl_normalize3(v);
   }
   uint32_t first = def->axes[0], second = def->axes[1], third = 3 - first - second;
   if (second == (first + 1) % 3)
-    cross3(axes[first], axes[second], axes[third]);
+    vl_cross3(axes[first], axes[second], axes[third]);
   else
-    cross3(axes[second], axes[first], axes[third]);
-  normalize3(axes[third]);
+    vl_cross3(axes[second], axes[first], axes[third]);
+  vl_normalize3(axes[third]);
   /* orthogonal to the last bit, despite rounding */
-  cross3(axes[(second + 1) % 3], axes[(second + 2) % 3], axes[second]);
-  normalize3(axes[second]);
+  vl_cross3(axes[(second + 1) % 3], axes[(second + 2) % 3], axes[second]);
+  vl_normalize3(axes[second]);
   *camera = vl_default_camera_def(def->width, def->height);
   camera->fx = camera->fy = f;
   camera->cx = p[0];

@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -23,10 +24,10 @@ static bool look_at(const double v[9], vlMat4 *m) {
   for (int i = 0; i < 3; i++) z[i] = v[i] - v[3 + i];
   length = vl_precise_hypot(vl_precise_hypot(z[0], z[1]), z[2]);
   for (int i = 0; i < 3; i++) z[i] /= length;
-  for (int i = 0; i < 3; i++) x[i] = v[6 + (i + 1) % 3] * z[(i + 2) % 3] - v[6 + (i + 2) % 3] * z[(i + 1) % 3];
+  vl_cross3(v + 6, z, x);
   length = vl_precise_hypot(vl_precise_hypot(x[0], x[1]), x[2]);
   for (int i = 0; i < 3; i++) x[i] /= length;
-  for (int i = 0; i < 3; i++) y[i] = z[(i + 1) % 3] * x[(i + 2) % 3] - z[(i + 2) % 3] * x[(i + 1) % 3];
+  vl_cross3(z, x, y);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++) {
     m->m[4 * i] = x[i];

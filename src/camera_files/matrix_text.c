@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "camera_files/lines.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 
 enum { LARGEST = 16 };
@@ -60,27 +61,22 @@ static void set_intrinsics(const double k[9], vlCameraDef *d) {
   d->skew = k[1];
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* P = K [R | t]: K is upper triangular with a positive diagonal, found from the rows of P by Gram and Schmidt from the
  * last row on. False: P is no projection of a camera. */
 static bool decompose(const double p[12], double k[9], double r[9], double t[3]) {
-  double a[3][3], turn;
+  double a[3][3];
   for (int i = 0; i < 9; i++) a[i / 3][i % 3] = p[4 * (i / 3) + i % 3];
   for (int i = 0; i < 9; i++) k[i] = 0.0;
-  turn = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
-         a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
-  double sign = turn < 0.0 ? -1.0 : 1.0; /* P is defined up to its scale; R must be a rotation */
+  double sign =
+      vl_triple3(a[0], a[1], a[2]) < 0.0 ? -1.0 : 1.0; /* P is defined up to its scale; R must be a rotation */
   for (int i = 2; i >= 0; i--) {
     double rest[3];
     for (int c = 0; c < 3; c++) rest[c] = sign * a[i][c];
     for (int j = 2; j > i; j--) {
-      k[3 * i + j] = dot(rest, r + 3 * j);
+      k[3 * i + j] = vl_dot3(rest, r + 3 * j);
       for (int c = 0; c < 3; c++) rest[c] -= k[3 * i + j] * r[3 * j + c];
     }
-    k[4 * i] = sqrt(dot(rest, rest));
+    k[4 * i] = vl_norm3(rest);
     if (!(k[4 * i] > 0.0)) return false;
     for (int c = 0; c < 3; c++) r[3 * i + c] = rest[c] / k[4 * i];
   }

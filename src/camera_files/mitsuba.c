@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "camera_files/fields.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 
@@ -114,26 +115,26 @@ static vlResult triple(const Scene *scene, const json_t *op, double standard, do
 }
 
 static vlResult look_at(const Scene *scene, const json_t *op, vlMat4 *m) {
-  double o[3], t[3], up[3] = {0, 1, 0}, z[3], x[3];
+  double o[3], t[3], up[3] = {0, 1, 0}, z[3], x[3], y[3];
   bool found;
   vlResult result = numbers(scene, op, "origin", 3, o, NULL);
   if (result == VL_OK) result = numbers(scene, op, "target", 3, t, NULL);
   if (result == VL_OK) result = numbers(scene, op, "up", 3, up, &found);
   if (result != VL_OK) return result;
-  double length = 0.0, across = 0.0;
   for (int i = 0; i < 3; i++) z[i] = t[i] - o[i];
-  length = sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
+  double length = vl_norm3(z);
   for (int i = 0; i < 3; i++) z[i] /= length;
-  for (int i = 0; i < 3; i++) x[i] = up[(i + 1) % 3] * z[(i + 2) % 3] - up[(i + 2) % 3] * z[(i + 1) % 3]; /* left */
-  across = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-  if (!(length > 0.0 && across > 1e-9 * sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2])))
+  vl_cross3(up, z, x); /* left */
+  double across = vl_norm3(x);
+  if (!(length > 0.0 && across > 1e-9 * vl_norm3(up)))
     return vl_camera_wrong_at(scene->file, line_of(op), 0, "mitsuba: origin, target and up of <%s> give no direction",
                               vl_short_text(tag_of(op)).text);
   *m = vl_mat4_identity();
   for (int i = 0; i < 3; i++) x[i] /= across;
+  vl_cross3(z, x, y);
   for (int i = 0; i < 3; i++) {
     m->m[4 * i] = x[i];
-    m->m[4 * i + 1] = z[(i + 1) % 3] * x[(i + 2) % 3] - z[(i + 2) % 3] * x[(i + 1) % 3];
+    m->m[4 * i + 1] = y[i];
     m->m[4 * i + 2] = z[i];
     m->m[4 * i + 3] = o[i];
   }

@@ -5,10 +5,11 @@
 
 #include "camera_files/files.h"
 
+#include "math/double3.h"
 #include "math/elementary.h"
 
 void vl_rotation_from_vector(const double v[3], double r[9]) {
-  double angle = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  double angle = vl_norm3(v);
   /* sin(a)/a and (1 - cos(a))/a^2; below 1e-4 their series are exact to the last bit */
   double a2 = angle * angle;
   double s = angle < 1e-4 ? 1.0 - a2 / 6.0 : vl_precise_sin(angle) / angle;
@@ -30,7 +31,7 @@ void vl_rotation_from_vector(const double v[3], double r[9]) {
 void vl_rotation_to_vector(const double r[9], double v[3]) {
   double q[4];
   vl_rotation_to_quaternion(r, q);
-  double sine = sqrt(q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  double sine = vl_norm3(q + 1);
   double scale = sine > 0.0 ? 2.0 * vl_precise_atan2(sine, q[0]) / sine : 2.0;
   for (int i = 0; i < 3; i++) v[i] = scale * q[i + 1];
 }

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "camera_files/formats.h"
+#include "math/double3.h"
 
 /* Allowed deviation of a pose's matrix from a rotation: files have 4 digits or more. */
 static const double rotation_tolerance = 1e-3;
@@ -32,9 +33,7 @@ static const char *pose_fault(const double m[16]) {
       if (!(fabs(dot - (i == j ? 1.0 : 0.0)) <= rotation_tolerance))
         return "the pose is no rotation: its axes are not of length 1 and at right angles";
     }
-  double turn =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
-  return turn > 0.0 ? NULL : "the pose is no rotation: it mirrors";
+  return vl_determinant3(m) > 0.0 ? NULL : "the pose is no rotation: it mirrors";
 }
 
 vlResult vl_trajectory_add(vlTrajectory *t, const vlCameraFile *file, const vlFramePlace *place, int32_t camera,

@@ -1,6 +1,7 @@
 /* import/points.c: see points.h. */
 #include "import/points.h"
 #include "base/free.h"
+#include "math/double3.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -72,7 +73,7 @@ static void disc(const float *n, float radius, float corners[CORNERS][3]) {
     lu += u[i] * u[i];
   }
   for (int i = 0; i < 3; i++) u[i] /= sqrt(lu);
-  for (int i = 0; i < 3; i++) v[i] = w[(i + 1) % 3] * u[(i + 2) % 3] - w[(i + 2) % 3] * u[(i + 1) % 3];
+  vl_cross3(w, u, v);
   for (int k = 0; k < CORNERS; k++)
     for (int i = 0; i < 3; i++) corners[k][i] = radius * (float)(turn[k][0] * u[i] + turn[k][1] * v[i]);
 }

@@ -6,18 +6,13 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "math/double3.h"
 #include "velo/shape.h"
 
 /* Also true for normals that are so short that their length is zero. */
 static bool is_broken(const float n[3]) {
   float length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
   return !(length > 0.0f) || !isfinite(length);
-}
-
-static void cross(const double a[3], const double b[3], double c[3]) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* The normal of a face, as long as twice its area. */
@@ -31,7 +26,7 @@ static void face_normal(const vlShapeDef *d, const uint32_t *face, size_t per, d
     a[i] = (double)to[0][i] - (double)from[0][i];
     b[i] = (double)to[1][i] - (double)from[1][i];
   }
-  cross(a, b, n);
+  vl_cross3(a, b, n);
 }
 
 /* 1 or -1: the side on which the sound normals of the face lie. */
@@ -62,7 +57,7 @@ static void sum_normals(const vlShapeDef *d, size_t per, double *sums) {
 }
 
 static void set_normal(const double sum[3], float normal[3]) {
-  double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  double length = vl_norm3(sum);
   bool found = length > 0 && isfinite(length);
   for (int i = 0; i < 3; i++) normal[i] = found ? (float)(sum[i] / length) : i == 2 ? 1.0f : 0.0f;
 }

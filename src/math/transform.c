@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "math/double3.h"
 #include "math/elementary.h"
 
 vlMat4 vl_mat4_identity(void) {
@@ -75,8 +76,7 @@ vlMat4 vl_mat4_rotate(double radians, double x, double y, double z) {
 }
 
 double vl_mat4_determinant3(vlMat4 a) {
-  const double *m = a.m;
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  return vl_determinant3(a.m);
 }
 
 bool vl_mat4_is_finite(vlMat4 a) {
@@ -115,7 +115,7 @@ void vl_mat4_vertex_normal(const vlMat4 *inverse, double scale, const float n[3]
   const double rounding = 1e-4, most = 1e12;
   double given[3] = {(double)n[0], (double)n[1], (double)n[2]}, q[3];
   vl_mat4_normal(inverse, given, q);
-  double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), weight = length * scale;
+  double length = vl_norm3(q), weight = length * scale;
   if (fabs(weight - 1) <= rounding || !(weight >= 1 / most && weight <= most)) weight = 1;
   double factor = length > 0 ? weight / length : 0;
   for (int k = 0; k < 3; k++) result[k] = (float)(q[k] * factor);

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "render/channel_pass.h"
 #include "velo/shape.h"
 #include "world/shape/moving.h"
@@ -23,10 +24,6 @@ typedef struct Target {
   double normal[3];
   double pixel[2]; /* in the other image */
 } Target;
-
-static double length3(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 /* The target of lane i, moved to the other camera's time. */
 static Target target_of(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t i, int which) {
@@ -48,7 +45,7 @@ static bool find_pixel(const vlCamera *camera, Target *t) {
   double point[3], z;
   if (t->sky && camera->projection == VL_PROJECTION_ORTHOGRAPHIC) return false;
   const double *m = camera->world_from_camera, eye[3] = {m[3], m[7], m[11]};
-  for (int k = 0; k < 3; k++) point[k] = t->sky ? eye[k] + 1e6 * (1 + length3(eye)) * t->direction[k] : t->point[k];
+  for (int k = 0; k < 3; k++) point[k] = t->sky ? eye[k] + 1e6 * (1 + vl_norm3(eye)) * t->direction[k] : t->point[k];
   return vl_camera_project(camera, point, t->pixel, &z);
 }
 
@@ -57,7 +54,7 @@ static bool aim(const vlCamera *camera, const Target *t, vlGroundTruthBatch *to,
   double o[3], d[3];
   if (!vl_camera_unproject(camera, t->pixel[0], t->pixel[1], o, d)) return false;
   for (int k = 0; k < 3; k++) d[k] = t->sky ? t->direction[k] : t->point[k] - o[k];
-  double length = length3(d);
+  double length = vl_norm3(d);
   if (!(length > 0)) return false;
   for (int k = 0; k < 3; k++) {
     to->o[k][to->n] = o[k];
@@ -80,7 +77,7 @@ static bool hides(const vlChannelPass *p, const vlGroundTruthBatch *b, uint32_t 
     o[k] = other->o[k][i];
     cosine += t->normal[k] * other->d[k][i];
   }
-  double size = end + length3(o) + length3(t->point);
+  double size = end + vl_norm3(o) + vl_norm3(t->point);
   return other->distance[i] < end - TOLERANCE * size / fmax(fabs(cosine), LEAST_COSINE);
 }
 

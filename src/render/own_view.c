@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "camera/own_rays.h"
-#include "world/shape/double3.h"
+#include "math/double3.h"
 
 /* Points at a time, and rays for each: the film point itself, and STEP pixels to its left and right, above and below.
  * The error of a derivative is STEP^2 / 6 of the third derivative, 1e-7 where the map changes over 40 pixels. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "scene/check.h"
 #include "scene/solid.h"
 #include "schema/schema.h"
@@ -261,7 +262,7 @@ static Gate gate_of(const vlLightDef *l) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     g.normal[i] = y[j] * x[k] - y[k] * x[j];
   }
-  double length = sqrt(g.normal[0] * g.normal[0] + g.normal[1] * g.normal[1] + g.normal[2] * g.normal[2]);
+  double length = vl_norm3(g.normal);
   for (int i = 0; i < 3; i++) g.normal[i] /= length > 0 ? length : 1;
   return g;
 }

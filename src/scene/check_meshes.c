@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/free.h"
+#include "math/double3.h"
 #include "math/transform.h"
 #include "scene/check.h"
 #include "scene/mesh_solid.h"
@@ -18,13 +19,9 @@
 
 static bool has_no_area(const float *p, const uint32_t *f) {
   if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) return true;
-  double e[2][3], g = 0;
-  for (int k = 0; k < 3; k++) {
-    e[0][k] = (double)p[3 * (size_t)f[1] + (size_t)k] - (double)p[3 * (size_t)f[0] + (size_t)k];
-    e[1][k] = (double)p[3 * (size_t)f[2] + (size_t)k] - (double)p[3 * (size_t)f[0] + (size_t)k];
-  }
-  g += fabs(e[0][1] * e[1][2] - e[0][2] * e[1][1]) + fabs(e[0][2] * e[1][0] - e[0][0] * e[1][2]);
-  return g + fabs(e[0][0] * e[1][1] - e[0][1] * e[1][0]) == 0;
+  double n[3];
+  vl_triangle_normal(p + 3 * (size_t)f[0], p + 3 * (size_t)f[1], p + 3 * (size_t)f[2], n);
+  return fabs(n[0]) + fabs(n[1]) + fabs(n[2]) == 0;
 }
 
 /* Reports the number of wrong faces. Below one percent it is a note, otherwise a warning, because nearly every exported

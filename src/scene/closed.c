@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "schema/schema.h"
@@ -45,10 +46,6 @@ typedef struct Survey {
   Seen seen[RAYS];
 } Survey;
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void corner(const vlShapeDef *d, size_t face, int k, double p[3]) {
   const float *v = d->positions + 3 * (size_t)d->indices[3 * face + (size_t)k];
   for (int i = 0; i < 3; i++) p[i] = v[i];
@@ -61,7 +58,7 @@ static void face_normal(const double p[3][3], double n[3]) {
     a[i] = p[1][i] - p[0][i];
     b[i] = p[2][i] - p[0][i];
   }
-  for (int i = 0; i < 3; i++) n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  vl_cross3(a, b, n);
 }
 
 /* ---- rays -------------------------------------------------------------------------------------------------------- */
@@ -88,11 +85,11 @@ static void meet_block(const Placed *p, size_t first, const double o[3], const d
     double c[3][3], n[3], q[3], r[3];
     for (int k = 0; k < 3; k++) corner(p->def, face, k, c[k]);
     face_normal((const double(*)[3])c, n);
-    double along = dot(n, d);
+    double along = vl_dot3(n, d);
     for (int i = 0; i < 3; i++) q[i] = o[i] - c[0][i];
-    double t = -dot(n, q) / along;
+    double t = -vl_dot3(n, q) / along;
     if (!(t > 0 && t < seen->t)) continue;
-    for (int i = 0; i < 3; i++) r[i] = q[(i + 1) % 3] * d[(i + 2) % 3] - q[(i + 2) % 3] * d[(i + 1) % 3];
+    vl_cross3(q, d, r);
     double u = 0, v = 0;
     for (int i = 0; i < 3; i++) {
       u -= (c[2][i] - c[0][i]) * r[i];
@@ -254,7 +251,7 @@ static bool is_convex(const vlShapeDef *d) {
     for (size_t i = 0; i < d->vertices; i += vertex_step) {
       double q[3] = {(double)d->positions[3 * i] - c[0][0], (double)d->positions[3 * i + 1] - c[0][1],
                      (double)d->positions[3 * i + 2] - c[0][2]};
-      double away = dot(n, q);
+      double away = vl_dot3(n, q);
       low = away < low ? away : low;
       high = away > high ? away : high;
       length = high - low;
@@ -275,7 +272,7 @@ static bool normals_disagree(const Placed *p) {
     face_normal((const double(*)[3])c, n);
     const float *own = d->normals + 3 * (size_t)d->indices[3 * face];
     const double v[3] = {own[0], own[1], own[2]};
-    against += dot(n, v) < 0;
+    against += vl_dot3(n, v) < 0;
     count++;
   }
   return 2 * against > count;
@@ -399,7 +396,7 @@ static bool stands_between(const vlShapeDef *d, const vlMat4 *m, size_t face, co
     to_eye[i] = eye[i] - c[0][i];
     to_middle[i] = closed->middle[i] - c[0][i];
   }
-  double a = dot(n, to_eye), b = dot(n, to_middle);
+  double a = vl_dot3(n, to_eye), b = vl_dot3(n, to_middle);
   if (closed->inward && (a < 0) == d->reverse_orientation) return false;
   return (a > 0 && b < 0) || (a < 0 && b > 0);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "scene/closed.h"
@@ -27,14 +28,10 @@ typedef struct Frame {
   double sides[4];
 } Frame;
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void widen(void *user, const double p[3]) {
   Frame *f = user;
   double d[3] = {p[0] - f->center[0], p[1] - f->center[1], p[2] - f->center[2]};
-  double x = dot(d, f->right), y = dot(d, f->up), z = dot(d, f->ahead);
+  double x = vl_dot3(d, f->right), y = vl_dot3(d, f->up), z = vl_dot3(d, f->ahead);
   f->sides[0] = fmax(f->sides[0], x - f->tan_x * z);
   f->sides[1] = fmax(f->sides[1], -x - f->tan_x * z);
   f->sides[2] = fmax(f->sides[2], y - f->tan_y * z);
@@ -86,19 +83,19 @@ static const char *choose_view(const vlScene *scene, const vlCompleteDef *def, c
   const double flat = 0.2, half_turn = 3.14159265358979323846;
   mean_normal(scene, n);
   if (y <= flat * fmin(x, z)) {
-    bool below = dot(n, v->up) < -0.1 * sqrt(dot(n, n));
+    bool below = vl_dot3(n, v->up) < -0.1 * vl_norm3(n);
     v->elevation = below ? -0.9 : 0.9;
     v->azimuth = 0.25;
     return below ? "flat: from below" : "flat: from above";
   }
   if (z <= flat * fmin(x, y)) {
-    bool behind = dot(n, v->front) < -0.1 * sqrt(dot(n, n));
+    bool behind = vl_dot3(n, v->front) < -0.1 * vl_norm3(n);
     v->azimuth = (behind ? half_turn : 0) + 0.25;
     v->elevation = 0.15;
     return behind ? "flat: from behind" : "flat: from the front";
   }
   if (x <= flat * fmin(y, z)) {
-    bool left = dot(n, v->right) < -0.1 * sqrt(dot(n, n));
+    bool left = vl_dot3(n, v->right) < -0.1 * vl_norm3(n);
     v->azimuth = left ? -0.5 * half_turn - 0.25 : 0.5 * half_turn - 0.25;
     v->elevation = 0.15;
     return left ? "flat: from the left" : "flat: from the right";
@@ -138,8 +135,7 @@ static void frame_camera(vlScene *scene, const View *v, const vlExtent *box, con
     f.ahead[i] = -(ce * (ca * v->front[i] + sa * v->right[i]) + se * v->up[i]);
     f.right[i] = ca * v->right[i] - sa * v->front[i];
   }
-  for (int i = 0; i < 3; i++)
-    f.up[i] = f.right[(i + 1) % 3] * f.ahead[(i + 2) % 3] - f.right[(i + 2) % 3] * f.ahead[(i + 1) % 3];
+  vl_cross3(f.right, f.ahead, f.up);
   for (int i = 0; i < 4; i++) f.sides[i] = -INFINITY;
   vl_extent_visit(scene, boxes, without, widen, &f);
   double x = 0, y = 0, d = 1;
@@ -239,7 +235,7 @@ static bool add_ground(vlScene *scene, const View *v, const vlExtent *box, bool 
     double corner[3] = {k & 1 ? box->low[0] : box->high[0], k & 2 ? box->low[1] : box->high[1],
                         k & 4 ? box->low[2] : box->high[2]};
     for (int i = 0; i < 3; i++) corner[i] -= center[i];
-    lowest = fmin(lowest, dot(corner, v->up));
+    lowest = fmin(lowest, vl_dot3(corner, v->up));
   }
   if (!isfinite(lowest)) lowest = 0;
   vlMaterialDef material = vl_default_material_def(VL_MATERIAL_DIFFUSE);

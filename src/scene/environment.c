@@ -7,6 +7,7 @@
 
 #include "image/image.h"
 #include "math/approx_double.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/octahedral.h"
 #include "velo/light.h"
@@ -23,7 +24,7 @@ bool vl_scene_axes(const vlCompleteDef *def, double right[3], double up[3], doub
     f += front[i] * front[i];
   }
   for (int i = 0; i < 3; i++) front[i] /= f > 0 ? sqrt(f) : 1;
-  for (int i = 0; i < 3; i++) right[i] = up[(i + 1) % 3] * front[(i + 2) % 3] - up[(i + 2) % 3] * front[(i + 1) % 3];
+  vl_cross3(up, front, right);
   return l > 0 && f > 1e-12 && isfinite(l + f);
 }
 

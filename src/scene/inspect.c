@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "color/color.h"
+#include "math/double3.h"
 #include "scene/lamps.h"
 #include "scene/solid.h"
 #include "schema/schema.h"
@@ -59,10 +60,8 @@ static double triangle_area(const double p[3][3]) {
     e[0][k] = p[1][k] - p[0][k];
     e[1][k] = p[2][k] - p[0][k];
   }
-  n[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
-  n[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
-  n[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
-  return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  vl_cross3(e[0], e[1], n);
+  return 0.5 * vl_norm3(n);
 }
 
 /* Area of a shape. Patches count as two triangles; quadrics as if their transform scaled uniformly. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/free.h"
+#include "math/double3.h"
 #include "math/transform.h"
 #include "schema/schema.h"
 #include "velo/shape.h"
@@ -63,17 +64,16 @@ static void weld(const vlShapeDef *d, vlMeshSolid *b, uint32_t *table, uint32_t 
  * in rendering. */
 static bool is_turned(const vlShapeDef *d, const uint32_t *f, int k1, int k2, bool mirrored) {
   if (!d->normals) return d->reverse_orientation != mirrored;
-  double e[2][3], n[3] = {0, 0, 0}, g[3];
   const int corner[3] = {0, k1, k2};
-  for (int k = 0; k < 3; k++) {
-    e[0][k] = (double)d->positions[3 * (size_t)f[k1] + (size_t)k] - (double)d->positions[3 * (size_t)f[0] + (size_t)k];
-    e[1][k] = (double)d->positions[3 * (size_t)f[k2] + (size_t)k] - (double)d->positions[3 * (size_t)f[0] + (size_t)k];
-    for (int j = 0; j < 3; j++) n[k] += (double)d->normals[3 * (size_t)f[corner[j]] + (size_t)k];
+  const float *p[3];
+  double n[3] = {0, 0, 0}, g[3];
+  for (int j = 0; j < 3; j++) {
+    size_t vertex = 3 * (size_t)f[corner[j]];
+    p[j] = d->positions + vertex;
+    for (int k = 0; k < 3; k++) n[k] += (double)d->normals[vertex + (size_t)k];
   }
-  g[0] = e[0][1] * e[1][2] - e[0][2] * e[1][1];
-  g[1] = e[0][2] * e[1][0] - e[0][0] * e[1][2];
-  g[2] = e[0][0] * e[1][1] - e[0][1] * e[1][0];
-  bool against = g[0] * n[0] + g[1] * n[1] + g[2] * n[2] < 0;
+  vl_triangle_normal(p[0], p[1], p[2], g);
+  bool against = vl_dot3(g, n) < 0;
   /* The test above is in shape space. A mirroring transform to group space reverses the winding. The normals are
    * reversed only by reverse_orientation. */
   return against != (d->reverse_orientation != mirrored);
@@ -275,10 +275,7 @@ static bool find_parts(const vlScene *scene, vlMeshSolid *b, const Edges *e) {
         part->high[k] = p[j][k] > part->high[k] ? p[j][k] : part->high[k];
       }
     }
-    part->volume +=
-        (v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
-         v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0])) /
-        6;
+    part->volume += vl_triple3(v[0], v[1], v[2]) / 6;
   }
   for (uint32_t i = 0; fine && i <= e->mask; i++)
     if (e->slots[i].count == 1) b->parts[b->part[e->slots[i].face]].open_edges++;
@@ -310,16 +307,11 @@ int vl_mesh_solid_winding(const vlMeshSolid *b, const double p[3], uint32_t only
     double v[3][3], s[3];
     for (int j = 0; j < 3; j++)
       for (int k = 0; k < 3; k++) v[j][k] = b->points[3 * (size_t)f[j] + (size_t)k] - p[k];
-    for (int j = 0; j < 3; j++) { /* finds on which side of each edge the ray passes */
-      const double *x = v[j], *y = v[(j + 1) % 3];
-      s[j] =
-          d[0] * (x[1] * y[2] - x[2] * y[1]) + d[1] * (x[2] * y[0] - x[0] * y[2]) + d[2] * (x[0] * y[1] - x[1] * y[0]);
-    }
+    for (int j = 0; j < 3; j++)
+      s[j] = vl_triple3(d, v[j], v[(j + 1) % 3]); /* on which side of each edge the ray passes */
     bool out = s[0] > 0 && s[1] > 0 && s[2] > 0, in = s[0] < 0 && s[1] < 0 && s[2] < 0;
     if (!out && !in) continue;
-    double volume = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
-                    v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
-                    v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
+    double volume = vl_triple3(v[0], v[1], v[2]);
     if (out && volume > 0) winding++; /* the ray leaves through the front side, ahead of p */
     if (in && volume < 0) winding--;
   }

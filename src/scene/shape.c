@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cookie.h"
+#include "math/double3.h"
 #include "math/motion.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
@@ -216,8 +217,7 @@ static bool check_shape(vlScene *scene, vlShapeDef *d) {
       bad(scene, d, "transform of the shape is not finite");
       return false;
     }
-  double det =
-      m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+  double det = vl_determinant3(m);
   if (det == 0.0 || !isfinite(det)) {
     bad(scene, d, "transform of the shape is singular: it flattens the shape");
     return false;

@@ -12,11 +12,11 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
+#include "math/double3.h"
 #include "velo/velo.h"
 #include "world/accel/bvh.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"
-#include "world/shape/double3.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"

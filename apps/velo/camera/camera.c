@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/header.h"
 #include "image/image.h"
 #include "render/output_names.h"
@@ -65,13 +66,8 @@ const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
                                   {"matrix", VL_CAMERA_DIALECT_MATRIX},
                                   {NULL, 0}};
 
-static bool ends_with(const char *text, const char *suffix) {
-  size_t n = strlen(text), m = strlen(suffix);
-  return n >= m && strcasecmp(text + n - m, suffix) == 0;
-}
-
 bool camera_is_scene(const char *path) {
-  return ends_with(path, ".pbrt") || ends_with(path, ".pbrt.gz");
+  return text_ends_with(path, ".pbrt") || text_ends_with(path, ".pbrt.gz");
 }
 
 static int load_scene_camera(vlContext *context, const char *path, vlCameraRecord *record) {
@@ -114,7 +110,7 @@ int camera_load(vlContext *context, const char *path, int dialect, const char *f
                 const OptionValue *fallback, vlCameraRecord *record) {
   bool sized = size && size->given;
   const OptionValue *taken = sized ? size : fallback && fallback->given ? fallback : NULL;
-  if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && ends_with(path, ".exr")))
+  if (dialect == VL_CAMERA_DIALECT_EXR || (!dialect && text_ends_with(path, ".exr")))
     return sized ? has_size(path) : load_image_camera(context, path, record);
   if (dialect == VL_CAMERA_DIALECT_PBRT || (!dialect && camera_is_scene(path)))
     return sized ? has_size(path) : load_scene_camera(context, path, record);

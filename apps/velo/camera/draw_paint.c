@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/draw.h"
+#include "cli/vector.h"
 
 /* How a part is drawn: width in units of the pen, opacity of its faces. */
 typedef struct Style {
@@ -109,7 +110,7 @@ static bool face_point(const Canvas *c, double x, double y, double point[3]) {
     u[i] = q[6 + i] - q[i];
     v[i] = q[9 + i] - q[3 + i];
   }
-  for (int i = 0; i < 3; i++) n[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+  vector_cross(u, v, n);
   if (!vl_camera_unproject(&c->outside->camera, x, y, o, d)) return false;
   for (int i = 0; i < 3; i++) {
     along += n[i] * d[i];

@@ -4,23 +4,11 @@
 #include <string.h>
 
 #include "camera/draw.h"
+#include "cli/vector.h"
 #include "render/denoised.h"
 #include "render/exposure.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void normalize(double v[3]) {
-  double length = sqrt(dot(v, v));
-  for (int i = 0; i < 3; i++) v[i] /= length;
-}
-
-static void cross(const double a[3], const double b[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
 
 /* ---- what the camera sees ---------------------------------------------------------------------------------------- */
 
@@ -99,12 +87,12 @@ static void choose_direction(const vlCamera *of, const double up[3], const Outsi
   const double *m = of->world_from_camera;
   for (int k = 0; k < 2; k++) { /* a camera that looks straight up or down: its image's up is the level direction */
     for (int i = 0; i < 3; i++) level[i] = k ? -m[4 * i + 1] : m[4 * i + 2];
-    double along = dot(level, up);
+    double along = vector_dot(level, up);
     for (int i = 0; i < 3; i++) level[i] -= along * up[i];
-    if (dot(level, level) > 1e-4 * (m[2] * m[2] + m[6] * m[6] + m[10] * m[10])) break;
+    if (vector_dot(level, level) > 1e-4 * (m[2] * m[2] + m[6] * m[6] + m[10] * m[10])) break;
   }
-  normalize(level);
-  cross(level, up, right);
+  vector_normalize(level);
+  vector_cross(level, up, right);
   double a = def->azimuth * degree, e = def->elevation * degree;
   for (int i = 0; i < 3; i++) d[i] = cos(e) * (cos(a) * level[i] + sin(a) * right[i]) + sin(e) * up[i];
 }
@@ -117,7 +105,7 @@ typedef struct Bounds {
 static void bound(const vlCamera *c, const double point[3], Bounds *b) {
   const double *m = c->camera_from_world;
   double q[3];
-  for (int i = 0; i < 3; i++) q[i] = dot(m + 4 * i, point) + m[4 * i + 3];
+  for (int i = 0; i < 3; i++) q[i] = vector_dot(m + 4 * i, point) + m[4 * i + 3];
   if (!(q[2] > 0)) return;
   for (int k = 0; k < 2; k++) {
     double f = k ? c->fy : c->fx, t = f * q[k] / q[2];

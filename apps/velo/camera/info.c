@@ -5,6 +5,7 @@
 #include "camera/camera.h"
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "image/image.h"
 
 enum { INFO_JSON, INFO_FRAME, INFO_SIZE };
@@ -15,8 +16,7 @@ static const double degrees = 180.0 / 3.14159265358979323846;
 static double angle_between(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
   if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
-  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-  return atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+  return vector_angle(a, b);
 }
 
 /* Angle between two opposite edges of the image. It is the sum of the angles between each edge and the principal

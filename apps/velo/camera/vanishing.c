@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/json.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "image/image.h"
 #include "image/overlay.h"
 #include "render/output_names.h"
@@ -86,26 +87,13 @@ static void say_text(const vlCamera *c, const vlVanishingPoints *v) {
 
 /* ---- what is drawn ----------------------------------------------------------------------------------------------- */
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static void normalize(double v[3]) {
-  double length = sqrt(dot(v, v));
-  for (int i = 0; i < 3; i++) v[i] /= length;
-}
-
 /* Two unit vectors orthogonal to d and to each other. */
 static void basis_of(const double d[3], double a[3], double b[3]) {
   const double other[3] = {fabs(d[0]) < 0.7, fabs(d[0]) >= 0.7, 0.0};
-  cross(d, other, a);
-  normalize(a);
-  cross(d, a, b);
-  normalize(b);
+  vector_cross(d, other, a);
+  vector_normalize(a);
+  vector_cross(d, a, b);
+  vector_normalize(b);
 }
 
 /* Draws lines parallel to d. Each lies in a plane through the camera centre that contains d; `count` such planes are
@@ -135,9 +123,9 @@ static void draw_world_line(Overlay *o, const vlCamera *c, const double point[3]
     return;
   }
   for (int i = 0; i < 3; i++) n[i] = point[i] - eye[i];
-  double along = dot(n, d);
+  double along = vector_dot(n, d);
   for (int i = 0; i < 3; i++) n[i] -= along * d[i];
-  double height = sqrt(dot(n, n));
+  double height = vector_length(n);
   if (!(height > 0.0)) return; /* the line passes through the camera centre and projects to a point */
   for (int i = 0; i < 3; i++) n[i] /= height;
   overlay_arc(o, c, d, n, atan2(s0 + along, height), atan2(s1 + along, height), width);
@@ -152,8 +140,8 @@ static void draw_grid(Overlay *o, const vlCamera *c, const double up[3], double 
   const double *const sides[2][2] = {{a, b}, {b, a}};
   for (int k = 0; k < 2; k++) {
     const double *d = sides[k][0], *e = sides[k][1];
-    double middle_d = floor(dot(eye, d) / spacing + 0.5) * spacing;
-    double middle_e = floor(dot(eye, e) / spacing + 0.5) * spacing;
+    double middle_d = floor(vector_dot(eye, d) / spacing + 0.5) * spacing;
+    double middle_e = floor(vector_dot(eye, e) / spacing + 0.5) * spacing;
     for (int i = -REACH; i <= REACH; i++) {
       for (int j = 0; j < 3; j++) p[j] = (middle_e + i * spacing) * e[j] + level * up[j];
       draw_world_line(o, c, p, d, middle_d - REACH * spacing, middle_d + REACH * spacing, width);
@@ -317,13 +305,13 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
   double up[3] = {0, 1, 0}, grid[2] = {0, 0};
   if (v[V_FROM].given) return run_inverse(arguments);
   if (arguments->operand_count != 1) return report_usage("camera vanishing takes one FILE, or --from and points");
-  if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(dot(up, up) > 0.0)))
+  if (v[V_UP].given && (!parse_numbers(v[V_UP].text, 3, up) || !(vector_dot(up, up) > 0.0)))
     return report_usage("--up \"%s\": a direction is x,y,z", v[V_UP].text);
   if (v[V_OVERLAY].given != v[V_OUT].given) return report_usage("--overlay IMAGE and -o RESULT go together");
   if (v[V_GRID].given && !parse_numbers(v[V_GRID].text, 2, grid) && !parse_numbers(v[V_GRID].text, 1, grid))
     return report_usage("--grid takes SPACING or SPACING,HEIGHT");
   if (v[V_GRID].given && !(grid[0] > 0.0)) return report_usage("--grid: the spacing must be above zero");
-  normalize(up);
+  vector_normalize(up);
   vlContext *context = NULL;
   vlCameraRecord record;
   vlCamera camera;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "camera/verify.h"
+#include "cli/vector.h"
 
 /* Computes *r, the distance from the principal point in focal lengths, for a direction at `angle` radians from the
  * axis. Returns false outside the projection's domain. */
@@ -20,7 +21,7 @@ static bool fisheye(vlProjection projection, double angle, double *r) {
 
 /* pbrt book 3.8.3, EqualAreaSphereToSquare; here the square is [-1, 1]^2. */
 static void equal_area(const double p[3], double plane[2]) {
-  double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+  double length = vector_length(p);
   double x = fabs(p[0]) / length, y = fabs(p[1]) / length, z = fabs(p[2]) / length;
   double r = sqrt((x * x + y * y) / (1.0 + z)), phi = 2.0 / M_PI * atan2(y, x);
   double v = phi * r, u = r - v;
@@ -41,9 +42,9 @@ static void cube(bool as_cross, const double p[3], double plane[2]) {
   static const double down[6][3] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
   double most = -1.0;
   for (int face = 0; face < 6; face++) {
-    double z = ahead[face][0] * p[0] + ahead[face][1] * p[1] + ahead[face][2] * p[2];
-    double x = right[face][0] * p[0] + right[face][1] * p[1] + right[face][2] * p[2];
-    double y = down[face][0] * p[0] + down[face][1] * p[1] + down[face][2] * p[2];
+    double z = vector_dot(ahead[face], p);
+    double x = vector_dot(right[face], p);
+    double y = vector_dot(down[face], p);
     if (z <= most) continue;
     most = z;
     plane[0] = (as_cross ? at[face][0] : face) + 0.5 * (x / z + 1.0);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "camera/verify.h"
+#include "cli/vector.h"
 
 /* A marker fills the middle 6 x 6 of a white square's 10 x 10 cells: a black frame around 4 x 4 bits. */
 enum { CELLS = 10, FRAME = 2, BITS = 4, MAX_QUADS = 8192 };
@@ -115,13 +116,6 @@ double target_choose(Target *target, const vlCamera *camera) {
   return side;
 }
 
-static void cross(const double a[3], const double b[3], double r[3]) {
-  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-static double length3(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* The world point at a distance along the ray of film point (x, y). */
 static bool point_at(const vlCamera *c, double x, double y, double distance, double p[3], double direction[3]) {
   double origin[3];
@@ -135,8 +129,8 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
   const double *m = camera->world_from_camera;
   const double eye[3] = {m[3], m[7], m[11]};
   /* comparable to the distance of the world's origin, to preserve precision */
-  double distance = fmax(1.0, length3(eye)) * (1.0 + random_unit(random)), direction[3], other[3], left[3], right[3],
-         above[3], below[3], u[3], v[3], n[3];
+  double distance = fmax(1.0, vector_length(eye)) * (1.0 + random_unit(random)), direction[3], other[3], left[3],
+         right[3], above[3], below[3], u[3], v[3], n[3];
   double turn = 2.0 * M_PI * random_unit(random), tilt = 0.6 * random_unit(random);
   double lean = 2.0 * M_PI * random_unit(random);
   if (!point_at(camera, x, y, distance, placement->center, direction) ||
@@ -147,8 +141,8 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
     u[a] = right[a] - left[a];
     v[a] = below[a] - above[a];
   }
-  cross(u, v, n);
-  double area = length3(n), size = side * sqrt(area);
+  vector_cross(u, v, n);
+  double area = vector_length(n), size = side * sqrt(area);
   /* a flat board cannot fill a hemisphere */
   double widest = 1.1 * distance / (target->corners + 1);
   if (camera->projection != VL_PROJECTION_ORTHOGRAPHIC && size > widest) size = widest;
@@ -157,10 +151,10 @@ bool target_place(const Target *target, const vlCamera *camera, double x, double
   double along = 0.0;
   for (int a = 0; a < 3; a++) along += u[a] * direction[a];
   for (int a = 0; a < 3; a++) u[a] -= along * direction[a];
-  double lu = length3(u);
+  double lu = vector_length(u);
   if (!(lu > 0.0)) return false;
   for (int a = 0; a < 3; a++) u[a] /= lu;
-  cross(direction, u, v);
+  vector_cross(direction, u, v);
   double c = cos(turn), s = sin(turn);
   for (int a = 0; a < 3; a++) {
     /* axes of the tilt: e stays; f is foreshortened and tilts away from the camera */

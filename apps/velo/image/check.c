@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "image/check.h"
 #include "image/header.h"
 #include "image/image.h"
@@ -22,9 +23,6 @@ void check_note(Check *c, int rule, double error) {
   r->y = c->y;
 }
 
-double check_length3(const double v[3]) {
-  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 void check_load3(const Check *c, int channel, double v[3]) {
   for (int k = 0; k < 3; k++) v[k] = c->pixel[channel + k];
 }
@@ -40,7 +38,7 @@ bool check_is_hit(const Check *c) {
   if (vector < 0) vector = c->p; /* the length of the world's position is then not included */
   if (vector < 0) return true;
   check_load3(c, vector, v);
-  return check_length3(v) != 0;
+  return vector_length(v) != 0;
 }
 
 /* ---- what there is ----------------------------------------------------------------------------------------------- */

@@ -75,7 +75,6 @@ enum { CHECK_OBJECTS = 1 << 20 }; /* larger object ids are not recorded */
 
 void check_note(Check *c, int rule, double error);
 void check_load3(const Check *c, int channel, double v[3]);
-double check_length3(const double v[3]);
 /* Returns whether the pixel shows a surface, according to any channel that tells. Returns true if no channel tells. */
 bool check_is_hit(const Check *c);
 /* check_pixel.c */

@@ -1,6 +1,7 @@
 /* image/check_flow.c: whether flow leads to the same point in the other image. */
 #include <math.h>
 
+#include "cli/vector.h"
 #include "image/check.h"
 
 /* Computes the world point that the pixel shows. For a pixel without a hit, it is a distant point on the ray. */
@@ -9,7 +10,7 @@ static bool find_point(const Check *c, bool hit, double p[3]) {
   if (!vl_camera_unproject(&c->camera, c->point[0], c->point[1], origin, direction)) return false;
   if (!hit) {
     const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
-    for (int k = 0; k < 3; k++) p[k] = eye[k] + 1e6 * (1 + check_length3(eye)) * direction[k];
+    for (int k = 0; k < 3; k++) p[k] = eye[k] + 1e6 * (1 + vector_length(eye)) * direction[k];
     return c->other_camera.projection != VL_PROJECTION_ORTHOGRAPHIC;
   }
   if (c->distance >= 0) {
@@ -48,7 +49,7 @@ static void compare_distances(Check *c, int hidden, const double at[2], bool hit
   if (c->other_distance < 0 || hidden > VL_HIDDEN_BEHIND || !around(c, at, &nearest, &farthest)) return;
   if (!vl_camera_unproject(&c->other_camera, at[0], at[1], origin, direction)) return;
   for (int k = 0; k < 3; k++) away[k] = p[k] - origin[k];
-  double distance = hit ? check_length3(away) : (double)INFINITY;
+  double distance = hit ? vector_length(away) : (double)INFINITY;
   c->flow_seen++;
   c->flow_wrong += hidden == VL_HIDDEN_BEHIND ? nearest >= distance : farthest < distance * 0.99;
 }
@@ -59,8 +60,8 @@ static void compare_distances(Check *c, int hidden, const double at[2], bool hit
  * relative error of p that would explain it. */
 static double pixels_of_rounding(const Check *c, const double p[3], const double at[2]) {
   const double *m = c->other_camera.world_from_camera, eye[3] = {m[3], m[7], m[11]};
-  double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]}, near = check_length3(away), largest = 0;
-  double size = fmax(fmax(check_length3(p), check_length3(eye)), near), step = 1e-7 * near;
+  double away[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]}, near = vector_length(away), largest = 0;
+  double size = fmax(fmax(vector_length(p), vector_length(eye)), near), step = 1e-7 * near;
   for (int k = 0; k < 3 && step > 0; k++) {
     double moved[3] = {p[0], p[1], p[2]}, there[2], z;
     moved[k] += step;

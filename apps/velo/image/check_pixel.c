@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/vector.h"
 #include "image/check.h"
 
 static void check_miss(Check *c, bool in_domain, const double direction[3]) {
@@ -12,7 +13,7 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
     if (vectors[i] < 0) continue;
     check_load3(c, vectors[i], v);
-    if (check_length3(v) != 0) wrong = INFINITY;
+    if (vector_length(v) != 0) wrong = INFINITY;
   }
   if (c->z >= 0 && c->pixel[c->z] != INFINITY) wrong = INFINITY;
   if (c->distance >= 0 && c->pixel[c->distance] != INFINITY) wrong = INFINITY;
@@ -20,7 +21,7 @@ static void check_miss(Check *c, bool in_domain, const double direction[3]) {
   if (c->ray < 0) return;
   check_load3(c, c->ray, v);
   for (int k = 0; k < 3 && in_domain; k++) v[k] -= direction[k];
-  check_note(c, RULE_RAY, check_length3(v));
+  check_note(c, RULE_RAY, vector_length(v));
 }
 
 /* Errors are relative to the largest number involved, which bounds the rounding of floats. */
@@ -36,24 +37,24 @@ static void check_point(Check *c, const double origin[3], const double direction
     for (int k = 0; k < 3; k++) p[k] = origin[k] + t * ray[k];
   if (c->p < 0 && c->distance < 0) return;
   double away[3] = {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
-  double size = fmax(fmax(check_length3(p), check_length3(origin)), check_length3(away));
+  double size = fmax(fmax(vector_length(p), vector_length(origin)), vector_length(away));
   if (c->p >= 0 && c->distance >= 0) {
     double off[3];
     for (int k = 0; k < 3; k++) off[k] = p[k] - (origin[k] + t * ray[k]);
-    check_note(c, RULE_POINT, check_length3(off) / size);
+    check_note(c, RULE_POINT, vector_length(off) / size);
   }
   double pixel[2], z;
   bool seen = vl_camera_project(&c->camera, p, pixel, &z);
   if (c->z >= 0) {
     const double *m = c->camera.camera_from_world;
-    double scale = check_length3((double[3]){m[8], m[9], m[10]});
+    double scale = vector_length((double[3]){m[8], m[9], m[10]});
     z = m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11];
     check_note(c, RULE_DEPTH, fabs(c->pixel[c->z] - z) / (scale * size));
   }
   double error = seen ? hypot(pixel[0] - c->point[0], pixel[1] - c->point[1]) : INFINITY;
   if (error > c->pixel_error) c->pixel_error = error;
   double larger = c->camera.width > c->camera.height ? c->camera.width : c->camera.height;
-  check_note(c, RULE_PIXEL, error / larger * fmin(1, check_length3(away) / size));
+  check_note(c, RULE_PIXEL, error / larger * fmin(1, vector_length(away) / size));
 }
 
 /* Checks channels that only have to be finite, and reads the film point. */
@@ -102,17 +103,17 @@ void check_pixel(Check *c) {
   if (c->ray >= 0) {
     check_load3(c, c->ray, v);
     for (int k = 0; k < 3; k++) v[k] -= direction[k];
-    check_note(c, RULE_RAY, in_domain ? check_length3(v) : INFINITY);
+    check_note(c, RULE_RAY, in_domain ? vector_length(v) : INFINITY);
   }
   check_material_of(c);
   check_point(c, origin, direction);
   if (c->n >= 0) {
     check_load3(c, c->n, v);
-    check_note(c, RULE_UNIT_N, fabs(check_length3(v) - 1));
+    check_note(c, RULE_UNIT_N, fabs(vector_length(v) - 1));
   }
   if (c->ng >= 0) {
     check_load3(c, c->ng, v);
-    check_note(c, RULE_UNIT_NG, fabs(check_length3(v) - 1));
+    check_note(c, RULE_UNIT_NG, fabs(vector_length(v) - 1));
   }
   const int ids[] = {c->object, c->material, c->primitive};
   for (size_t i = 0; i < sizeof ids / sizeof *ids; i++)

@@ -5,6 +5,7 @@
 #include "cli/commands.h"
 #include "cli/context.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "image/image.h"
 #include "render/receipt.h"
 
@@ -97,11 +98,6 @@ static double shown(const vlAttribute *a, int i) {
   return a->numbers[i];
 }
 
-/* Prints a string of the file on one line, without control characters. */
-static void print_plain(const char *text) {
-  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-}
-
 /* Prints a word of a command, quoted if a shell would split it. */
 static void print_word(const char *word) {
   bool plain = *word && !word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+,-./:=@_%")];
@@ -122,9 +118,9 @@ static void print_receipt(const vlReceipt *receipt) {
   uint32_t planned, samples = vl_receipt_samples(receipt, &planned), files = 0;
   vlFileRecord record;
   printf("receipt\n  velo        ");
-  print_plain(version);
+  text_print_plain(version);
   if (*commit) printf(", commit ");
-  print_plain(commit);
+  text_print_plain(commit);
   printf("\n  command    ");
   for (uint32_t i = 0; (word = vl_receipt_command(receipt, i)); i++) print_word(word);
   printf("\n  samples     %u per pixel", samples);
@@ -135,7 +131,7 @@ static void print_receipt(const vlReceipt *receipt) {
     printf("    ");
     for (int k = 0; k < 16; k++) printf("%02x", record.digest[k]);
     printf(" %12llu  ", (unsigned long long)record.size);
-    print_plain(record.path);
+    text_print_plain(record.path);
     putchar('\n');
   }
 }
@@ -146,7 +142,7 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
   printf("channels    %u:", vl_image_channels(image));
   for (uint32_t i = 0; i < vl_image_channels(image); i++) {
     putchar(' ');
-    print_plain(vl_image_channel_name(image, i));
+    text_print_plain(vl_image_channel_name(image, i));
   }
   if (!is_mixed(image))
     printf("\ntype        %s, %s\n", type_name(vl_image_type(image)), encoding_name(vl_image_encoding(image)));
@@ -157,7 +153,7 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
       if (!any) printf("\ntype        %s:", type_name((vlPixelType)type));
       any = true;
       putchar(' ');
-      print_plain(vl_image_channel_name(image, i));
+      text_print_plain(vl_image_channel_name(image, i));
     }
   }
   if (is_mixed(image)) putchar('\n');
@@ -167,13 +163,13 @@ static void print_text(const char *path, const vlImage *image, const vlReceipt *
     vlAttribute a;
     if (vl_image_attribute(image, i, &a) != VL_OK) continue;
     printf("  ");
-    print_plain(a.name);
+    text_print_plain(a.name);
     printf("%*s", (int)(strlen(a.name) < 26 ? 26 - strlen(a.name) : 1), "");
     if (strcmp(a.name, RECEIPT_ATTRIBUTE) == 0 && receipt) {
       puts("(below)");
       continue;
     }
-    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) print_plain(a.string ? a.string : "");
+    if (a.type == VL_ATTRIBUTE_STRING || a.type == VL_ATTRIBUTE_STRINGS) text_print_plain(a.string ? a.string : "");
     for (int k = 0; k < number_count(a.type); k++) {
       char text[40];
       format_number(text, sizeof text, shown(&a, k));

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/kinds.h"
+#include "cli/vector.h"
 #include "render/receipt.h"
 
 typedef struct Header {
@@ -53,15 +54,6 @@ static void set_matrix(Header *header, const char *name, vlAttributeType type, c
   set(header, name, type, transposed, 16, NULL);
 }
 
-static void multiply(const double a[16], const double b[16], double result[16]) {
-  for (int row = 0; row < 4; row++)
-    for (int column = 0; column < 4; column++) {
-      double sum = 0;
-      for (int k = 0; k < 4; k++) sum += a[4 * row + k] * b[4 * k + column];
-      result[4 * row + column] = sum;
-    }
-}
-
 /* Whether straight lines project to straight lines, so that matrices and a focal length describe the camera completely.
  */
 static bool is_linear(const vlCamera *c) {
@@ -75,14 +67,14 @@ static bool is_linear(const vlCamera *c) {
 static void set_camera_matrices(Header *header, const vlCamera *c) {
   static const double up_from_down[16] = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   double m[16], w = c->width, h = c->height;
-  multiply(up_from_down, c->camera_from_world, m);
+  matrix_multiply(up_from_down, c->camera_from_world, m);
   set_matrix(header, "worldToCamera", VL_ATTRIBUTE_M44F, m);
   if (!is_linear(c)) return;
   const double perspective[16] = {c->fx / w, c->skew / w, c->cx / w, 0, 0, c->fy / h, c->cy / h, 0,
                                   0,         0,           0,         1, 0, 0,         1,         0};
   const double orthographic[16] = {c->fx / w, c->skew / w, 0, c->cx / w, 0, c->fy / h, 0, c->cy / h,
                                    0,         0,           1, 0,         0, 0,         0, 1};
-  multiply(c->projection == VL_PROJECTION_PERSPECTIVE ? perspective : orthographic, c->camera_from_world, m);
+  matrix_multiply(c->projection == VL_PROJECTION_PERSPECTIVE ? perspective : orthographic, c->camera_from_world, m);
   set_matrix(header, "worldToNDC", VL_ATTRIBUTE_M44F, m);
 }
 

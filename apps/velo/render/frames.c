@@ -11,6 +11,7 @@
 
 #include "camera/camera.h"
 #include "cli/report.h"
+#include "cli/vector.h"
 #include "render/pattern.h"
 #include "render/shard.h"
 
@@ -53,15 +54,6 @@ int frames_check(const Arguments *arguments, Outputs *outputs) {
 }
 
 /* ---- cameras ----------------------------------------------------------------------------------------------------- */
-
-static void multiply(const double a[16], const double b[16], double result[16]) {
-  double m[16];
-  for (int i = 0; i < 16; i++) {
-    const double *row = a + i / 4 * 4, *column = b + i % 4;
-    m[i] = row[0] * column[0] + row[1] * column[4] + row[2] * column[8] + row[3] * column[12];
-  }
-  memcpy(result, m, sizeof m);
-}
 
 /* Shares the film of an earlier camera with the same film def, or makes one. */
 static int make_film(Frames *frames, vlContext *context, FrameCamera *camera) {
@@ -247,8 +239,8 @@ static vlResult place(const Frames *frames, const Frame *frame, const vlCamera *
   *camera = *from;
   if (!frames->trajectory) return VL_OK;
   memcpy(pose, frame->pose.world_from_camera, sizeof pose);
-  if (frames->rig) multiply(pose, frame->camera->mount, pose);
-  multiply(pose, from->world_from_camera, pose);
+  if (frames->rig) matrix_multiply(pose, frame->camera->mount, pose);
+  matrix_multiply(pose, from->world_from_camera, pose);
   vlResult result = vl_camera_move(from, pose, camera, error);
   if (result == VL_OK && !isnan(frame->pose.time)) {
     camera->shutter_open += frame->pose.time;

@@ -7,6 +7,7 @@
 
 #include "cli/report.h"
 #include "cli/signals.h"
+#include "cli/vector.h"
 
 static const char *const names[] = {"Albedo.R",
                                     "Albedo.G",
@@ -60,12 +61,8 @@ static void turn(const Source *s, const double v[3], double w, double out[3]) {
 static void put(const Source *s, const double v[3], double w, float *out) {
   double turned[3], l = 1;
   turn(s, v, w, turned);
-  if (w == 0.0) l = sqrt(turned[0] * turned[0] + turned[1] * turned[1] + turned[2] * turned[2]);
+  if (w == 0.0) l = vector_length(turned);
   for (int i = 0; i < 3; i++) out[i] = l > 0 ? (float)(turned[i] / l) : 0.0f;
-}
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* The absolute change of z from pixel (x, y) to its neighbour (nx, ny) on the tangent plane of the surface at p with
@@ -80,7 +77,7 @@ static double slope(const Source *s, uint32_t x, uint32_t y, uint32_t nx, uint32
     o[i] = far < 1e30 ? (double)met[i] - far * d[i] : p[i] - distance * (double)own[i];
     way[i] = p[i] - o[i];
   }
-  double across = dot(n, d), t = across != 0.0 ? dot(n, way) / across : 0.0;
+  double across = vector_dot(n, d), t = across != 0.0 ? vector_dot(n, way) / across : 0.0;
   for (int i = 0; i < 3; i++) way[i] = across != 0.0 ? o[i] + t * d[i] - p[i] : 0.0;
   turn(s, way, 0, turned);
   return fabs(turned[2]) < 1e30 ? fabs(turned[2]) * s->shrink : 0.0;
@@ -103,7 +100,7 @@ static void fill(const Source *s, uint32_t x, uint32_t y, float out[COUNT]) {
     ray[i] = (double)at(s, x, y, s->ray)[i];
     out[ALBEDO + i] = at(s, x, y, s->albedo)[i];
   }
-  bool away[2] = {dot(n, ray) > 0, dot(ns, ray) > 0}; /* normals are flipped to face the camera */
+  bool away[2] = {vector_dot(n, ray) > 0, vector_dot(ns, ray) > 0}; /* normals are flipped to face the camera */
   for (int i = 0; i < 3; i++) {
     n[i] = away[0] ? -n[i] : n[i];
     ns[i] = away[1] ? -ns[i] : ns[i];

@@ -9,20 +9,16 @@
 #include <sys/stat.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/job.h"
 #include "render/turn.h"
 
-static bool ends_with(const char *text, const char *suffix) {
-  size_t n = strlen(text), m = strlen(suffix);
-  return n >= m && strcasecmp(text + n - m, suffix) == 0;
-}
-
 bool scene_is_model(const char *path) {
-  return !ends_with(path, ".pbrt") && !ends_with(path, ".pbrt.gz");
+  return !text_ends_with(path, ".pbrt") && !text_ends_with(path, ".pbrt.gz");
 }
 
 bool scene_is_gltf(const char *path) {
-  return ends_with(path, ".gltf") || ends_with(path, ".glb");
+  return text_ends_with(path, ".gltf") || text_ends_with(path, ".glb");
 }
 
 bool scene_camera_is_own(const char *path, const Arguments *arguments) {
@@ -139,7 +135,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   if (v[RENDER_FRAMING].given) complete.framing = (vlFraming)v[RENDER_FRAMING].integer;
   if (v[RENDER_UP].given)
     choose_up((int)v[RENDER_UP].integer, &complete);
-  else if (ends_with(path, ".stl") || ends_with(path, ".stl.gz"))
+  else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
     choose_up(2, &complete);
   opening->environment = complete.environment;
   if (opening->environment == VL_ENVIRONMENT_AUTO)

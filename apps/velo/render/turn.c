@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "cli/vector.h"
+
 /* Sine and cosine of an angle in degrees by their series: the same bits on all machines. */
 static void sine_cosine(double degrees, double *sine, double *cosine) {
   const double turn = fmod(degrees, 360), quarters = floor(turn / 90 + 0.5);
@@ -65,7 +67,7 @@ static void stand_back(vlCameraDef *camera, const double low[3], const double hi
 
 void turn_camera(vlCameraDef *camera, const double low[3], const double high[3], bool automatic, const double up[3],
                  double degrees) {
-  const double length = sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+  const double length = vector_length(up);
   double middle[3], axis[3];
   for (int i = 0; i < 3; i++) {
     axis[i] = length > 0 ? up[i] / length : i == 1;

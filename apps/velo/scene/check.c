@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 
 enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SEARCH, CHECK_SANDBOX };
@@ -86,10 +87,6 @@ static int look(vlContext *context, const Arguments *arguments, List *list) {
   return -1;
 }
 
-static void print_plain(const char *text) {
-  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-}
-
 static const char *const severities[] = {"error", "warning", "note"};
 
 static void print_text(const List *list, const char *path, bool all) {
@@ -100,11 +97,11 @@ static void print_text(const List *list, const char *path, bool all) {
       if ((int)e->severity != severity) continue;
       total[severity]++;
       if (of_kind[severity][e->kind]++ >= SHOWN && !all) continue;
-      print_plain(e->file[0] ? e->file : path);
+      text_print_plain(e->file[0] ? e->file : path);
       if (e->line) printf(":%u", e->line);
       if (e->line && e->column) printf(":%u", e->column);
       printf(": %s: ", severities[severity]);
-      print_plain(e->message);
+      text_print_plain(e->message);
       printf(" [%s]\n", vl_finding_kind_name(e->kind));
     }
   for (int severity = 0; severity < 3; severity++)

@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "render/output_names.h"
 #include "scene/scene.h"
 #include "velo/export.h"
@@ -48,11 +49,6 @@ static void tell(void *user, const char *what, uint64_t count) {
   report_note("not held: %s (%llu)", what, (unsigned long long)count);
 }
 
-static bool ends_with(const char *text, const char *suffix) {
-  size_t n = strlen(text), m = strlen(suffix);
-  return n >= m && strcasecmp(text + n - m, suffix) == 0;
-}
-
 static int run_convert(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *v = arguments->values;
@@ -60,8 +56,8 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   vlContext *context = NULL;
   vlScene *scene = NULL;
   vlError error = {0};
-  bool pbrt = ends_with(to, ".pbrt");
-  if (!pbrt && !ends_with(to, ".gltf") && !ends_with(to, ".glb"))
+  bool pbrt = text_ends_with(to, ".pbrt");
+  if (!pbrt && !text_ends_with(to, ".gltf") && !text_ends_with(to, ".glb"))
     return report_usage("%s: unknown kind of file to write (known: .gltf, .glb, .pbrt)", to);
   int status = scene_context(&context, arguments, report_log, NULL);
   if (status >= 0) return status;

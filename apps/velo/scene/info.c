@@ -11,6 +11,7 @@
 #include "cli/context.h"
 #include "cli/kinds.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user) {
@@ -38,10 +39,6 @@ typedef struct Facts {
   vlCheck *check; /* for the unused definitions */
 } Facts;
 
-void info_print_plain(const char *text) {
-  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-}
-
 static void count(const char *name, uint64_t n) {
   printf("%-12s%llu\n", name, (unsigned long long)n);
 }
@@ -64,7 +61,7 @@ static void print_lights(const Facts *f) {
     if (l.faces > 1) printf(" %llu faces", (unsigned long long)l.faces);
     if (l.source.file) {
       printf("  ");
-      info_print_plain(l.source.file);
+      text_print_plain(l.source.file);
       if (l.source.line) printf(":%u", l.source.line);
     }
     putchar('\n');
@@ -192,7 +189,7 @@ static void print_text(const Facts *f) {
     if (u->kind != VL_FINDING_UNUSED) continue;
     if (!unused++) printf("unused\n");
     printf("  ");
-    info_print_plain(u->message);
+    text_print_plain(u->message);
     if (u->source.line) printf(" (line %u)", u->source.line);
     putchar('\n');
   }

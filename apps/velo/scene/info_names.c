@@ -1,6 +1,7 @@
 /* scene/info_names.c: the names in a scene and what its file lets one choose, for `velo scene info`. */
 #include <stdio.h>
 
+#include "cli/text.h"
 #include "scene/scene.h"
 
 enum { NAMES = 20 }; /* most names listed as text */
@@ -31,7 +32,7 @@ void info_print_names(const vlScene *scene) {
       if (named++ == 0) printf("%s names\n", id_kinds[k].key);
       if (named > NAMES) continue;
       printf("  %-4u ", id);
-      info_print_plain(info.name);
+      text_print_plain(info.name);
       if (info.place) printf("  (%s)", info.place);
       putchar('\n');
     }
@@ -50,7 +51,7 @@ void info_print_choices(const vlScene *scene) {
       printf("%s%u", i ? ", " : ": ", i);
       if (info.name) {
         putchar(' ');
-        info_print_plain(info.name);
+        text_print_plain(info.name);
       }
       if (choice_kinds[k].kind == VL_CHOICE_ANIMATION) printf(" (%g s)", info.seconds);
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 
 enum { SIDE = 256, SPP = 64, MOST = 64 }; /* pixels of the longer side; samples; materials printed */
@@ -89,7 +90,7 @@ static void print_ratios(const Shot *before, const Sums *sums, uint32_t count) {
         printf(" %7s", s->after[c] > 0 ? "inf" : "-");
     if (id) vl_world_id_info(before->world, VL_ID_MATERIAL, id, &info);
     printf("  ");
-    info_print_plain(!id ? "(background)" : info.name ? info.name : info.type ? info.type : "");
+    text_print_plain(!id ? "(background)" : info.name ? info.name : info.type ? info.type : "");
     if (id && !info.name) printf(".%u", id);
     putchar('\n');
   }

@@ -34,7 +34,5 @@ void info_print_names(const vlScene *scene);
 void info_print_choices(const vlScene *scene);
 void info_json_names(Json *json, const vlScene *scene);
 void info_json_choices(Json *json, const vlScene *scene);
-/* info.c: prints text of a file; control characters become ?. */
-void info_print_plain(const char *text);
 
 #endif

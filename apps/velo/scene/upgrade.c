@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 #include "velo/upgrade.h"
 
@@ -40,10 +41,6 @@ static unsigned count_text(List *list, const char *text) {
   return 1;
 }
 
-static void print_plain(const char *text) {
-  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
-}
-
 static void take_note(void *user, vlUpgradeNote note, const vlError *place, const char *message) {
   static const char *const kinds[] = {"", "lost: ", "wrote: "};
   List *list = user;
@@ -51,10 +48,10 @@ static void take_note(void *user, vlUpgradeNote note, const vlError *place, cons
   if (note == VL_UPGRADE_LOST) list->lost++;
   if (list->quiet && note != VL_UPGRADE_LOST) return;
   if (note == VL_UPGRADE_CHANGED && count_text(list, message) > SHOWN && !list->all) return;
-  print_plain(place->file);
+  text_print_plain(place->file);
   if (place->line) printf(":%u", place->line);
   printf(": %s", kinds[note]);
-  print_plain(message);
+  text_print_plain(message);
   putchar('\n');
 }
 

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "cli/json.h"
+#include "cli/text.h"
 #include "scene/scene.h"
 #include "scene/verify.h"
 
@@ -80,14 +81,14 @@ int verify_count(const Verify *v) {
 
 void verify_print(const Verify *v) {
   int compared = 0;
-  info_print_plain(v->path);
+  text_print_plain(v->path);
   printf(": %u x %u pixels, %d replicates of each run\n", v->width, v->height, VERIFY_REPLICATES);
   printf("%-29s %6s  %-23s  %-27s\n", "", "", "ratio of the images", "farthest z");
   printf("%-29s %6s  %7s %7s %7s  %6s %6s %8s %6s\n", "run", "spp", "red", "green", "blue", "image", "block",
          "material", "lights");
   if (v->unreferenced[0]) {
     printf("%-29s %6s  not compared: ", "reference", "");
-    info_print_plain(v->unreferenced);
+    text_print_plain(v->unreferenced);
     putchar('\n');
   }
   for (int i = 0; i < v->run_count; i++) {

@@ -4,23 +4,13 @@
 #include <string.h>
 
 #include "cli/signals.h"
+#include "cli/vector.h"
 #include "scene/verify.h"
 #include "velo/edit.h"
 
 enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096 };
 
 /* ---- places ------------------------------------------------------------------------------------------------------ */
-
-static void multiply(const double a[16], const double b[16], double result[16]) {
-  double product[16];
-  for (int i = 0; i < 4; i++)
-    for (int j = 0; j < 4; j++) {
-      double sum = 0;
-      for (int k = 0; k < 4; k++) sum += a[4 * i + k] * b[4 * k + j];
-      product[4 * i + j] = sum;
-    }
-  memcpy(result, product, sizeof product);
-}
 
 /* p' = scale * turn(p) + shift. turn: about the axis (1, 2, 3), by `angle`. */
 static void make_similarity(double scale, double angle, const double shift[3], double m[16]) {
@@ -59,15 +49,15 @@ static void choose_places(Verify *v, const double centre[3], double distance) {
   make_similarity(1, 0, shift, v->matrix[VERIFY_SHIFTED]);
   make_similarity(1, 1, none, v->matrix[VERIFY_TURNED]);
   make_similarity(0.02, 0, none, v->matrix[VERIFY_SCALED]);
-  multiply(v->matrix[VERIFY_SHIFTED], v->matrix[VERIFY_TURNED], v->matrix[VERIFY_MOVED]);
-  multiply(v->matrix[VERIFY_SCALED], v->matrix[VERIFY_MOVED], v->matrix[VERIFY_MOVED]);
+  matrix_multiply(v->matrix[VERIFY_SHIFTED], v->matrix[VERIFY_TURNED], v->matrix[VERIFY_MOVED]);
+  matrix_multiply(v->matrix[VERIFY_SCALED], v->matrix[VERIFY_MOVED], v->matrix[VERIFY_MOVED]);
 }
 
 static vlResult move_scene(Verify *v, VerifyPlace place, vlError *error) {
   double back[16], change[16];
   if (place == v->place) return VL_OK;
   invert_similarity(v->matrix[v->place], back);
-  multiply(v->matrix[place], back, change);
+  matrix_multiply(v->matrix[place], back, change);
   v->place = place;
   return vl_scene_transform(v->scene, change, error);
 }
@@ -76,9 +66,9 @@ static vlResult move_camera(const Verify *v, VerifyPlace place, vlCamera *camera
   double open[16], close[16];
   *camera = v->camera;
   if (place == VERIFY_AS_IT_IS) return VL_OK;
-  multiply(v->matrix[place], v->camera.world_from_camera, open);
+  matrix_multiply(v->matrix[place], v->camera.world_from_camera, open);
   if (!v->camera.moves) return vl_camera_move(&v->camera, open, camera, error);
-  multiply(v->matrix[place], v->camera.world_from_camera_close, close);
+  matrix_multiply(v->matrix[place], v->camera.world_from_camera_close, close);
   return vl_camera_travel(&v->camera, open, close, v->camera.pose_times, camera, error);
 }
 

@@ -4,22 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double r[3]) {
-  r[0] = a[1] * b[2] - a[2] * b[1];
-  r[1] = a[2] * b[0] - a[0] * b[2];
-  r[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static bool normalise(double v[3]) {
-  double length = sqrt(dot(v, v));
-  if (!(length > 0)) return false;
-  for (int i = 0; i < 3; i++) v[i] /= length;
-  return true;
-}
+#include "cli/vector.h"
 
 /* The rotation whose z axis is that of the matrix and whose y axis is as near as possible; columns x, y, z. */
 static void rotation_of(const double m[16], double r[3][3]) {
@@ -27,10 +12,10 @@ static void rotation_of(const double m[16], double r[3][3]) {
     r[1][i] = m[4 * i + 1];
     r[2][i] = m[4 * i + 2];
   }
-  normalise(r[2]);
-  cross(r[1], r[2], r[0]);
-  normalise(r[0]);
-  cross(r[2], r[0], r[1]);
+  vector_normalize(r[2]);
+  vector_cross(r[1], r[2], r[0]);
+  vector_normalize(r[0]);
+  vector_cross(r[2], r[0], r[1]);
 }
 
 CameraPose camera_pose(const ViewCamera *camera) {
@@ -55,11 +40,11 @@ CameraPose camera_pose(const ViewCamera *camera) {
 /* Camera axes that look from eye to lookat; columns x right, y down, z forward. False: there are none. */
 static bool look(const CameraPose *pose, double r[3][3]) {
   for (int i = 0; i < 3; i++) r[2][i] = pose->lookat[i] - pose->eye[i];
-  if (!normalise(r[2])) return false;
+  if (!vector_normalize(r[2])) return false;
   const double down[3] = {-pose->up[0], -pose->up[1], -pose->up[2]};
-  cross(down, r[2], r[0]);
-  if (!normalise(r[0])) return false;
-  cross(r[2], r[0], r[1]);
+  vector_cross(down, r[2], r[0]);
+  if (!vector_normalize(r[0])) return false;
+  vector_cross(r[2], r[0], r[1]);
   return true;
 }
 
@@ -72,7 +57,7 @@ void camera_place(const ViewCamera *now, const CameraPose *pose, vlCameraDef *de
     for (int i = 0; i < 3; i++)
       for (int j = 0; j < 3; j++) {
         const double column[3] = {m[j], m[4 + j], m[8 + j]};
-        rest[i][j] = dot(old[i], column);
+        rest[i][j] = vector_dot(old[i], column);
         rigid &= fabs(rest[i][j] - (i == j)) < 1e-9;
       }
   }

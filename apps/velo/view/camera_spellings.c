@@ -1,6 +1,7 @@
 /* view/camera_spellings.c: all equivalent spellings of a camera, as JSON for the page. */
 #include <math.h>
 
+#include "cli/vector.h"
 #include "view/camera_edit.h"
 
 static const double degrees = 180.0 / 3.14159265358979323846;
@@ -25,8 +26,7 @@ static void put_pose(Json *json, const ViewCamera *camera) {
 static double angle(const vlCamera *c, double x0, double y0, double x1, double y1) {
   double o[3], a[3], b[3];
   if (!vl_camera_unproject(c, x0, y0, o, a) || !vl_camera_unproject(c, x1, y1, o, b)) return NAN;
-  double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-  return degrees * atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+  return degrees * vector_angle(a, b);
 }
 
 static void put_focal(Json *json, const ViewCamera *camera) {

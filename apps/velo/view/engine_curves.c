@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cli/vector.h"
 #include "view/engine_status.h"
 
 enum { GRID = 12, GRID_STEPS = 48, AXIS_STEPS = 24, HORIZON_STEPS = 512, FIELD = 24 };
@@ -98,13 +99,11 @@ static void put_grid(Json *json, const vlCamera *camera, const CameraPose *pose,
 /* Unit vectors across v. */
 static void across(const double v[3], double a[3], double b[3]) {
   int k = fabs(v[0]) < fabs(v[1]) ? fabs(v[0]) < fabs(v[2]) ? 0 : 2 : fabs(v[1]) < fabs(v[2]) ? 1 : 2;
-  double e[3] = {k == 0, k == 1, k == 2}, length;
-  for (int i = 0; i < 3; i++) a[i] = v[(i + 1) % 3] * e[(i + 2) % 3] - v[(i + 2) % 3] * e[(i + 1) % 3];
-  length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-  for (int i = 0; i < 3; i++) a[i] /= length;
-  for (int i = 0; i < 3; i++) b[i] = v[(i + 1) % 3] * a[(i + 2) % 3] - v[(i + 2) % 3] * a[(i + 1) % 3];
-  length = sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
-  for (int i = 0; i < 3; i++) b[i] /= length;
+  const double e[3] = {k == 0, k == 1, k == 2};
+  vector_cross(v, e, a);
+  vector_normalize(a);
+  vector_cross(v, a, b);
+  vector_normalize(b);
 }
 
 static void far_point(const double eye[3], const double direction[3], double point[3]) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "import/gltf/gltf.h"
+#include "math/double3.h"
 
 /* ---- morph targets ----------------------------------------------------------------------------------------------- */
 
@@ -154,7 +155,7 @@ static void turn(const double *m, bool normal, float *v) {
     memcpy(c, k, sizeof c);
   }
   for (int i = 0; i < 3; i++) r[i] = c[3 * i] * x + c[3 * i + 1] * y + c[3 * i + 2] * z;
-  double l = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  double l = vl_norm3(r);
   for (int i = 0; i < 3; i++) v[i] = l > 0 ? (float)(r[i] / l) : v[i];
 }
 

@@ -12,6 +12,7 @@
 #include "base/free.h"
 #include "import/gltf/gltf.h"
 #include "math/approx_double.h"
+#include "math/double3.h"
 #include "math/hash.h"
 
 typedef struct Maker {
@@ -171,7 +172,7 @@ static void add_corner(const Maker *m, uint32_t c, double *sums) {
   }
   double pa[3], pb[3], t[3];
   if (!project(to_a, n, pa) || !project(to_b, n, pb) || !project(m->direction + 3 * (size_t)f, n, t)) return;
-  double dot = pa[0] * pb[0] + pa[1] * pb[1] + pa[2] * pb[2];
+  double dot = vl_dot3(pa, pb);
   double angle = vl_acos_double(dot > 1 ? 1 : dot < -1 ? -1 : dot);
   for (int i = 0; i < 3; i++) sums[3 * (size_t)m->group[c] + (size_t)i] += angle * t[i];
 }
@@ -214,16 +215,9 @@ static float *flat_normals(vlGltf *g, const float *positions, size_t faces) {
   float *normals = vl_alloc_zero(g->context, 3 * faces, 3 * sizeof *normals);
   for (size_t f = 0; normals && f < faces; f++) {
     const float *v = positions + 9 * f;
-    double a[3], b[3], n[3], l = 0;
-    for (int i = 0; i < 3; i++) {
-      a[i] = (double)v[3 + i] - v[i];
-      b[i] = (double)v[6 + i] - v[i];
-    }
-    for (int i = 0; i < 3; i++) {
-      n[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-      l += n[i] * n[i];
-    }
-    l = sqrt(l);
+    double n[3];
+    vl_triangle_normal(v, v + 3, v + 6, n);
+    double l = vl_norm3(n);
     for (int k = 0; k < 9; k++) normals[9 * f + (size_t)k] = l > 0 ? (float)(n[k % 3] / l) : (k % 3 == 2);
   }
   return normals;
@@ -273,7 +267,7 @@ static bool split(vlGltf *g, vlGltfPrimitive *p, const Maker *m, const double *s
   }
   for (size_t i = 0; ok && i < count; i++) {
     const double *s = sums + 3 * (size_t)group[i];
-    double l = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+    double l = vl_norm3(s);
     for (int k = 0; k < 3; k++) p->tangents[4 * i + (size_t)k] = l > 0 ? (float)(s[k] / l) : 0.0f;
     p->tangents[4 * i + 3] = signs[i] < 0 ? -1.0f : 1.0f;
   }

@@ -7,6 +7,7 @@
 #include "import/gltf/gltf.h"
 
 #include "base/free.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 
 enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, TRIANGLE_STRIP, TRIANGLE_FAN };
@@ -83,24 +84,17 @@ static void put_ball(NewMesh *b, const vlGltfPrimitive *p, uint32_t at, float ra
 
 static void put_tube(NewMesh *b, const vlGltfPrimitive *p, uint32_t from, uint32_t to, float radius) {
   const float *ends[2] = {p->positions + 3 * (size_t)from, p->positions + 3 * (size_t)to};
-  double d[3], u[3], v[3], l = 0;
-  for (int i = 0; i < 3; i++) {
-    d[i] = (double)ends[1][i] - ends[0][i];
-    l += d[i] * d[i];
-  }
-  l = sqrt(l);
+  double d[3], u[3], v[3];
+  for (int i = 0; i < 3; i++) d[i] = (double)ends[1][i] - ends[0][i];
+  double l = vl_norm3(d);
   if (!(l > 0) || !isfinite(l)) return;
   for (int i = 0; i < 3; i++) d[i] /= l;
   int least = fabs(d[0]) < fabs(d[1]) ? (fabs(d[0]) < fabs(d[2]) ? 0 : 2) : fabs(d[1]) < fabs(d[2]) ? 1 : 2;
   double e[3] = {least == 0, least == 1, least == 2};
-  u[0] = d[1] * e[2] - d[2] * e[1];
-  u[1] = d[2] * e[0] - d[0] * e[2];
-  u[2] = d[0] * e[1] - d[1] * e[0];
-  double n = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+  vl_cross3(d, e, u);
+  double n = vl_norm3(u);
   for (int i = 0; i < 3; i++) u[i] /= n;
-  v[0] = d[1] * u[2] - d[2] * u[1];
-  v[1] = d[2] * u[0] - d[0] * u[2];
-  v[2] = d[0] * u[1] - d[1] * u[0];
+  vl_cross3(d, u, v);
   uint32_t ring[2][TUBE_SIDES];
   for (int side = 0; side < 2; side++)
     for (int k = 0; k < TUBE_SIDES; k++) {

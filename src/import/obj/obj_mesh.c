@@ -5,6 +5,7 @@
 
 #include "import/obj/obj.h"
 #include "math/approx_double.h"
+#include "math/double3.h"
 #include "math/hash.h"
 #include "velo/shape.h"
 
@@ -22,12 +23,7 @@ static const float *position(const vlObj *obj, uint32_t v) {
 /* Normal of a face, not normalised: its length is twice the area. */
 static void face_normal(const vlObj *obj, const vlObjCorner *c, double n[3]) {
   const float *a = position(obj, c[0].v), *b = position(obj, c[1].v), *d = position(obj, c[2].v);
-  double e[3], f[3];
-  for (int i = 0; i < 3; i++) {
-    e[i] = (double)b[i] - a[i];
-    f[i] = (double)d[i] - a[i];
-  }
-  for (int i = 0; i < 3; i++) n[i] = e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3];
+  vl_triangle_normal(a, b, d, n);
 }
 
 static double angle_at(const vlObj *obj, const vlObjCorner *c, int i) {
@@ -52,7 +48,7 @@ static bool push_normal(vlObj *obj, const double n[3], uint32_t *number) {
 }
 
 static void unit(double n[3]) {
-  double l = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  double l = vl_norm3(n);
   if (l > 0 && isfinite(l)) {
     for (int i = 0; i < 3; i++) n[i] /= l;
   } else {

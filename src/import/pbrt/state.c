@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "import/pbrt/builder.h"
+#include "math/double3.h"
 
 /* ---- transforms ------------------------------------------------------------------------------------------------- */
 
@@ -20,18 +21,19 @@ static void apply(vlImport *import, vlMat4 m) {
 static bool look_at(vlImport *import, const vlStatement *s) {
   const double *e = s->numbers, *l = s->numbers + 3, *u = s->numbers + 6;
   double d[3] = {l[0] - e[0], l[1] - e[1], l[2] - e[2]};
-  double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  double length = vl_norm3(d);
   if (!(length > 0.0))
     return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the eye and the point it looks at are the same");
   for (int i = 0; i < 3; i++) d[i] /= length;
-  double r[3] = {u[1] * d[2] - u[2] * d[1], u[2] * d[0] - u[0] * d[2], u[0] * d[1] - u[1] * d[0]};
-  double size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  double up = sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+  double r[3], n[3];
+  vl_cross3(u, d, r);
+  double size = vl_norm3(r);
+  double up = vl_norm3(u);
   if (!(up > 0.0)) return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is zero");
   if (!(size > 1e-12 * up))
     return vl_import_fail(import, VL_ERROR_SCENE, s->source, "LookAt: the up vector is parallel to the view direction");
   for (int i = 0; i < 3; i++) r[i] /= size;
-  double n[3] = {d[1] * r[2] - d[2] * r[1], d[2] * r[0] - d[0] * r[2], d[0] * r[1] - d[1] * r[0]};
+  vl_cross3(d, r, n);
   vlMat4 world_from_camera = {{r[0], n[0], d[0], e[0], r[1], n[1], d[1], e[1], r[2], n[2], d[2], e[2], 0, 0, 0, 1}}, m;
   vl_mat4_inverse(world_from_camera, &m);
   apply(import, m);

@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "velo/shape.h"
-#include "world/shape/double3.h"
 #include "world/world.h"
 
 /* Within these limits no product of the kernels overflows or underflows. */

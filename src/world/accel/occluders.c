@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "math/double3.h"
 #include "math/hash.h"
-#include "world/shape/double3.h"
 #include "world/world.h"
 
 /* Rays for which a worker learns, and then uses what it has learned, before it learns anew: other parts of the image

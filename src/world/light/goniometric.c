@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/error.h"
+#include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
 #include "velo/light.h"
@@ -80,7 +81,7 @@ static vlResult add_projection(vlWorld *world, const vlLightDef *def, const vlMi
   double forward[3] = {0, 0, 1}, axis[3];
   vlMat4 m = vl_mat4_load(def->world_from_light);
   vl_mat4_vector(&m, forward, axis);
-  double l = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+  double l = vl_norm3(axis);
   for (int i = 0; i < 3; i++) light->direction[i] = (float)(axis[i] / l);
   light->cos_end = light->cos_start = (float)(1 / sqrt(1 + light->image_extent[0] * light->image_extent[0] +
                                                        light->image_extent[1] * light->image_extent[1]));

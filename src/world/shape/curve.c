@@ -90,7 +90,7 @@ static void curve_bounds(const vlWorldShape *s, uint32_t prim, double low[3], do
   double radius = 0.5 * fmax(width_at(s, segment, u0), width_at(s, segment, u1));
   for (int i = 0; i < 3; i++) {
     const double *m = s->from_shape + 4 * i;
-    double reach = radius * sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]); /* extent of a transformed ball */
+    double reach = radius * vl_norm3(m); /* extent of a transformed ball */
     cut(c[i], u0, u1, q[i]);
     low[i] = fmin(fmin(q[i][0], q[i][1]), fmin(q[i][2], q[i][3])) - reach;
     high[i] = fmax(fmax(q[i][0], q[i][1]), fmax(q[i][2], q[i][3])) + reach;

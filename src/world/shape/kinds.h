@@ -5,8 +5,8 @@
 #ifndef WORLD_SHAPE_KINDS_H
 #define WORLD_SHAPE_KINDS_H
 
+#include "math/double3.h"
 #include "math/transform.h"
-#include "world/shape/double3.h"
 #include "world/world.h"
 
 typedef struct vlShapeHit {

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "base/error.h"
+#include "math/double3.h"
 #include "math/motion.h"
 #include "scene/scene.h"
 #include "velo/shape.h"
-#include "world/shape/double3.h"
 #include "world/shape/surface_point.h"
 
 /* ---- when -------------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
-/* world/shape/double3.h: vectors of three doubles and affine maps (row-major 3x4), for shapes other than triangles. */
-#ifndef WORLD_SHAPE_DOUBLE3_H
-#define WORLD_SHAPE_DOUBLE3_H
+/* math/double3.h: vectors of three doubles and affine maps (row-major, 3x4 or 4x4), for work outside of hot loops. */
+#ifndef MATH_DOUBLE3_H
+#define MATH_DOUBLE3_H
 
 #include <math.h>
 
@@ -21,13 +21,32 @@ static inline void vl_cross3(const double a[3], const double b[3], double r[3]) 
   r[1] = a[2] * b[0] - a[0] * b[2];
   r[2] = a[0] * b[1] - a[1] * b[0];
 }
+static inline double vl_norm3(const double a[3]) {
+  return sqrt(vl_dot3(a, a));
+}
+/* The volume that three vectors span: positive if they are right-handed. */
+static inline double vl_triple3(const double a[3], const double b[3], const double c[3]) {
+  double n[3];
+  vl_cross3(b, c, n);
+  return vl_dot3(a, n);
+}
+/* The normal of a triangle, by the order of its corners; its length is twice the area. */
+static inline void vl_triangle_normal(const float *a, const float *b, const float *c, double n[3]) {
+  double to_b[3], to_c[3];
+  for (int i = 0; i < 3; i++) {
+    to_b[i] = (double)b[i] - (double)a[i];
+    to_c[i] = (double)c[i] - (double)a[i];
+  }
+  vl_cross3(to_b, to_c, n);
+}
+/* Returns the length; a vector of length 0 stays. */
 static inline double vl_normalize3(double a[3]) {
-  double l = sqrt(vl_dot3(a, a));
+  double l = vl_norm3(a);
   if (l > 0)
     for (int i = 0; i < 3; i++) a[i] /= l;
   return l;
 }
-
+/* Of the upper left 3x3. */
 static inline double vl_determinant3(const double m[12]) {
   return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
 }

@@ -1,0 +1,15 @@
+/* cli/text.c: see text.h. */
+#include "cli/text.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+bool text_ends_with(const char *text, const char *suffix) {
+  size_t n = strlen(text), m = strlen(suffix);
+  return n >= m && strcasecmp(text + n - m, suffix) == 0;
+}
+
+void text_print_plain(const char *text) {
+  for (const char *s = text; *s; s++) putchar((unsigned char)*s < 0x20 || *s == 0x7f ? '?' : *s);
+}

@@ -1,0 +1,48 @@
+/* cli/vector.h: vectors of three doubles, and 4x4 matrices, row-major. */
+#ifndef APP_CLI_VECTOR_H
+#define APP_CLI_VECTOR_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+static inline double vector_dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void vector_cross(const double a[3], const double b[3], double r[3]) {
+  for (int i = 0; i < 3; i++) r[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static inline double vector_length(const double v[3]) {
+  return sqrt(vector_dot(v, v));
+}
+
+/* False: the vector has no length, and stays. */
+static inline bool vector_normalize(double v[3]) {
+  double length = vector_length(v);
+  if (!(length > 0)) return false;
+  for (int i = 0; i < 3; i++) v[i] /= length;
+  return true;
+}
+
+/* The angle between two vectors, radians. */
+static inline double vector_angle(const double a[3], const double b[3]) {
+  double n[3];
+  vector_cross(a, b, n);
+  return atan2(vector_length(n), vector_dot(a, b));
+}
+
+/* result = a b; it may be one of them. */
+static inline void matrix_multiply(const double a[16], const double b[16], double result[16]) {
+  double product[16];
+  for (int i = 0; i < 4; i++)
+    for (int j = 0; j < 4; j++) {
+      double sum = 0;
+      for (int k = 0; k < 4; k++) sum += a[4 * i + k] * b[4 * k + j];
+      product[4 * i + j] = sum;
+    }
+  memcpy(result, product, sizeof product);
+}
+
+#endif

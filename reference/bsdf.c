@@ -6,7 +6,7 @@
 /* A diffuse surface looks equally bright from everywhere on the light's side: f = reflectance / pi. */
 static spectrum diffuse_value(const bsdf *b, vector wo, vector wi, double *density) {
   *density = wo.z * wi.z > 0 ? fabs(wi.z) / PI : 0;
-  return scaled(*density, b->reflectance);
+  return scaled(*density, b->reflectance); /* f times the cosine */
 }
 
 spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density) {

@@ -1,5 +1,5 @@
-/* bsdf.h: how a surface, or a medium, scatters light at one point (pbrt book 9). Directions point away from the point;
- * wo is where the path comes from, wi where it goes on. A value includes the cosine |wi . n|. */
+/* bsdf.h: how a surface, or a medium, scatters light at one point (pbrt book 9). Directions point away from the point:
+ * wo to where the path comes from, wi to where it goes on. A value is that of f(wo, wi) times the cosine |wi . n|. */
 #pragma once
 #include "more/kinds.h"
 
@@ -7,13 +7,13 @@ typedef enum bsdf_kind { BSDF_DIFFUSE, BSDF_CONDUCTOR, BSDF_DIELECTRIC, BSDF_PHA
 
 typedef struct bsdf {
   bsdf_kind kind;
-  frame frame;             /* around the shading normal */
+  frame frame;             /* z is the shading normal, x the tangent */
   spectrum reflectance;    /* diffuse */
   spectrum eta, k;         /* conductor: complex index of refraction */
   double ior;              /* dielectric: index inside over index outside */
   double alpha_x, alpha_y; /* roughness along the tangent and across it */
   double g;                /* phase function of a medium: mean cosine */
-  more_bsdf more;          /* of kinds of more/ */
+  more_bsdf more;          /* the kinds of more/ */
 } bsdf;
 
 typedef struct bsdf_sample {
@@ -23,7 +23,8 @@ typedef struct bsdf_sample {
   bool specular;   /* the only direction there is: no other sampling can find it */
 } bsdf_sample;
 
-/* Values and densities for directions in the world. A specular BSDF has value 0: no two given directions fit. */
+/* Value and density for two directions in the world. A specular BSDF has the value 0: no two given directions fit. The
+ * sampler is for coats, whose value is estimated by a random walk. */
 spectrum bsdf_value(const bsdf *b, vector wo, vector wi, sampler *s, double *density);
 bool sample_bsdf(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 

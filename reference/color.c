@@ -1,9 +1,9 @@
 /* color.c: from spectra to numbers at four wavelengths, and from these to red, green and blue. */
 #include "color.h"
 
-/* One random number serves all four: they lie a quarter of the distribution apart (pbrt book 4.5.4). Wavelengths that
- * the eye sees well are dense: p(l) = .0039398042 / cosh^2(.0072 (l - 538)) from 360 to 830 nm, the derivative of a
- * tanh, so that it can be inverted. */
+/* Wavelengths that the eye sees well are drawn more often: p(l) = .0039398042 / cosh^2(.0072 (l - 538)), 360 to 830 nm.
+ * Its integral is a tanh, so that atanh makes a wavelength of a uniform number. One number serves all four, a quarter
+ * of the distribution apart (pbrt book 4.5.4). */
 wavelengths sample_wavelengths(bool rgb, sampler *s) {
   wavelengths w = {.rgb = rgb};
   double u = next_number(s);
@@ -16,8 +16,8 @@ wavelengths sample_wavelengths(bool rgb, sampler *s) {
   return w;
 }
 
-/* The three others get density 0, which removes them from the mean in radiance_to_rgb. The first one must then count
- * four times: its density as one of four becomes a quarter. */
+/* The three others get density 0, which removes them from the mean of four in radiance_to_rgb. The first one must then
+ * count four times as much: its density, which divides it, becomes a quarter. */
 void keep_first_wavelength(wavelengths *w) {
   if (channels_of(w) < CHANNELS) return;
   for (int i = 1; i < CHANNELS; i++) w->density[i] = 0;
@@ -29,28 +29,20 @@ uint32_t channels_of(const wavelengths *w) {
   return w->density[1] == 0 ? 1 : CHANNELS;
 }
 
-static color *make_color(const vlSpectrum *s, vlParameterRole role) {
+color *make_color(const vlSpectrum *s, vlParameterRole role) {
   color *c = resize(NULL, 1, sizeof *c);
   *c = (color){.of = s, .role = role};
-  vl_spectrum_tabulate(s, role, c->nm, NULL);
+  vl_spectrum_tabulate(s, role, c->values, NULL);
   vl_spectrum_linear_rgb(s, role, c->rgb, NULL);
   double luminance = role == VL_PARAMETER_ILLUMINANT ? vl_spectrum_luminance(s, NULL) : 1;
   for (int i = 0; i < VL_SPECTRUM_VALUES; i++) {
-    c->nm[i] = luminance > 0 ? (float)((double)c->nm[i] / luminance) : 0;
-    c->varies = c->varies || c->nm[i] != c->nm[0];
+    c->values[i] = luminance > 0 ? (float)((double)c->values[i] / luminance) : 0;
+    c->varies = c->varies || c->values[i] != c->values[0];
   }
   return c;
 }
 
-const color *find_color(const vlSpectrum *s, vlParameterRole role) {
-  static color *table[1024];
-  color **c = &table[(uintptr_t)s / 16 % 1024];
-  while (*c && ((*c)->of != s || (*c)->role != role)) c = &(*c)->next;
-  if (!*c) *c = make_color(s, role);
-  return *c;
-}
-
-/* The value of a table with one number per nm, linear between them. */
+/* The value of a table with one number per nm, `stride` apart, linear between them. */
 static double table_at(const float *table, int stride, double nm) {
   double x = clamp(nm - VL_SPECTRUM_FIRST_NM, 0, VL_SPECTRUM_VALUES - 1);
   int i = (int)fmin(x, VL_SPECTRUM_VALUES - 2);
@@ -60,11 +52,11 @@ static double table_at(const float *table, int stride, double nm) {
 spectrum color_at(const color *c, const wavelengths *w) {
   spectrum result;
   for (int i = 0; i < CHANNELS; i++)
-    result.c[i] = w->rgb ? (double)c->rgb[i < 3 ? i : 2] : table_at(c->nm, 1, w->nm[i]);
+    result.c[i] = w->rgb ? (double)c->rgb[i < 3 ? i : 2] : table_at(c->values, 1, w->nm[i]);
   return result;
 }
 
-/* Colours above 1 are twice the largest component times a reflectance (pbrt book 4.6.6). */
+/* A colour without upper limit is a factor times a reflectance whose largest component is 1/2 (pbrt book 4.6.6). */
 spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w) {
   double factor = role == VL_PARAMETER_ALBEDO ? 1 : 2 * fmax(rgb[0], fmax(rgb[1], rgb[2]));
   if (!(factor > 0)) return gray(0);
@@ -78,8 +70,8 @@ spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole
   return scaled(factor, result);
 }
 
-/* X, Y and Z are integrals of the radiance times the observer's curves. Each wavelength estimates them: its value times
- * the curve, divided by its density; the four estimates are averaged. */
+/* X, Y and Z are integrals over the wavelengths of the radiance times the observer's curves (pbrt book 4.6.1). Each
+ * wavelength estimates them: radiance times curve, divided by its density; the result is the mean of the four. */
 void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]) {
   double xyz[3] = {0, 0, 0};
   for (int i = 0; i < CHANNELS; i++) {

@@ -45,17 +45,18 @@ void keep_first_wavelength(wavelengths *w);
 /* The numbers of a path that count: three in RGB, one where only the first wavelength is left. */
 uint32_t channels_of(const wavelengths *w);
 
-/* All values of a spectrum of the scene. */
+/* A spectrum of the scene as a table: one value per nm, and as RGB. */
 typedef struct color {
   const vlSpectrum *of;
   vlParameterRole role;
-  float nm[VL_SPECTRUM_VALUES], rgb[3];
-  bool varies; /* between wavelengths */
-  struct color *next;
+  float values[VL_SPECTRUM_VALUES], rgb[3];
+  bool varies;        /* between wavelengths */
+  struct color *next; /* in the list of find_color */
 } color;
 
-/* The colour of a spectrum; all are kept in one table, each made when it is first asked for. A light's
- * (VL_PARAMETER_ILLUMINANT) is divided by its luminance, so that its scale alone sets its brightness. */
+/* The table of a spectrum; find_color makes it when it is first asked for. That of a light (VL_PARAMETER_ILLUMINANT) is
+ * divided by its luminance, so that the light's scale alone sets its brightness. */
+color *make_color(const vlSpectrum *s, vlParameterRole role);
 const color *find_color(const vlSpectrum *s, vlParameterRole role);
 spectrum color_at(const color *c, const wavelengths *w);
 /* The spectrum of a texel, linear RGB: a reflectance (VL_PARAMETER_ALBEDO), or any value from 0. */
@@ -70,6 +71,5 @@ typedef struct observer {
 /* What a path adds to its pixel: its radiance as linear RGB of the film's colour space. */
 void radiance_to_rgb(const observer *o, spectrum radiance, const wavelengths *w, double rgb[3]);
 
-/* An array of `count` elements whose first ones are those of `array`, which may be null; the others are not set. Ends
- * the program without memory, which is given back when the program ends. */
+/* The array with room for `count` elements, as by realloc. Without memory the program ends. */
 void *resize(void *array, size_t count, size_t size);

@@ -19,7 +19,7 @@ static spectrum fresnel(const bsdf *b, double cosine) {
   return f;
 }
 
-/* f = D F G / (4 cos_o cos_i) (Torrance and Sparrow 1967), times cos_i. */
+/* Torrance and Sparrow 1967: f = D F G / (4 cos_o cos_i), by mirrors whose normal m is half way between wo and wi. */
 spectrum conductor_value(const bsdf *b, vector wo, vector wi, double *density) {
   if (is_smooth(b) || wo.z * wi.z <= 0) return gray(0);
   vector m = normalize(add(wo, wi));

@@ -14,7 +14,8 @@ double reflected_by_glass(double cosine, double eta) {
   return (square(parallel) + square(perpendicular)) / 2;
 }
 
-/* Snell's law at a mirror's normal m. *eta: the index on the other side over the index on this one. */
+/* Snell's law at a mirror with the normal m: the part of the direction along the mirror becomes smaller by *eta, the
+ * index on the other side over the index on this one. False: total reflection. */
 bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
   *eta = dot(wo, m) < 0 ? 1 / ior : ior;
   m = face_forward(m, wo);
@@ -25,8 +26,10 @@ bool refract(vector wo, vector m, double ior, double *eta, vector *wi) {
   return true;
 }
 
-/* Walter et al. 2007. Light that enters glass is refracted into a smaller cone: radiance seen through the surface is
- * divided by eta^2. */
+/* Walter et al. 2007, pbrt book 9.7. Mirrors that send wo to wi have their normal m along wo + eta wi; eta is 1 for
+ * reflection, where f is that of a metal. For refraction, with i = wi . m and o = wo . m,
+ *   f = D G (1 - F) |i o| / (|wi . n| |wo . n| (i + o / eta)^2) / eta^2,
+ * the last since light that enters glass is refracted into a smaller cone. */
 spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density) {
   if (is_smooth(b) || b->ior == 1 || wo.z == 0 || wi.z == 0) return gray(0);
   bool reflects = wo.z * wi.z > 0;
@@ -40,12 +43,13 @@ spectrum dielectric_value(const bsdf *b, vector wo, vector wi, double *density) 
     *density = visible_density(b, wo, m) / (4 * fabs(dot(wo, m))) * reflected;
     return gray(mirrors * reflected / (4 * fabs(wo.z)));
   }
-  double solid_angle = fabs(dot(wi, m)) / square(dot(wi, m) + dot(wo, m) / eta); /* of m, per solid angle of wi */
-  *density = visible_density(b, wo, m) * solid_angle * (1 - reflected);
-  double value = mirrors * (1 - reflected) * solid_angle * fabs(dot(wo, m) / wo.z);
+  double m_per_wi = fabs(dot(wi, m)) / square(dot(wi, m) + dot(wo, m) / eta); /* how solid angles change */
+  *density = visible_density(b, wo, m) * m_per_wi * (1 - reflected);
+  double value = mirrors * (1 - reflected) * m_per_wi * fabs(dot(wo, m) / wo.z);
   return gray(value / square(eta));
 }
 
+/* Reflects or refracts by lot, with the probabilities F and 1 - F, which thus are no factors. */
 bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   result->specular = is_smooth(b) || b->ior == 1;
   vector m = result->specular ? make_vector(0, 0, 1) : sample_visible_normal(b, wo, s);
@@ -56,5 +60,5 @@ bool sample_dielectric(const bsdf *b, vector wo, sampler *s, bsdf_sample *result
   else if (!refract(wo, m, b->ior, &eta, &result->wi))
     return false;
   result->weight = gray(1 / square(eta));
-  return (wo.z * result->wi.z < 0) == transmits;
+  return (wo.z * result->wi.z < 0) == transmits; /* else a tilted mirror sends it to the wrong side */
 }

@@ -1,4 +1,4 @@
-/* film.c: sums, means, and how sure they are. */
+/* film.c: the view plane and its pixels: sums of samples, their means, and how sure the means are. */
 #include "world.h"
 
 view_plane make_view_plane(const vlSceneDefs *defs, uint32_t samples) {
@@ -13,18 +13,19 @@ view_plane make_view_plane(const vlSceneDefs *defs, uint32_t samples) {
   return v;
 }
 
-/* The filter's curve (pbrt book 8.8). */
+/* How much a point at x from the middle of the pixel counts (pbrt book 8.8); y has the same curve. */
 static double filter_value(const vlPixelFilter *f, double x, double radius) {
   if (f->kind == VL_PIXEL_FILTER_TRIANGLE) return radius - fabs(x);
   if (f->kind == VL_PIXEL_FILTER_BOX) return 1;
   return exp(-square(x / (double)f->sigma) / 2) - exp(-square(radius / (double)f->sigma) / 2);
 }
 
-/* Points are drawn under the curve: from the rectangle around it, until one lies below it. */
+/* Darts are thrown into the rectangle around the curve, until one lands below the curve (pbrt book A.3). */
 static double sample_curve(const vlPixelFilter *f, double radius, sampler *s) {
   for (;;) {
     double x = (2 * next_number(s) - 1) * radius;
-    if (next_number(s) * filter_value(f, 0, radius) < filter_value(f, x, radius)) return x;
+    double height = next_number(s) * filter_value(f, 0, radius);
+    if (height < filter_value(f, x, radius)) return x;
   }
 }
 
@@ -45,7 +46,8 @@ void add_sample(view_plane *v, uint32_t column, uint32_t row, spectrum radiance,
   p->covered += met;
 }
 
-/* The variance of a mean of n independent samples is their variance / n. */
+/* The variance of n samples x is estimated by n / (n - 1) (mean(x^2) - mean(x)^2); that of their mean is 1 / n of it,
+ * and its root is the standard error. */
 bool make_image(const view_plane *v, vlContext *context, vlImage **image) {
   static const char *const names[7] = {"R", "G", "B", "A", "error.R", "error.G", "error.B"};
   vlImageDef def = vl_default_image_def(v->width, v->height, 7);
@@ -56,9 +58,9 @@ bool make_image(const view_plane *v, vlContext *context, vlImage **image) {
   for (const pixel *p = v->pixels; p < v->pixels + (size_t)v->width * v->height; p++, out += 7) {
     for (int k = 0; k < 3; k++) {
       double mean = p->sum[k] / n;
-      double variance = n > 1 ? fmax(0, p->squares[k] / n - mean * mean) / (n - 1) : (double)INFINITY;
+      double variance_of_mean = n > 1 ? fmax(0, p->squares[k] / n - mean * mean) / (n - 1) : (double)INFINITY;
       out[k] = (float)(v->exposure * mean);
-      out[4 + k] = (float)(v->exposure * sqrt(variance));
+      out[4 + k] = (float)(v->exposure * sqrt(variance_of_mean));
     }
     out[3] = (float)(p->covered / n);
   }

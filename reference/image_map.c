@@ -16,16 +16,16 @@ void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t
   y = wrapped(y, (long)map->height, wrap_t);
   for (uint32_t c = 0; c < 4; c++) value[c] = 0;
   if (x < 0 || y < 0) return;
-  uint32_t colors = map->channels < 3 ? 1 : 3;
   value[3] = 1;
+  uint32_t colors = map->channels < 3 ? 1 : 3; /* then the coverage, if there is one */
   for (uint32_t c = 0; c < 4; c++) {
-    uint32_t own = c == 3 ? colors : c % colors;
-    if (own < map->channels) value[c] = (double)vl_image_get(map->image, (uint32_t)x, (uint32_t)y, map->channel[own]);
+    uint32_t i = c == 3 ? colors : c % colors;
+    if (i < map->channels) value[c] = (double)vl_image_get(map->image, (uint32_t)x, (uint32_t)y, map->channel[i]);
   }
 }
 
 void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWrap wrap_t, double value[4]) {
-  double x = s * map->width - 0.5, y = t * map->height - 0.5;
+  double x = s * map->width - 0.5, y = t * map->height - 0.5; /* from the middle of the first pixel */
   double left = floor(x), top = floor(y);
   double dx = x - left, dy = y - top;
   double weight[4] = {(1 - dx) * (1 - dy), dx * (1 - dy), (1 - dx) * dy, dx * dy};

@@ -9,7 +9,7 @@ static light *add_light(world *w, vlColorSpace space) {
   return l;
 }
 
-/* Each primitive of an emissive shape is a light of its own. */
+/* The scene's lights, then each primitive of a shape that emits. As in pbrt-v4, instances emit nothing. */
 bool read_lights(world *w, vlError *error) {
   const vlLightDef *def;
   for (uint32_t i = 1; (def = vl_scene_light(w->scene, (vlLightId){i})); i++) {
@@ -25,7 +25,7 @@ bool read_lights(world *w, vlError *error) {
     primitive *p = &w->primitives[i];
     const vlShapeDef *shape = w->placements[p->placement].def;
     const vlEmissionDef *emission = vl_scene_emission(w->scene, shape->emission);
-    if (!emission || shape->group.index || shape->positions_close) continue;
+    if (!emission || shape->group.index) continue;
     const vlTextureDef *texture = vl_scene_texture(w->scene, emission->texture);
     p->light = (int32_t)w->light_count;
     light *l = add_light(w, texture ? texture->space : VL_SPACE_SRGB);
@@ -37,12 +37,11 @@ bool read_lights(world *w, vlError *error) {
   return true;
 }
 
-/* An image in colours multiplies the white of its colour space. */
+/* A light that shows an image in colours has the white of the image's colour space, which the image multiplies. */
 spectrum light_color(const light *l, const wavelengths *lambda) {
   const vlSpectrum *own = l->def ? &l->def->color : &l->emission->radiance;
-  bool colored = l->emission ? l->emission->texture.index > 0 : l->def->kind != VL_LIGHT_GONIOMETRIC;
-  bool image = colored && (l->map.image || l->emission);
-  return scaled(l->factor, color_at(find_color(image ? &l->white : own, VL_PARAMETER_ILLUMINANT), lambda));
+  bool colored = l->emission ? l->emission->texture.index > 0 : l->map.image && l->def->kind != VL_LIGHT_GONIOMETRIC;
+  return scaled(l->factor, color_at(find_color(colored ? &l->white : own, VL_PARAMETER_ILLUMINANT), lambda));
 }
 
 spectrum emitted_by_surface(const world *w, const shade_record *at, vector towards, const wavelengths *lambda) {
@@ -56,8 +55,8 @@ spectrum emitted_by_surface(const world *w, const shade_record *at, vector towar
   return times(radiance, spectrum_at(w, &image, VL_PARAMETER_UNBOUNDED, at, lambda));
 }
 
-/* An area looks smaller by its cosine and by the square of the distance: density per solid angle = density per area
- * times distance^2 / cosine. */
+/* Seen from the point, an area fills a solid angle of area cosine / distance^2: density per solid angle = density per
+ * area times distance^2 / cosine (pbrt book 4.2.3). Each light is asked with the probability 1 / light_count. */
 double density_of_surface(const world *w, const shade_record *at, vector point) {
   vector to_light = subtract(at->point, point);
   double distance2 = dot(to_light, to_light);
@@ -72,7 +71,7 @@ bool aim_at(vector place, vector point, light_sample *result) {
   return result->distance > 0;
 }
 
-/* A surface with alpha 0 everywhere is invisible: rays pass, light samples do not notice. */
+/* A surface with alpha 0 everywhere shines, as in pbrt-v4, though no ray meets it. */
 static bool sample_surface(const world *w, const light *l, vector point, sampler *s, const wavelengths *lambda,
                            light_sample *result) {
   shade_record at = {0};
@@ -86,7 +85,7 @@ static bool sample_surface(const world *w, const light *l, vector point, sampler
   return result->density > 0;
 }
 
-/* pbrt's smooth step between the cone's two cosines; glTF's is a square. */
+/* From 0 at the outer cone of a spot to 1 at the inner one: pbrt's smooth step (book 12.2.1), or glTF's square. */
 static double spot_share(const vlLightDef *def, double cosine) {
   double outer = cos((double)def->cone_angle), inner = cos((double)def->cone_angle - (double)def->cone_delta);
   if (inner == outer) return cosine >= outer ? 1 : 0;
@@ -94,30 +93,32 @@ static double spot_share(const vlLightDef *def, double cosine) {
   return def->cone_squared ? t * t : t * t * (3 - 2 * t);
 }
 
-/* All lights are drawn with the same probability: simple, and wasteful where some are far. The intensity of a point
- * becomes radiance by the square of the distance. */
-bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result) {
-  if (w->light_count == 0) return false;
-  const light *l = &w->lights[choose(s, w->light_count)];
-  *result = (light_sample){.distance = (double)INFINITY, .single = true, .density = 1.0 / w->light_count};
-  if (!l->def) return sample_surface(w, l, point, s, lambda, result);
+/* Light from one direction, or from one place: its intensity becomes radiance by the square of the distance. */
+static bool sample_lamp(const light *l, vector point, const wavelengths *lambda, light_sample *result) {
   vector from = transform_point(&l->world_from_light, from_floats(l->def->from));
   vector to = transform_point(&l->world_from_light, from_floats(l->def->to));
   vector axis = normalize(subtract(to, from));
   result->direction = negate(axis);
   result->radiance = light_color(l, lambda);
-  if (l->def->kind == VL_LIGHT_INFINITE) {
-    result->direction = sample_sky(l, s);
-    result->single = false;
-    result->radiance = sky_radiance(l, point, result->direction, lambda);
-    result->density = sky_density(w, l, result->direction);
-    return true;
-  }
-  bool spot = l->def->kind == VL_LIGHT_SPOT;
   if (l->def->kind == VL_LIGHT_DISTANT) return true;
   if (!aim_at(from, point, result)) return false;
-  spectrum share = gray(spot ? spot_share(l->def, -dot(result->direction, axis)) : 1);
+  spectrum share = gray(1);
+  if (l->def->kind == VL_LIGHT_SPOT) share = gray(spot_share(l->def, -dot(result->direction, axis)));
   if (l->map.image) share = shown_by_lamp(l, negate(result->direction), lambda);
   result->radiance = scaled(1 / square(result->distance), times(share, result->radiance));
+  return true;
+}
+
+/* All lights are drawn with the same probability: simple, and wasteful where some are far. */
+bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result) {
+  if (w->light_count == 0) return false;
+  const light *l = &w->lights[choose(s, w->light_count)];
+  *result = (light_sample){.distance = (double)INFINITY, .single = true, .density = 1.0 / w->light_count};
+  if (!l->def) return sample_surface(w, l, point, s, lambda, result);
+  if (l->def->kind != VL_LIGHT_INFINITE) return sample_lamp(l, point, lambda, result);
+  result->direction = sample_sky(l, s);
+  result->single = false;
+  result->radiance = sky_radiance(l, point, result->direction, lambda);
+  result->density = sky_density(w, l, result->direction);
   return true;
 }

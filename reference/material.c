@@ -10,7 +10,7 @@ const vlMaterialDef *material_at(const world *w, const shade_record *at, sampler
   return m ? m : &w->standard_material;
 }
 
-/* The roughness of files is perceptual; alpha, the slope of the mirrors, is its root (pbrt book 9.6). */
+/* alpha is the slope of the small mirrors (pbrt book 9.6), or the root of a roughness that looks even from 0 to 1. */
 double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at) {
   double r = number_at(w, roughness, at);
   return m->remap_roughness ? sqrt(fmax(0, r)) : r;
@@ -25,7 +25,7 @@ spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_reco
 double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda) {
   static const wavelengths sodium = {.nm = {589}};
   double ior = color_at(find_color(&eta->value, VL_PARAMETER_UNBOUNDED), lambda->rgb ? &sodium : lambda).c[0];
-  return ior == 0 ? 1 : ior;
+  return ior == 0 ? 1 : ior; /* 0: it is not given */
 }
 
 /* A metal's index of refraction, or that of a metal of reflectance r at normal incidence: eta = 1,

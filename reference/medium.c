@@ -23,16 +23,17 @@ spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s,
   return t;
 }
 
-/* The distance is drawn with the density sigma_s exp(-sigma_s x) of one channel; absorption is a factor. The result is
- * divided by the mean density over all channels, so that each may have been the one (balance heuristic). */
+/* The distance x to where the path scatters is drawn with the density sigma_s exp(-sigma_s x) of one channel (pbrt book
+ * A.4.2); absorption is only a factor. As each channel may have been the one, what is left of the light is divided by
+ * the mean of their densities: that of x, or the probability exp(-sigma_s distance) of passing (balance heuristic). */
 bool scatters_before(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
                      spectrum *throughput, spectrum *emitted) {
   if (!is_homogeneous(m)) return scatters_in_more(m, r, distance, s, lambda, throughput, emitted);
   *emitted = plus(*emitted, times(*throughput, emission_along(m, *distance, lambda)));
   spectrum sigma_s = coefficient(m, &m->sigma_s, lambda);
   uint32_t channels = channels_of(lambda);
-  double by = sigma_s.c[choose(s, channels)];
-  double flight = by > 0 ? -log1p(-next_number(s)) / by : (double)INFINITY;
+  double chosen = sigma_s.c[choose(s, channels)];
+  double flight = chosen > 0 ? -log1p(-next_number(s)) / chosen : (double)INFINITY;
   bool scatters = flight < *distance;
   if (scatters) *distance = flight;
   double density = 0;
@@ -50,7 +51,8 @@ bsdf phase_function(const vlMediumDef *m, vector wo) {
   return (bsdf){.kind = BSDF_PHASE, .g = (double)m->g, .frame = make_frame(wo, make_vector(0.3, 0.5, 0.8))};
 }
 
-/* pbrt book 11.3.1, with the cosine between wo and wi; both point away. */
+/* Henyey and Greenstein: (1 - g^2) / (4 pi (1 + g^2 + 2 g cos)^1.5), with the cosine between wo and wi, which both
+ * point away (pbrt book 11.3.1). The cosine is drawn by the inverse of the formula's integral; g = 0 is uniform. */
 double phase(double g, vector wo, vector wi) {
   double d = 1 + g * g + 2 * g * dot(wo, wi);
   return (1 - g * g) / (4 * PI * d * sqrt(fmax(1e-300, d)));

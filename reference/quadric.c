@@ -1,17 +1,17 @@
-/* quadric.c: spheres, disks and cylinders (pbrt book 6.2 to 6.4), also parts of them. Each is a profile (r, z) that is
- * turned around the z axis of its own space. */
+/* quadric.c: spheres, cylinders and disks (pbrt book 6.2 to 6.4), also parts of them. Each is a profile that is turned
+ * around the z axis of its own space: half a circle, a line along the axis, a line towards it. */
 #include "world.h"
 
 typedef struct profile {
-  double r, z, dr, dz; /* and the derivatives by v */
+  double r, z, dr, dz; /* distance of a point from the axis, height, and their derivatives by v */
 } profile;
 
-/* Polar angle of a point of a sphere at height z. */
+/* The angle between the z axis and a point of a sphere at height z. */
 static double theta_at(const vlShapeDef *def, double z) {
   return acos(clamp(z / (double)def->radius, -1, 1));
 }
 
-/* v = 0 to 1 goes from the bottom to the top, or from the disk's edge inwards. */
+/* The point of the profile at v, 0 to 1: from the bottom to the top, or from the disk's edge inwards. */
 static profile profile_at(const vlShapeDef *def, double v) {
   double radius = (double)def->radius, bottom = (double)def->z_min, height = (double)def->z_max - bottom;
   double inwards = (double)def->inner_radius - radius;
@@ -23,20 +23,20 @@ static profile profile_at(const vlShapeDef *def, double v) {
   return (profile){r, z, z * range, -r * range};
 }
 
-/* The coordinates of a point of the whole sphere, disk or cylinder. They are 0 to 1 on the part that the shape keeps.
- */
+/* (u, v) of a point of the whole sphere, disk or cylinder, as m->a and m->b. The shape keeps the part where both are 0
+ * to 1: u is the angle around the axis, v the way along the profile. */
 static void coordinates_of(const vlShapeDef *def, vector p, meeting *m) {
-  profile first = profile_at(def, 0), last = profile_at(def, 1);
-  double phi = atan2(p.y, p.x), theta0 = theta_at(def, first.z), theta1 = theta_at(def, last.z);
+  profile start = profile_at(def, 0), end = profile_at(def, 1);
+  double phi = atan2(p.y, p.x), theta0 = theta_at(def, start.z), theta1 = theta_at(def, end.z);
   m->a = (phi < 0 ? phi + 2 * PI : phi) / (double)def->phi_max;
   if (def->kind == VL_SHAPE_SPHERE) m->b = (theta_at(def, p.z) - theta0) / (theta1 - theta0);
-  if (def->kind == VL_SHAPE_CYLINDER) m->b = (p.z - first.z) / (last.z - first.z);
-  if (def->kind == VL_SHAPE_DISK) m->b = (sqrt(p.x * p.x + p.y * p.y) - first.r) / (last.r - first.r);
+  if (def->kind == VL_SHAPE_CYLINDER) m->b = (p.z - start.z) / (end.z - start.z);
+  if (def->kind == VL_SHAPE_DISK) m->b = (sqrt(p.x * p.x + p.y * p.y) - start.r) / (end.r - start.r);
 }
 
-/* The points o + t d of the surface are the roots of a t^2 + 2 b t + c: put into x^2 + y^2 + z^2 = radius^2 for a
- * sphere, x^2 + y^2 = radius^2 for a cylinder, z = height for a disk. In the shape's space t is the same if the
- * direction keeps its length. */
+/* Where the point o + t d is on the surface: it is put into x^2 + y^2 + z^2 = radius^2 for a sphere, x^2 + y^2 =
+ * radius^2 for a cylinder, z = height for a disk, which gives a t^2 + 2 b t + c = 0. The ray goes to the shape's space
+ * as it is, without normalizing its direction there: then t is the same as in the world. */
 bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   const placement *where = &w->placements[p->placement];
   const vlShapeDef *def = where->def;
@@ -50,7 +50,7 @@ bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m) {
   double c = disk ? o.z - (double)def->height : dot(o, o) - square((double)def->radius);
   double discriminant = b * b - a * c;
   if (!(discriminant >= 0)) return false;
-  double q = -(b + copysign(sqrt(discriminant), b)); /* a sum of equal signs: nothing cancels */
+  double q = -(b + copysign(sqrt(discriminant), b)); /* equal signs: no digits cancel. A disk has a = 0 and one root */
   double t[2] = {fmin(q / a, c / q), fmax(q / a, c / q)};
   for (int i = 0; i < 2; i++) {
     if (!(t[i] > r.t_min && t[i] < r.t_max)) continue;

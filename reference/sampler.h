@@ -13,12 +13,12 @@ typedef struct square_point {
   double x, y;
 } square_point;
 
-/* A stream of its own for each pixel, sample and seed. */
+/* Where the numbers start: elsewhere for each seed, pixel and sample. The factors are large odd numbers. */
 static inline sampler make_sampler(uint64_t seed, uint64_t pixel, uint64_t sample) {
   return (sampler){seed * 0x9e3779b97f4a7c15u ^ pixel * 0xd1b54a32d192ed03u ^ sample * 0x8cb92ba72f3d8dd7u};
 }
 
-/* The next number: splitmix64 (Steele, Lea, Flood 2014), its upper 53 bits as a fraction. */
+/* The next number, by splitmix64 (Steele, Lea, Flood 2014): 53 bits, as many as a double holds, as a fraction. */
 static inline double next_number(sampler *s) {
   s->state += 0x9e3779b97f4a7c15u;
   uint64_t z = s->state;

@@ -7,8 +7,8 @@ static void sky_pixel(const light *l, uint32_t index, double rgb[4]) {
   for (int c = 0; c < 3; c++) rgb[c] = fmax(0, rgb[c]);
 }
 
-/* The table of sums of the pixels' luminances: a number drawn from 0 to 1 lies between two of them, which is the pixel.
- * A tenth of the samples is spread evenly, so that no direction that shines is left out. */
+/* sums[i] is the luminance of the first i pixels, as a share of all: of the numbers 0 to 1 pixel i has those from
+ * sums[i] to sums[i + 1]. A tenth is spread evenly over all pixels, so that none that shines is left out. */
 void make_sky(light *l) {
   uint32_t count = l->map.width * l->map.width;
   l->sums = resize(NULL, (size_t)count + 1, sizeof *l->sums);
@@ -38,13 +38,13 @@ spectrum sky_radiance(const light *l, vector from, vector direction, const wavel
   return times(light_color(l, lambda), texel_spectrum(l->def->space, rgb, VL_PARAMETER_UNBOUNDED, lambda));
 }
 
-/* The pixel's share of all samples over its solid angle, 4 pi / n^2. */
+/* The pixel's share of all samples, over its solid angle: all pixels have the same, 4 pi / n^2. */
 double sky_density(const world *w, const light *l, vector direction) {
   uint32_t i = l->sums ? pixel_at(l, direction) : 0;
   return (l->sums ? (l->sums[i + 1] - l->sums[i]) * square(l->map.width) : 1) / (4 * PI) / w->light_count;
 }
 
-/* Halves the table until one pixel is left. */
+/* The pixel that has the number u: the table is halved until one is left. In it, any point. */
 vector sample_sky(const light *l, sampler *s) {
   if (!l->sums) return direction_of(sample_unit_square(s));
   uint32_t n = l->map.width, low = 0, high = n * n;

@@ -43,7 +43,7 @@ static inline vector normalize(vector a) {
 static inline vector face_forward(vector a, vector b) {
   return dot(a, b) < 0 ? negate(a) : a;
 }
-/* The weighted sum of three vectors. */
+/* The weighted sum wa a + wb b + wc c. */
 static inline vector blend(vector a, vector b, vector c, double wa, double wb, double wc) {
   return add(scale(wa, a), add(scale(wb, b), scale(wc, c)));
 }
@@ -62,6 +62,7 @@ typedef struct frame {
 } frame;
 typedef frame matrix;
 
+/* The library's matrices: 16 numbers, row after row. Their columns are the axes and the origin. */
 static inline matrix load_matrix(const double m[16]) {
   return (matrix){{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[3], m[7], m[11]}};
 }
@@ -72,7 +73,7 @@ static inline vector transform_vector(const matrix *a, vector v) {
 static inline vector transform_point(const matrix *a, vector p) {
   return add(a->origin, transform_vector(a, p));
 }
-/* Normals are transformed by the inverse transposed; `inverse` is the inverse of the transform. */
+/* A normal stays perpendicular to its surface by the transpose of the inverse, here given (pbrt book 3.10.3). */
 static inline vector transform_normal(const matrix *inverse, vector n) {
   return make_vector(dot(inverse->x, n), dot(inverse->y, n), dot(inverse->z, n));
 }
@@ -80,21 +81,21 @@ static inline matrix multiply(matrix a, matrix b) {
   return (matrix){transform_vector(&a, b.x), transform_vector(&a, b.y), transform_vector(&a, b.z),
                   transform_point(&a, b.origin)};
 }
-/* Negative where the transform mirrors. */
+/* The volume of the unit cube after the transform; negative where the transform mirrors. */
 static inline double determinant(const matrix *a) {
   return dot(a->x, cross(a->y, a->z));
 }
 /* Cramer's rule: the rows of the inverse are cross products of the columns over the determinant. */
 static inline matrix invert(const matrix *a) {
   double d = 1 / determinant(a);
-  vector r0 = scale(d, cross(a->y, a->z)), r1 = scale(d, cross(a->z, a->x)), r2 = scale(d, cross(a->x, a->y));
-  matrix inverse = {{r0.x, r1.x, r2.x}, {r0.y, r1.y, r2.y}, {r0.z, r1.z, r2.z}, {0, 0, 0}};
+  vector row0 = scale(d, cross(a->y, a->z)), row1 = scale(d, cross(a->z, a->x)), row2 = scale(d, cross(a->x, a->y));
+  matrix inverse = {{row0.x, row1.x, row2.x}, {row0.y, row1.y, row2.y}, {row0.z, row1.z, row2.z}, {0, 0, 0}};
   inverse.origin = negate(transform_vector(&inverse, a->origin));
   return inverse;
 }
 
-/* An orthonormal frame whose z axis is the normal n. x follows the tangent as far as it can (Gram-Schmidt); any x will
- * do where the tangent is parallel to n. */
+/* The lecture's compute_uvw: three axes of length 1, perpendicular to each other. z is the normal n; x is the tangent
+ * without its part along n (Gram-Schmidt). Where nothing is left of the tangent, any x perpendicular to n will do. */
 static inline frame make_frame(vector n, vector tangent) {
   vector x = subtract(tangent, scale(dot(n, tangent), n));
   if (!(length(x) > 1e-9 * length(tangent)))
@@ -102,7 +103,7 @@ static inline frame make_frame(vector n, vector tangent) {
   x = normalize(x);
   return (frame){x, cross(n, x), n, {0, 0, 0}};
 }
-/* Directions in the axes of an orthonormal frame, and back. */
+/* A direction of the world in the axes of an orthonormal frame, and back. */
 static inline vector to_local(frame f, vector v) {
   return make_vector(dot(v, f.x), dot(v, f.y), dot(v, f.z));
 }

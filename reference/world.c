@@ -3,8 +3,8 @@
 #include "more/more.h"
 #include "program/program.h"
 
-/* Sides follow pbrt-v4: a mirrored quadric turns its normals over, a mirrored mesh does not (its normal is defined in
- * its own space), and instances never turn normals. */
+/* Which side is the outside follows pbrt-v4: a mirroring transform of the shape turns the normals of a quadric over,
+ * not those of a mesh, and that of an instance turns none. */
 static placement place(const vlShapeDef *def, matrix world_from_group, motion *moves) {
   placement p = {.def = def, .moves = moves};
   matrix group_from_shape = load_matrix(def->group_from_shape);
@@ -23,8 +23,8 @@ static void add_primitive(world *w, uint32_t index, uint32_t face, uint32_t corn
   const vlShapeDef *def = where->def;
   primitive p = {.placement = index, .face = face, .light = -1};
   for (uint32_t k = 0; k < corners; k++) {
-    size_t own = (size_t)corners * face + k;
-    const float *position = def->positions + 3 * (def->indices ? def->indices[own] : own);
+    size_t i = (size_t)corners * face + k;
+    const float *position = def->positions + 3 * (def->indices ? def->indices[i] : i);
     p.corner[k] = transform_point(&where->world_from_shape, from_floats(position));
   }
   vector n = cross(subtract(p.corner[1], p.corner[0]), subtract(p.corner[2], p.corner[0]));

@@ -10,8 +10,7 @@
 /* A ray: the points origin + t direction for t between t_min and t_max; the direction has length 1. */
 typedef struct ray {
   vector origin, direction;
-  double t_min, t_max;
-  double time; /* seconds */
+  double t_min, t_max, time; /* time in seconds */
 } ray;
 
 typedef struct motion motion; /* of more/motion.c */
@@ -20,9 +19,9 @@ typedef struct motion motion; /* of more/motion.c */
 typedef struct placement {
   const vlShapeDef *def;
   matrix world_from_shape, shape_from_world;
-  bool mesh_mirrored; /* the cross product of a triangle's edges in the world points to its inside */
-  bool flip;          /* normals of quadrics point to the inside */
-  motion *moves;      /* null: at rest; else the other members are those of its first pose */
+  bool mesh_mirrored; /* world_from_shape mirrors: cross products of edges, taken in the world, point to the inside */
+  bool flip;          /* a quadric's normals are turned over */
+  motion *moves;      /* null: at rest; else the matrices are those of its first pose */
 } placement;
 
 /* What rays are tested against: a triangle, or a whole quadric. */
@@ -42,9 +41,9 @@ typedef struct shade_record {
   vector shading_normal; /* interpolated between the vertices, on the same side */
   vector tangent;        /* along u */
   double u, v;
-  double area_density; /* with which sample_shape draws this point, per area */
-  double a, b;         /* the point in the primitive's own two coordinates */
-  vector arrival;      /* direction of the ray that met the point */
+  double area_density; /* how often sample_shape draws points here, per area */
+  double a, b;         /* the point in the primitive's own two coordinates, as in a meeting */
+  vector arrival;      /* the direction of the ray that met the point */
   double thickness;    /* of a curve, else 0: how far off the surface a new ray starts */
   const primitive *what;
   const placement *where; /* null: not on a surface, but inside a medium */
@@ -63,11 +62,10 @@ typedef struct light {
   const vlEmissionDef *emission;
   const primitive *what;
   double factor;    /* on the colour */
-  vlSpectrum white; /* of what an image shows */
   image_map map;    /* the image that it shows; empty for most */
+  vlSpectrum white; /* the white of the image's colour space */
   matrix world_from_light, light_from_world;
-  /* the sky: the table from which directions are drawn in proportion to its image */
-  double *sums; /* of all pixels before each one, row by row, over the sum of all: width^2 + 1 numbers; null: even */
+  double *sums; /* of a sky with an image: the table of make_sky; null: all directions are alike */
 } light;
 
 typedef struct node node; /* of program/accelerator.c */
@@ -98,8 +96,8 @@ typedef struct meeting {
   double t, a, b;
 } meeting;
 
-/* The nearest surface along the ray, or false. Surfaces that are partly transparent (alpha) count with that
- * probability. program/accelerator.c asks nearest_of only for primitives whose boxes the ray meets. */
+/* The nearest surface along the ray, or false. Where a surface is only partly there (alpha), a lot decides.
+ * program/accelerator.c asks nearest_of only for primitives whose boxes the ray meets. */
 bool find_hit(const world *w, ray r, sampler *s, shade_record *hit);
 /* The nearest of `count` primitives; r->t_max becomes its distance. */
 bool nearest_of(const world *w, uint32_t first, uint32_t count, ray *r, sampler *s, shade_record *hit);
@@ -111,9 +109,6 @@ bool meet_triangle(const primitive *p, ray r, meeting *m);
 void triangle_surface(const world *w, const primitive *p, double b1, double b2, shade_record *record);
 bool meet_quadric(const world *w, const primitive *p, ray r, meeting *m);
 void quadric_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
-/* The normals of meshes: the vertex normals, if there are any, are blended with the vertices' weights. */
-void mesh_normals(const placement *where, const uint32_t *vertices, const double *weights, int count, vector by_edges,
-                  shade_record *record);
 
 /* ---- tracer.c, camera.c ------------------------------------------------------------------------------------------ */
 
@@ -121,8 +116,7 @@ void mesh_normals(const placement *where, const uint32_t *vertices, const double
  * the ray met a surface. */
 spectrum trace_ray(const world *w, ray r, const vlMediumDef *inside, uint32_t max_depth, sampler *s,
                    wavelengths *lambda, bool *met);
-/* The distance below which a new ray does not count hits: it begins on a surface, and rounding must not let it meet
- * that surface again. */
+/* Where a new ray begins to count hits: rounding must not let it meet the surface that it leaves. */
 double surface_distance(const world *w, vector p);
 /* The ray through the point (x, y) of the image, in pixels from its top left corner, at the time r->time. False: the
  * point is outside of the camera's image circle. */
@@ -130,26 +124,19 @@ bool camera_ray(const vlCamera *c, double x, double y, sampler *s, ray *r);
 
 /* ---- material.c, texture.c, image_map.c -------------------------------------------------------------------------- */
 
-/* The material at the point: of a mix one of its two, drawn by their shares. */
+/* The material at the point: of a mix one of its two, by lot. */
 const vlMaterialDef *material_at(const world *w, const shade_record *at, sampler *s);
-/* The BSDF at the point. It may keep only the first wavelength: glass whose index depends on it. */
+/* The BSDF at the point. Glass whose index depends on the wavelength leaves the path only the first one. */
 bsdf make_bsdf(const world *w, const vlMaterialDef *m, const shade_record *at, wavelengths *lambda);
-spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda);
-double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at);
-/* Index of refraction: of glass (in RGB that of catalogues, at the yellow line of sodium); eta and k of a metal. */
-double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda);
-void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b);
 
 /* An input of a material or shape: its texture's value at the point, else its own (pbrt book 10). */
 double number_at(const world *w, vlFloatInput input, const shade_record *at);
 spectrum spectrum_at(const world *w, const vlSpectrumInput *input, vlParameterRole role, const shade_record *at,
                      const wavelengths *lambda);
-square_point texture_coordinates(const vlTextureDef *def, const shade_record *at);
 
 /* Reads the images of all textures, or that of a light. False, with an error. */
 bool read_images(world *w, vlError *error);
 bool read_light_image(const world *w, light *l, vlError *error);
-image_map make_image_map(const vlImage *image);
 /* The pixel at (x, y), which may lie outside: `wrap` says what is there. All four values are set, and linear: grey
  * fills the colours, a missing coverage is 1. */
 void pixel_of(const image_map *map, long x, long y, vlWrap wrap_s, vlWrap wrap_t, double value[4]);
@@ -158,19 +145,19 @@ void pixels_around(const image_map *map, double s, double t, vlWrap wrap_s, vlWr
 
 /* ---- light.c, sky.c, medium.c ------------------------------------------------------------------------------------ */
 
-/* Light that arrives at a point from a sample of a light. */
+/* What a point gets from a light that was asked, if nothing is between. */
 typedef struct light_sample {
   vector direction; /* from the point to the light */
   double distance;  /* infinite for the sky */
   spectrum radiance;
-  double density; /* per solid angle; for light from one point or direction the share of samples */
-  bool single;    /* from one point or direction: no ray can meet it by chance */
+  double density; /* per solid angle; of one point or direction, the probability of asking it */
+  bool single;    /* no ray can meet this light by chance */
 } light_sample;
 
 bool read_lights(world *w, vlError *error);
 /* One sample of one light, both drawn; the density includes the choice. */
 bool sample_light(const world *w, vector point, sampler *s, const wavelengths *lambda, light_sample *result);
-/* The sample's direction and distance, if it comes from this place. */
+/* Sets direction and distance from a point to a place; false if there is no way between. */
 bool aim_at(vector place, vector point, light_sample *result);
 /* A light's colour times its factor. */
 spectrum light_color(const light *l, const wavelengths *lambda);
@@ -187,8 +174,6 @@ vector sample_sky(const light *l, sampler *s);
 const vlMediumDef *medium_of(const world *w, vlMediumId id);
 /* The medium that a ray enters when it goes on from a point in a direction; `now` where no surface separates media. */
 const vlMediumDef *medium_beyond(const world *w, const shade_record *at, vector direction, const vlMediumDef *now);
-/* sigma_a or sigma_s, per unit of length. */
-spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavelengths *lambda);
 /* The share of light that is left after a distance along the ray. */
 spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda);
 /* Draws where a path along the ray scatters, before a distance; the throughput becomes what is left there, over the

@@ -3,6 +3,19 @@
 #pragma once
 #include "world.h"
 
+/* What more/ takes from files of the core, beside world.h. triangle.c: the normals of meshes; the vertex normals, if
+ * there are any, are blended with the vertices' weights. material.c: inputs of materials, the index of refraction of
+ * glass (in RGB that of catalogues, at the yellow line of sodium), eta and k of a metal. medium.c: sigma per unit of
+ * length. texture.c: the coordinates (s, t). */
+square_point texture_coordinates(const vlTextureDef *def, const shade_record *at);
+void mesh_normals(const placement *where, const uint32_t *vertices, const double *weights, int count, vector by_edges,
+                  shade_record *record);
+spectrum reflectance_at(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda);
+double alpha_at(const world *w, const vlMaterialDef *m, vlFloatInput roughness, const shade_record *at);
+double ior_of(const vlSpectrumInput *eta, const wavelengths *lambda);
+void make_metal(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda, bsdf *b);
+spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavelengths *lambda);
+
 /* more/patch.c: shapes with corners. The number of corners of a face is 0 for a shape that is one primitive. */
 uint32_t more_corners(const vlShapeDef *def);
 bool meet_more(const world *w, const primitive *p, ray r, meeting *m);

@@ -1,4 +1,4 @@
-/* program/command.c: the command line. */
+/* program/command.c: the command line, and what begins and ends the program. */
 #include "command.h"
 
 #include <stdio.h>
@@ -65,4 +65,19 @@ void apply_options(options *o, vlSceneDefs *defs, vlCamera *camera) {
   defs->film.width = (uint32_t)o->width;
   defs->film.height = (uint32_t)o->height;
   memset(defs->film.crop, 0, sizeof defs->film.crop);
+}
+
+int main(int count, char **arguments) {
+  options o;
+  static vlContext *context;
+  static vlScene *scene;
+  vlContextDef def = vl_default_context_def();
+  vlError error = {.code = VL_ERROR_MEMORY, .message = "not rendered"};
+  if (!read_options(count, arguments, &o)) return 2;
+  if (vl_context_create(&def, &context) == VL_OK && vl_scene_create(context, &scene) == VL_OK &&
+      render_file(context, &o, scene, &error))
+    return 0;
+  if (error.file[0]) fprintf(stderr, "%s:%u:%u: ", error.file, error.line, error.column);
+  fprintf(stderr, "%s\n", error.message);
+  return error.code == VL_ERROR_MISSING ? 4 : error.code == VL_ERROR_IO ? 5 : 3;
 }

@@ -20,3 +20,5 @@ typedef struct options {
 bool read_options(int count, char **arguments, options *o);
 /* Puts the options in the place of what the scene's file says, and the scene's depth into the options. */
 void apply_options(options *o, vlSceneDefs *defs, vlCamera *camera);
+/* render.c: renders the scene of the options into their file. */
+bool render_file(vlContext *context, options *o, vlScene *scene, vlError *error);

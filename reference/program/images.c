@@ -3,7 +3,7 @@
 
 #include "world.h"
 
-image_map make_image_map(const vlImage *image) {
+static image_map make_image_map(const vlImage *image) {
   image_map map = {.image = image, .width = vl_image_width(image), .height = vl_image_height(image)};
   map.channels = vl_image_shown(image, map.channel);
   return map;

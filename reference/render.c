@@ -1,14 +1,13 @@
-/* main.c: velo-reference, a small path tracer for reading, and for checking velo. It takes the scene's description,
- * image files and colour tables from the library, and computes everything else itself, one ray at a time.
- * program/command.h has the command line. */
+/* render.c: how an image is made. The library (vl_...) gives the description of the scene, the images in files and the
+ * tables of colours; everything else is computed here. */
 #include <stdio.h>
 
 #include "more/more.h"
 #include "program/command.h"
 #include "program/program.h"
 
-/* The lecture's render_scene: for each pixel and each of its samples a primary ray, and what the ray brings back. Rows
- * go down; the lecture's go up. Returns the number of samples that were lost because they were not finite. */
+/* The lecture's render_scene: for each pixel and each of its samples a primary ray, and the light that it brings back.
+ * Rows go down; the lecture's go up. Returns how many samples were left out, since a NaN or infinity is in them. */
 static unsigned long render_scene(const world *w, const vlCamera *camera, const vlMediumDef *around_camera,
                                   view_plane *plane, const options *o) {
   unsigned long lost = 0;
@@ -33,14 +32,14 @@ static unsigned long render_scene(const world *w, const vlCamera *camera, const 
   return lost;
 }
 
-static bool render_file(vlContext *context, options *o, vlScene *scene, vlError *error) {
+bool render_file(vlContext *context, options *o, vlScene *scene, vlError *error) {
   vlCamera camera;
   vlSceneDefs *defs = vl_scene_defs(scene);
   if (vl_scene_load(scene, o->scene, NULL, error) != VL_OK || vl_scene_complete(scene, NULL, error) != VL_OK ||
       vl_camera_make(&defs->camera, &camera, NULL, error) != VL_OK)
     return false;
   apply_options(o, defs, &camera);
-  static world w; /* static: their memory is given back when the program ends */
+  static world w; /* static, like all memory of this program: until its end */
   static view_plane plane;
   static vlImage *image;
   if (!check_scene(context, scene, &camera, error) || !make_world(context, scene, &w, error)) return false;
@@ -48,19 +47,4 @@ static bool render_file(vlContext *context, options *o, vlScene *scene, vlError 
   unsigned long lost = render_scene(&w, &camera, medium_of(&w, defs->camera_medium), &plane, o);
   if (lost > 0) fprintf(stderr, "velo-reference: %lu samples were not finite\n", lost);
   return make_image(&plane, context, &image) && vl_image_write(image, o->output, NULL, error) == VL_OK;
-}
-
-int main(int count, char **arguments) {
-  options o;
-  static vlContext *context;
-  static vlScene *scene;
-  vlContextDef def = vl_default_context_def();
-  vlError error = {.code = VL_ERROR_MEMORY, .message = "not rendered"};
-  if (!read_options(count, arguments, &o)) return 2;
-  if (vl_context_create(&def, &context) == VL_OK && vl_scene_create(context, &scene) == VL_OK &&
-      render_file(context, &o, scene, &error))
-    return 0;
-  if (error.file[0]) fprintf(stderr, "%s:%u:%u: ", error.file, error.line, error.column);
-  fprintf(stderr, "%s\n", error.message);
-  return error.code == VL_ERROR_MISSING ? 4 : error.code == VL_ERROR_IO ? 5 : 3;
 }

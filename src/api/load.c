@@ -7,6 +7,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "base/text.h"
 #include "base/unset.h"
 #include "import/import.h"
@@ -69,7 +70,9 @@ vlResult vl_scene_load_memory(vlScene *scene, const char *name, const void *data
   if (!data && size) return vl_fail(error, VL_ERROR_ARGUMENT, "scene load: data is null");
   vlTask task;
   start_task(scene, &task, def);
+  unsigned floats = vl_machine_set_floats();
   result = vl_import_pbrt_memory(scene, data ? data : "", size, name, def, error);
+  vl_machine_restore_floats(floats);
   scene->task = NULL;
   return result;
 }
@@ -90,7 +93,9 @@ vlResult vl_scene_load(vlScene *scene, const char *path, const vlLoadDef *def, v
   if (import) {
     vlTask task;
     start_task(scene, &task, def);
+    unsigned floats = vl_machine_set_floats();
     vlResult result = vl_scene_stopped(scene, 0) ? vl_scene_result(scene, error) : import(scene, path, def, error);
+    vl_machine_restore_floats(floats);
     scene->task = NULL;
     return result == VL_OK && scene->camera_in_full ? load_whole_camera(scene, path, def, error) : result;
   }

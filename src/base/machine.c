@@ -83,37 +83,22 @@ void vl_machine_large_pages(void *block, size_t size) {
 #endif
 }
 
-unsigned vl_machine_flush_denormals(void) {
+unsigned vl_machine_set_floats(void) {
 #if defined(__SSE__)
   unsigned state = _mm_getcsr();
-  _mm_setcsr(state | 0x8040u); /* bits FTZ (results) and DAZ (inputs): denormals become 0 */
+  _mm_setcsr(0x1f80u); /* no traps, rounding to nearest, neither FTZ nor DAZ */
   return state;
 #elif defined(__aarch64__)
   uint64_t state;
   __asm__ volatile("mrs %0, fpcr" : "=r"(state));
-  __asm__ volatile("msr fpcr, %0" ::"r"(state | UINT64_C(1) << 24)); /* bit FZ: denormal inputs and results become 0 */
-  return (unsigned)state;                                            /* the upper half of the register is reserved */
+  __asm__ volatile("msr fpcr, %0" ::"r"(UINT64_C(0))); /* the same */
+  return (unsigned)state;                              /* the upper half of the register is reserved */
 #else
   return 0;
 #endif
 }
 
-unsigned vl_machine_keep_denormals(void) {
-#if defined(__SSE__)
-  unsigned state = _mm_getcsr();
-  _mm_setcsr(state & ~0x8040u);
-  return state;
-#elif defined(__aarch64__)
-  uint64_t state;
-  __asm__ volatile("mrs %0, fpcr" : "=r"(state));
-  __asm__ volatile("msr fpcr, %0" ::"r"(state & ~(UINT64_C(1) << 24)));
-  return (unsigned)state;
-#else
-  return 0;
-#endif
-}
-
-void vl_machine_restore_denormals(unsigned state) {
+void vl_machine_restore_floats(unsigned state) {
 #if defined(__SSE__)
   _mm_setcsr(state);
 #elif defined(__aarch64__)

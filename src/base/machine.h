@@ -16,11 +16,10 @@ void vl_machine_return_memory(void);
  * this. Large pages cause fewer TLB misses. */
 void vl_machine_large_pages(void *block, size_t size);
 
-/* Makes this thread treat denormal floats as zero, as Embree recommends, if the processor supports this. Returns the
- * previous state for vl_machine_restore_denormals. */
-unsigned vl_machine_flush_denormals(void);
-void vl_machine_restore_denormals(unsigned state);
-/* Ends that mode while the caller's own code runs. Returns the previous state, as vl_machine_flush_denormals. */
-unsigned vl_machine_keep_denormals(void);
+/* Gives this thread the floating-point state in which velo traces, if the processor has one: rounding to nearest,
+ * denormal numbers kept (docs/decisions/0023-denormal-numbers.md). A library that was compiled with -ffast-math may
+ * have left another one, which new threads inherit. Returns the state before, for vl_machine_restore_floats. */
+unsigned vl_machine_set_floats(void);
+void vl_machine_restore_floats(unsigned state);
 
 #endif

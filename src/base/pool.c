@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "base/machine.h"
+
 typedef struct vlLoop {
   struct vlLoop *next;
   int priority;
@@ -78,6 +80,7 @@ static void *pool_thread(void *argument) {
   Slot slot = *(Slot *)argument;
   free(argument);
   vlPool *pool = slot.pool;
+  vl_machine_set_floats();
   pthread_mutex_lock(&pool->mutex);
   while (!pool->stop) {
     vlLoop *loop = choose(pool);
@@ -98,6 +101,7 @@ static void *pool_thread(void *argument) {
 
 void vl_pool_run(vlPool *pool, const vlLoopDef *def, uint32_t count, vlParallelFn *body, void *user) {
   vlLoop loop = {.priority = def->priority, .cancelled = def->cancelled, .body = body, .user = user, .count = count};
+  unsigned floats = vl_machine_set_floats();
   pthread_mutex_lock(&pool->mutex);
   loop.next = pool->loops;
   pool->loops = &loop;
@@ -112,6 +116,7 @@ void vl_pool_run(vlPool *pool, const vlLoopDef *def, uint32_t count, vlParallelF
   }
   while (loop.workers > 0) pthread_cond_wait(&pool->done, &pool->mutex);
   pthread_mutex_unlock(&pool->mutex);
+  vl_machine_restore_floats(floats);
 }
 
 void vl_pool_stop(vlPool *pool) {

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "base/error.h"
-#include "base/machine.h"
 #include "base/text.h"
 
 void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
@@ -14,9 +13,7 @@ void vl_own_rays(const vlCameraCompiled *c, uint32_t n, vlOwnRows *r) {
   for (uint32_t i = 0; i < VL_PAD(n); i++) r->weight[i] = 1.0;
   const vlOwnFilmPoints points = {n, c->own_size[0], c->own_size[1], r->x, r->y, r->lens_u, r->lens_v, r->time};
   const vlOwnRays rays = {r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->weight};
-  unsigned state = vl_machine_keep_denormals();
   c->own->rays(c->own->user, &points, &rays);
-  vl_machine_restore_denormals(state);
 }
 
 void vl_own_chief_rays(const vlCameraCompiled *c, uint32_t n, const double *x, const double *y, vlOwnRows *r) {
@@ -35,9 +32,7 @@ void vl_own_pixels(const vlCameraCompiled *c, uint32_t n, const double *x, const
   for (uint32_t i = 0; i < n; i++) film_x[i] = film_y[i] = (double)NAN;
   if (!c->own->pixels) return;
   const vlOwnSpacePoints points = {n, c->own_size[0], c->own_size[1], x, y, z, film_x, film_y};
-  unsigned state = vl_machine_keep_denormals();
   c->own->pixels(c->own->user, &points);
-  vl_machine_restore_denormals(state);
   for (uint32_t i = 0; i < n; i++) {
     film_x[i] = c->fx * film_x[i] + c->cx;
     film_y[i] = c->fy * film_y[i] + c->cy;

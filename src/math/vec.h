@@ -53,7 +53,7 @@ static inline float vl_abs(float x) {
 /* Largest float below 1. */
 #define VL_ONE_MINUS_EPSILON 0x1.fffffep-1f
 /* Lower bounds for divisors and for arguments of logarithms. A value below its bound is 0 or has no correct digit left.
- * All are normal floats: values below 2^-126 (1.2e-38) are flushed to 0. */
+ * All are normal floats: those below 2^-126 (1.2e-38) have fewer digits, and quotients by them overflow. */
 /* For products and squares of cosines, and for densities. Values up to 1e8 have a finite quotient. */
 #define VL_MIN_POSITIVE 1e-30f
 /* For squared lengths in scene units, which may be small. It is the smallest power of ten that is a normal float. */

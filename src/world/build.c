@@ -5,6 +5,7 @@
 #include "base/cookie.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/machine.h"
 #include "scene/scene.h"
 #include "world/world.h"
 
@@ -130,11 +131,17 @@ static vlResult build(const vlScene *scene, vlScene *giving, const vlBuildDef *d
 }
 
 vlResult vl_world_build(const vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
-  return build(scene, NULL, def, result, error);
+  unsigned floats = vl_machine_set_floats();
+  vlResult r = build(scene, NULL, def, result, error);
+  vl_machine_restore_floats(floats);
+  return r;
 }
 
 vlResult vl_world_build_last(vlScene *scene, const vlBuildDef *def, vlWorld **result, vlError *error) {
-  return build(scene, scene, def, result, error);
+  unsigned floats = vl_machine_set_floats();
+  vlResult r = build(scene, scene, def, result, error);
+  vl_machine_restore_floats(floats);
+  return r;
 }
 
 void vl_world_destroy(vlWorld *world) {

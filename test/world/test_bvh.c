@@ -274,7 +274,7 @@ static void make_rays(const vlWorld *w, Way way) {
   for (uint32_t k = 0; k < BATCH; k++) {
     float from[3], to[3], along[3], other[3], length = powf(10, 3 * random_signed());
     if (w->radius > 1e8f) length *= 1e-3f; /* products of larger numbers lose digits in Embree's reciprocal, */
-    if (w->radius < 1e-8f) length *= 1e3f; /* those of smaller ones are flushed to zero */
+    if (w->radius < 1e-8f) length *= 1e3f; /* those of smaller ones have few digits */
     time_[k] = w->moves ? (random_unit() < 0.1f ? (float)random_below(2) : random_unit()) : 0;
     point_of(w, time_[k], way == CORNERS ? (int)random_below(3) : -1, way == EDGES || way == ALONG, to, along);
     point_of(w, time_[k], way == AXES ? 0 : -1, false, from, other);

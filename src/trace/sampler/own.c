@@ -1,7 +1,6 @@
 /* trace/sampler/own.c: numbers of a sampler of one's own (velo/own.h): calls its function and checks what it gives. */
 #include <math.h>
 
-#include "base/machine.h"
 #include "math/vec.h"
 #include "trace/sampler/sampler.h"
 
@@ -23,9 +22,7 @@ void vl_own_numbers(const vlSampler *s, uint32_t n, const int32_t *px, const int
     if (v) v[i] = (float)NAN;
   }
   const vlOwnSamples samples = {n, px, py, index, dimension, v ? 2 : 1, s->seed, u, v};
-  unsigned state = vl_machine_keep_denormals();
   s->own->numbers(s->own->user, &samples);
-  vl_machine_restore_denormals(state);
   uint32_t bad = repair(n, VL_PAD(n), u) + (v ? repair(n, VL_PAD(n), v) : 0);
   if (bad && s->own_bad) atomic_fetch_add(s->own_bad, bad);
 }

@@ -1,21 +1,10 @@
-/* trace/tracer/own.c: the public functions of velo/trace.h. They switch to the floating-point state of the tracers, and
- * back to that of the caller's code. */
+/* trace/tracer/own.c: the public functions of velo/trace.h. */
 #include "trace/tracer/own.h"
-
-#include "base/machine.h"
-
-void vl_own_tracer_call(vlTrace *trace, const vlOwnTracer *own, const vlOwnPaths *paths) {
-  unsigned state = vl_machine_keep_denormals();
-  own->radiance(own->user, trace, paths);
-  vl_machine_restore_denormals(state);
-}
 
 /* Defines a public function whose arguments are `names`. */
 #define QUERY(function, member, parameters, names) \
   void function parameters {                       \
-    unsigned state = vl_machine_flush_denormals(); \
     trace->queries->member names;                  \
-    vl_machine_restore_denormals(state);           \
   }
 QUERY(vl_world_trace, hits, (vlTrace * trace, const vlTraceRays *rays, vlTraceHits *hits), (trace, rays, hits))
 QUERY(vl_world_occluded, occluded, (vlTrace * trace, const vlTraceRays *rays, uint8_t occluded[VL_OWN_BATCH]),
@@ -35,10 +24,8 @@ void vl_trace_numbers(vlTrace *trace, uint32_t purpose, float *u, float *v) {
   const vlTraceBatch *b = &trace->batch;
   const vlSamplerKernels *k = trace->t.sampler;
   uint32_t dimension = PURPOSES + 2 * (purpose % (PURPOSES / 4));
-  unsigned state = vl_machine_flush_denormals();
   if (v)
     k->get_2d(trace->t.def->sampler, b->n, b->px, b->py, b->index, dimension, u, v);
   else
     k->get_1d(trace->t.def->sampler, b->n, b->px, b->py, b->index, dimension, u);
-  vl_machine_restore_denormals(state);
 }

@@ -28,7 +28,5 @@ struct vlTrace {
 
 /* Runs the tracer def->own on the batch. Its paths are started. In own.hot.c. */
 void vl_own_tracer(vlTracing *t);
-/* The call of its function. In own.c. */
-void vl_own_tracer_call(vlTrace *trace, const vlOwnTracer *own, const vlOwnPaths *paths);
 
 #endif

@@ -272,7 +272,7 @@ void vl_own_tracer(vlTracing *t) {
                             t->def->max_depth,
                             radiance,
                             b->alpha};
-  vl_own_tracer_call(&w, t->def->own, &paths);
+  t->def->own->radiance(t->def->own->user, &w, &paths);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = 0; i < b->n; i++) b->radiance[c][i] = radiance[c][i];
   b->bounce_rays += w.batch.bounce_rays;

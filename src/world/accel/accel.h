@@ -68,8 +68,8 @@ void vl_accel_closest(const struct vlWorld *world, uint32_t n, const vlRays *ray
  * earlier calls (occluders.h), which saves time and changes no result; may be null. */
 void vl_accel_occluded(const struct vlWorld *world, uint32_t n, const vlRays *rays, vlOccluders *occluders,
                        uint8_t *occluded);
-/* Each thread calls this before it traces. It sets flush-to-zero mode, as Embree requires, and returns the previous
- * state. The caller restores that state with vl_accel_leave. */
+/* Each thread calls this before it traces. It sets the floating-point state (vl_machine_set_floats) and returns the
+ * previous one. The caller restores that with vl_accel_leave. */
 unsigned vl_accel_enter(void);
 void vl_accel_leave(unsigned state);
 

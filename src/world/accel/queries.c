@@ -113,9 +113,9 @@ void vl_accel_occluded(const vlWorld *world, uint32_t n, const vlRays *rays, vlO
 }
 
 unsigned vl_accel_enter(void) {
-  return vl_machine_flush_denormals();
+  return vl_machine_set_floats();
 }
 
 void vl_accel_leave(unsigned state) {
-  vl_machine_restore_denormals(state);
+  vl_machine_restore_floats(state);
 }

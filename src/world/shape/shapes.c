@@ -186,8 +186,8 @@ static vlResult check_reach(const float low[3], const float high[3], const vlSou
   return VL_OK;
 }
 
-/* If edges are shorter, Embree flushes distances of near hits (a length times an area) to zero, and a triangle shadows
- * itself. The product of the ray offset, 6e-7 edge lengths, and twice the area must exceed 2^-126
+/* If edges are shorter, distances of near hits (a length times an area) have few digits or none, and a triangle can
+ * shadow itself. The product of the ray offset, 6e-7 edge lengths, and twice the area must exceed 2^-126
  * (docs/conventions.md). */
 #define SMALLEST_EDGE 1e-10f
 

@@ -15,13 +15,13 @@ class Socket(Page):
 
 
 class Browser:
-    def __init__(self, width=1280, height=720, dark=False, phone=False):
+    def __init__(self, width=1280, height=720, dark=False, phone=False, more_flags=()):
         program = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
         self.folder = tempfile.mkdtemp(prefix="velo-browser-")
         flags = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                  "--remote-debugging-port=0", "--remote-allow-origins=*", "--no-first-run", "--disable-background-networking",
                  "--disable-component-update", "--disable-sync", "--disable-extensions", "--mute-audio", "--hide-scrollbars",
-                 f"--user-data-dir={self.folder}", f"--window-size={width},{height}", "about:blank"]
+                 f"--user-data-dir={self.folder}", f"--window-size={width},{height}", *more_flags, "about:blank"]
         self.process = subprocess.Popen([program, *flags], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                                         start_new_session=True)
         address = ""

@@ -35,13 +35,14 @@ function say(text, error = false) {
   $('message').className = error ? 'error' : '';
 }
 
-// What velo said, as one sentence for a person at this page.
-function explain(result) {
-  const line = result.errors.split('\n').find((text) => text.includes('error')) ?? result.errors.split('\n')[0] ?? '';
-  if (/memory/.test(line)) return `The scene needs more memory than this browser gives: use a smaller image, fewer workers or a smaller scene. (${line})`;
-  if (result.code === 4) return `A file that the scene names is missing: drop it together with the scene. (${line})`;
-  if (result.code === 3) return `The scene cannot be read. (${line})`;
-  return line || `velo ended with code ${result.code}.`;
+// What velo said of a scene, as one sentence that says what is wrong and what to do.
+function explain(result, name) {
+  const lines = result.errors.split('\n').filter((text) => /^velo: (?!warning|note)/.test(text));
+  const line = (lines.at(-1) ?? '').replace(/^velo: (error: )?/, '').replace(/\.$/, '');
+  if (result.code === 1 && /memory/.test(line)) return `This needs more memory than the browser gives: choose a smaller image, fewer workers or a smaller scene (${line}).`;
+  if (result.code === 4) return `A file that ${name} names is missing: drop it together with the scene, or the folder that holds both (${line}).`;
+  if (result.code === 3) return `${name} is no scene that velo can read: correct it, or drop another (${line}).`;
+  return `velo could not render ${name} (${line || `exit code ${result.code}`}): try other settings, or another scene.`;
 }
 
 function show(bytes) {
@@ -62,12 +63,11 @@ async function finish(files, exr) {
 }
 
 async function render(files) {
-  const missing = lacks();
-  if (missing) return say(missing, true);
   const names = Object.keys(files).filter((name) => scenes.test(name));
   if (names.length === 0) {
-    const first = Object.keys(files)[0]?.slice(1) ?? 'Nothing';
-    return say(`${first} is not a scene: drop a .pbrt, .gltf, .glb, .obj, .ply, .stl or .off file, with the files that it names.`, true);
+    const kinds = 'a .pbrt, .gltf, .glb, .obj, .ply, .stl or .off file, with the files that it names';
+    const first = Object.keys(files)[0]?.slice(1);
+    return say(first ? `${first} is no scene: drop ${kinds}.` : `There was no file: drop ${kinds}.`, true);
   }
   const depth = (name) => name.split('/').length;
   const rank = (name) => (/\.(pbrt|gltf|glb)/i.test(name) ? 0 : 1);
@@ -92,11 +92,11 @@ async function render(files) {
       },
     });
     if (own !== workers) return;
-    if (result.code !== 0) return say(explain(result), true);
+    if (result.code !== 0) return say(explain(result, names[0].slice(1)), true);
     await finish(files, result.files['/image.exr']);
     say(`${names[0].slice(1)}: ${spp} samples per pixel in ${((performance.now() - started) / 1000).toFixed(1)} s.`);
   } catch (error) {
-    if (own === workers) say(`velo could not run: ${error.message}`, true);
+    if (own === workers) say(`velo could not run: ${error.message.replace(/\.$/, '')}. Reload the page, or close others.`, true);
   } finally {
     if (own === workers) $('stop').hidden = true;
   }
@@ -145,5 +145,9 @@ document.ondrop = async (event) => {
   for (const entry of entries) await readEntry(entry, files);
   render(files);
 };
-if (lacks()) say(lacks(), true);
-else if (location.hash === '#example') $('example').click();
+window.started = true; // index.html says so otherwise
+if (lacks()) {
+  say(lacks(), true);
+  for (const input of document.querySelectorAll('input, button')) input.disabled = true;
+  document.ondrop = (event) => event.preventDefault();
+} else if (location.hash === '#example') $('example').click();

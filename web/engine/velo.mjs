@@ -29,6 +29,17 @@ export function lacks() {
   return null;
 }
 
+// Memory that may grow up to so many pages of 64 KB; fewer where the browser does not reserve as many addresses.
+function makeMemory(pages) {
+  for (let maximum = pages; ; maximum = Math.max(1024, maximum >> 1)) {
+    try {
+      return new WebAssembly.Memory({ initial: 1024, maximum });
+    } catch {
+      if (maximum === 1024) throw new Error('the browser gives no memory');
+    }
+  }
+}
+
 export class Velo {
   #base;
   #module;
@@ -76,7 +87,7 @@ export class Velo {
     const instance = await this.#create({
       thisProgram: 'velo',
       rgbTables: this.#tables,
-      wasmMemory: new WebAssembly.Memory({ initial: 1024, maximum: pages }),
+      wasmMemory: makeMemory(pages),
       print: print(0),
       printErr: print(1),
       quit: (status, end) => {

@@ -121,24 +121,30 @@ def digest(data):
     return "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
 
 
+def write_wheel(folder, base, tag, files):
+    """Writes the wheel of these files ({name: contents}) with the descriptions that depend on tag and files; returns its name."""
+    info = base + ".dist-info"
+    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: velo\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    files.pop(f"{info}/RECORD", None)
+    record = "".join(f"{name},{digest(data)},{len(data)}\n" for name, data in sorted(files.items()))
+    files[f"{info}/RECORD"] = f"{record}{info}/RECORD,,\n".encode()
+    name = f"{base}-{tag}.whl"
+    with zipfile.ZipFile(os.path.join(folder, name), "w", zipfile.ZIP_DEFLATED) as wheel:
+        for path in sorted(files):
+            entry = zipfile.ZipInfo(path, time.gmtime(source_time())[:6])
+            entry.external_attr = (0o755 if ".so" in os.path.basename(path) else 0o644) << 16
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            wheel.writestr(entry, files[path])
+    return name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     table = project()
     tag = "cp311-abi3-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
     base = f"{table['name']}-{table['version']}"
     with tempfile.TemporaryDirectory() as folder:
         files = package_files(build_module(folder, config_settings or {}))
-    info = base + ".dist-info"
-    files[f"{info}/METADATA"] = metadata()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: velo\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    files[f"{base}.dist-info/METADATA"] = metadata()
     with open(os.path.join(ROOT, "LICENSE"), "rb") as file:
-        files[f"{info}/LICENSE"] = file.read()
-    record = "".join(f"{name},{digest(data)},{len(data)}\n" for name, data in sorted(files.items()))
-    files[f"{info}/RECORD"] = f"{record}{info}/RECORD,,\n".encode()
-    name = f"{base}-{tag}.whl"
-    with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
-        for path in sorted(files):
-            entry = zipfile.ZipInfo(path, time.gmtime(source_time())[:6])
-            entry.external_attr = (0o755 if path.endswith(".so") else 0o644) << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            wheel.writestr(entry, files[path])
-    return name
+        files[f"{base}.dist-info/LICENSE"] = file.read()
+    return write_wheel(wheel_directory, base, tag, files)

@@ -78,7 +78,7 @@ float vl_emission_density(const vlWorld *world, const vlTwoWay *way, uint32_t in
   if (!(p > 0.0f)) return 0.0f;
 #define DENSITY(K, k) \
   case VL_WL_##K: return vl_light_emit_pdf_##k(world, light, p, w, distance, at);
-  switch (light->kind) { VL_WORLD_LIGHT_KINDS(DENSITY) }
+  switch ((vlWorldLightKind)light->kind) { VL_WORLD_LIGHT_KINDS(DENSITY) }
 #undef DENSITY
   return 0.0f;
 }
@@ -256,7 +256,7 @@ vlEmission vl_emission_sample(const vlWorld *world, const vlTwoWay *way, const f
   vlEmissionQuery q = {world, light, &world->emitted.items[light->emitted], lambda, u, v, s, t};
 #define EMIT(K, k) \
   case VL_WL_##K: vl_light_emit_##k(&q, &r); break;
-  switch (light->kind) { VL_WORLD_LIGHT_KINDS(EMIT) }
+  switch ((vlWorldLightKind)light->kind) { VL_WORLD_LIGHT_KINDS(EMIT) }
 #undef EMIT
   for (int c = 0; c < 4; c++) r.flux[c] /= p;
   r.density *= p;

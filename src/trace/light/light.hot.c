@@ -266,7 +266,7 @@ void vl_light_sample_area(const vlLightQuery *q, vlLightSample *out) {
 static inline void sample_kind(const vlLightQuery *q, vlLightSample *out) {
 #define SAMPLE(K, k) \
   case VL_WL_##K: vl_light_sample_##k(q, out); break;
-  switch (q->light->kind) { VL_WORLD_LIGHT_KINDS(SAMPLE) }
+  switch ((vlWorldLightKind)q->light->kind) { VL_WORLD_LIGHT_KINDS(SAMPLE) }
 #undef SAMPLE
 }
 

@@ -85,7 +85,7 @@ static void get_1d(INPUT, float *u) {
   uint32_t count = VL_PAD(n);
 #define CASE(K, k) \
   case VL_SAMPLER_##K: k##_1d(s, count, px, py, index, dimension, u); return;
-  switch (s->kind) { VL_SAMPLER_KINDS(CASE) }
+  switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
 #undef CASE
 }
 
@@ -97,7 +97,7 @@ static void get_2d(INPUT, float *u, float *v) {
   uint32_t count = VL_PAD(n);
 #define CASE(K, k) \
   case VL_SAMPLER_##K: k##_2d(s, count, px, py, index, dimension, u, v); return;
-  switch (s->kind) { VL_SAMPLER_KINDS(CASE) }
+  switch ((vlSamplerKind)s->kind) { VL_SAMPLER_KINDS(CASE) }
 #undef CASE
 }
 

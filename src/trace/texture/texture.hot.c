@@ -156,7 +156,7 @@ static void image_floats(const vlTextureRun *r, const vlTextureNode *node, float
 void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
-  switch (node->kind) {
+  switch ((vlNodeKind)node->kind) {
     case VL_NODE_FLOAT: fill(r, node->value, out); break;
     case VL_NODE_IMAGE: image_floats(r, node, out); break;
     case VL_NODE_VERTEX_COLOR:
@@ -333,7 +333,7 @@ static void bilerp_spectra(vlTextureRun *r, const vlTextureNode *node, float *co
 void vl_texture_spectrum(vlTextureRun *r, int32_t index, float *const out[4]) {
   const vlTextureNode *node = &r->world->nodes.items[index];
   uint32_t top = r->top;
-  switch (node->kind) {
+  switch ((vlNodeKind)node->kind) {
     case VL_NODE_SPECTRUM: constant_spectrum(r, &node->spectrum, out); break;
     case VL_NODE_IMAGE: image_spectrum(r, node, out); break;
     case VL_NODE_VERTEX_COLOR:

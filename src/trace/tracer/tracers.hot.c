@@ -159,7 +159,7 @@ static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *s
     vl_own_tracer(&t);
     return;
   }
-  switch (def->tracer) {
+  switch ((vlTracer)def->tracer) {
     case VL_TRACER_PATH: vl_trace_path(&t); break;
     case VL_TRACER_RAYCAST: vl_trace_raycast(&t); break;
     case VL_TRACER_AMBIENT_OCCLUSION: vl_trace_ambient_occlusion(&t); break;

@@ -5,6 +5,8 @@
 
 #include "base/error.h"
 #include "scene/scene.h"
+#include "velo/material.h"
+#include "world/material/bsdf_kind.h"
 #include "world/world.h"
 
 typedef struct vlMaterialBuild {

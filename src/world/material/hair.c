@@ -1,6 +1,4 @@
 /* world/material/hair.c: inputs of the hair material. */
-#include "velo/material.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/compile.h"
 
 static vlResult compile_color(const vlMaterialBuild *b, vlWorldHair *h) {

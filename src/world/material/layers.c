@@ -1,7 +1,5 @@
 /* world/material/layers.c: inputs of the materials whose layers are evaluated by random walks
  * (trace/bsdf/layered.hot.c). */
-#include "velo/material.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/compile.h"
 
 vlResult vl_material_layers(const vlMaterialBuild *b, bool metal) {

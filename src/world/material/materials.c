@@ -6,8 +6,6 @@
 
 #include "math/ggx.h"
 #include "schema/schema.h"
-#include "velo/material.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/compile.h"
 #include "world/texture/node_kind.h"
 

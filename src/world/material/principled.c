@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "velo/material.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/compile.h"
 
 /* Coefficients of Cauchy's n = a + b / lambda^2 (lambda in nm), such that n is n_d at the line d, and the lines d, F

@@ -1,7 +1,5 @@
 /* world/material/subsurface.c: inputs of the subsurface material. Materials with the same index and g share a
  * profile. */
-#include "velo/material.h"
-#include "world/material/bsdf_kind.h"
 #include "world/material/bssrdf.h"
 #include "world/material/compile.h"
 

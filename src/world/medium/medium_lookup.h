@@ -101,7 +101,7 @@ static inline float vl_medium_density_rgb_grid(const vlWorldMedium *m, vlVec3 p,
 static inline float vl_medium_density(const vlWorldMedium *m, vlVec3 p, vlVec3 q) {
 #define VL_DENSITY(K, k) \
   case VL_MEDIUM_##K: return vl_medium_density_##k(m, p, q);
-  switch (m->kind) { VL_MEDIUM_KINDS(VL_DENSITY) }
+  switch ((vlMediumKind)m->kind) { VL_MEDIUM_KINDS(VL_DENSITY) }
 #undef VL_DENSITY
   return 1.0f;
 }

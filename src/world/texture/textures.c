@@ -422,7 +422,7 @@ static int32_t compile_input(Compile *c, const vlTextureDef *def, vlFloatInput f
  * most, and the number of nodes visited for it. False: too many. */
 static bool weigh(const vlWorld *world, vlTextureNode *node) {
   uint32_t own = 0, most = 0, visits = 1;
-  switch (node->kind) {
+  switch ((vlNodeKind)node->kind) {
     case VL_NODE_SCALE:
       own = 1;
       break;
@@ -628,7 +628,7 @@ float vl_texture_float_at(const vlWorld *world, int32_t index, const vlTextureQu
   const vlTextureNode *node = &world->nodes.items[index];
   vlTexturePoint at = point_of(node, q);
   float share = 0;
-  switch (node->kind) {
+  switch ((vlNodeKind)node->kind) {
     case VL_NODE_FLOAT: return node->value;
     case VL_NODE_IMAGE: return vl_node_image_float(node, world->images.items[node->image].mipmap, at);
     case VL_NODE_VERTEX_COLOR: return vl_node_vertex_color_float(node, at);

@@ -61,6 +61,30 @@ else
   skip "the examples in Python" "no module velo for Python with numpy"
 fi
 
+# The functions that docs/own-code.md shows, in the programs of the examples, compiled as a stranger would, without a warning.
+# shown KIND FUNCTION: shown_KIND.c, the example own_KIND with the function (and what stands with it) of the page
+shown() {
+  awk -v start="static void $2(" '/^```c/ {text = ""; inside = 1; next}
+    /^```/ {if (inside && index(text, start)) {printf "%s", text; exit} inside = 0}
+    inside {text = text $0 "\n"}' "$VELO_SOURCE_DIR/docs/own-code.md" >function.c
+  sed '/^static /,$d' "$examples/own_$1.c" | { printf '#include <math.h>\n'; cat; } >"shown_$1.c"
+  cat function.c >>"shown_$1.c"
+  sed -n '/^\/\* Of a call that fails/,$p' "$examples/own_$1.c" | sed "s/radiance_of/$2/; /static const vlOwnCamera/d; s/&fisheye/\&pinhole/; /right_angle/d" \
+    >>"shown_$1.c"
+  check "docs: $2 is compiled" "${CC:-cc}" -std=c17 -O1 -Wall -Wextra -Werror "-I$VELO_SOURCE_DIR/include" "shown_$1.c" \
+    "-L$VELO_BINARY_DIR/lib" -lvelo -lm "-Wl,-rpath,$VELO_BINARY_DIR/lib" -o "shown_$1"
+}
+if command -v "${CC:-cc}" >/dev/null && ! nm -D "$VELO_BINARY_DIR/lib/libvelo.so" | grep -q '__[at]san_init\|__ubsan'; then
+  shown camera rays_of
+  check "docs: the camera renders" ./shown_camera corner.pbrt shown_camera.pfm
+  shown tracer occlusion
+  check "docs: the tracer renders" ./shown_tracer corner.pbrt shown_tracer.pfm
+  "$VELO" render corner.pbrt --quiet --spp 64 --tracer ambientocclusion -o occlusion.pfm
+  mean "docs: the tracer's mean is that of velo's" occlusion.pfm shown_tracer.pfm 0.97 1.03
+else
+  skip "the functions of docs/own-code.md" "no compiler, or a library with a sanitizer"
+fi
+
 for source in "$examples"/*.c; do
   name=$(basename "$source" .c)
   [ "$name" = lecture ] && continue # the lecture's program has pictures of its own

@@ -5,7 +5,7 @@
  * Its integral is a tanh, so that atanh makes a wavelength of a uniform number. One number serves all four, a quarter
  * of the distribution apart (pbrt book 4.5.4). */
 wavelengths sample_wavelengths(bool rgb, sampler *s) {
-  wavelengths w = {.rgb = rgb};
+  wavelengths w = {.rgb = rgb, .crossed = {1, 1, 1}};
   double u = next_number(s);
   for (int i = 0; i < CHANNELS; i++) {
     double shifted = u + (double)i / CHANNELS;
@@ -42,8 +42,7 @@ color *make_color(const vlSpectrum *s, vlParameterRole role) {
   return c;
 }
 
-/* The value of a table with one number per nm, `stride` apart, linear between them. */
-static double table_at(const float *table, int stride, double nm) {
+double table_at(const float *table, int stride, double nm) {
   double x = clamp(nm - VL_SPECTRUM_FIRST_NM, 0, VL_SPECTRUM_VALUES - 1);
   int i = (int)fmin(x, VL_SPECTRUM_VALUES - 2);
   return (double)table[stride * i] * (i + 1 - x) + (double)table[stride * (i + 1)] * (x - i);

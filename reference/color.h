@@ -18,6 +18,7 @@ typedef struct wavelengths {
   bool rgb;
   double nm[CHANNELS];
   double density[CHANNELS]; /* of each wavelength, 1 / nm; 0: the wavelength no longer counts */
+  double crossed[3];        /* share of red, green, blue that the surfaces which the path has crossed leave */
 } wavelengths;
 
 static inline spectrum gray(double value) {
@@ -59,6 +60,8 @@ typedef struct color {
 color *make_color(const vlSpectrum *s, vlParameterRole role);
 const color *find_color(const vlSpectrum *s, vlParameterRole role);
 spectrum color_at(const color *c, const wavelengths *w);
+/* The value of a table with one number per nm, linear between them. */
+double table_at(const float *table, int stride, double nm);
 /* The spectrum of a texel, linear RGB: a reflectance (VL_PARAMETER_ALBEDO), or any value from 0. */
 spectrum texel_spectrum(vlColorSpace space, const double rgb[3], vlParameterRole role, const wavelengths *w);
 

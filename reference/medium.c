@@ -17,7 +17,7 @@ spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavele
 
 /* Beer's law: exp(-sigma_t distance), sigma_t = sigma_a + sigma_s. */
 spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda) {
-  if (!is_homogeneous(m)) return more_transmittance(m, r, distance, s, lambda);
+  if (m->kind != VL_MEDIUM_HOMOGENEOUS) return more_transmittance(m, r, distance, s, lambda);
   spectrum t = plus(coefficient(m, &m->sigma_a, lambda), coefficient(m, &m->sigma_s, lambda));
   for (int i = 0; i < CHANNELS; i++) t.c[i] = t.c[i] > 0 ? exp(-t.c[i] * distance) : 1;
   return t;
@@ -28,7 +28,7 @@ spectrum transmittance(const vlMediumDef *m, ray r, double distance, sampler *s,
  * the mean of their densities: that of x, or the probability exp(-sigma_s distance) of passing (balance heuristic). */
 bool scatters_before(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
                      spectrum *throughput, spectrum *emitted) {
-  if (!is_homogeneous(m)) return scatters_in_more(m, r, distance, s, lambda, throughput, emitted);
+  if (m->kind != VL_MEDIUM_HOMOGENEOUS) return scatters_in_more(m, r, distance, s, lambda, throughput, emitted);
   *emitted = plus(*emitted, times(*throughput, emission_along(m, *distance, lambda)));
   spectrum sigma_s = coefficient(m, &m->sigma_s, lambda);
   uint32_t channels = channels_of(lambda);

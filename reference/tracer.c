@@ -1,7 +1,7 @@
 /* tracer.c: path tracing. The rendering equation (Kajiya 1986) says that the radiance leaving a point is what the point
  * emits, plus what arrives there from all directions and is scattered on. A path estimates it: at each point it asks
  * one light, and follows one direction (pbrt book 13, 14). */
-#include "world.h"
+#include "more/more.h"
 
 /* What a path is and has gathered so far. */
 typedef struct path {
@@ -93,6 +93,7 @@ static bool scatter(path *p, const bsdf *b, const shade_record *at) {
   bsdf_sample next;
   if (!sample_bsdf(b, negate(p->r.direction), p->s, &next)) return false;
   p->throughput = times(p->throughput, next.weight);
+  cross_surface(b, negate(p->r.direction), next.wi, p->lambda);
   p->inside = medium_beyond(p->w, at, next.wi, p->inside);
   p->r = ray_from(p, at, next.wi);
   p->chosen_at = p->r.origin;

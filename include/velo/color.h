@@ -36,6 +36,10 @@ VL_API vlResult vl_reflectance_at(vlColorSpace space, const float rgb[3], uint32
                                   double *values);
 /** The CIE 1931 2-degree observer: x, y, z for each nm. */
 VL_API void vl_observer_tabulate(float xyz[3 * VL_SPECTRUM_VALUES]);
+/** Three spectra s_R, s_G, s_B for each nm, each from 0 to 1; their sum is 1. What leaves the shares t_R, t_G and t_B
+ * of the channels of linear sRGB, leaves the share s_R t_R + s_G t_G + s_B t_B at a wavelength (Mallett and Yuksel
+ * 2019; docs/media.md: absorption by channel, colours of what transmits light). */
+VL_API void vl_channels_tabulate(float shares[3 * VL_SPECTRUM_VALUES]);
 /** The white of a colour space, for each nm. ARGUMENT: an unknown space. */
 VL_API vlResult vl_white_tabulate(vlColorSpace space, float values[VL_SPECTRUM_VALUES]);
 /** The row-major matrix from XYZ to the linear RGB of a colour space. ARGUMENT: an unknown space. */

@@ -29,12 +29,6 @@ static void follow_bumps(const world *w, const vlMaterialDef *m, shade_record *a
 }
 
 /* A texel of a normal map has a normal's coordinates, from -1 to 1, in the frame of the tangent and the normal. */
-void tilt_normal(const double rgb[4], double factor, shade_record *at) {
-  frame f = make_frame(at->shading_normal, at->tangent);
-  vector local = make_vector(factor * (2 * rgb[0] - 1), factor * (2 * rgb[1] - 1), 2 * rgb[2] - 1);
-  at->shading_normal = normalize(from_local(f, local));
-}
-
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
   if (m->displacement.texture.index) follow_bumps(w, m, at);
   if (!m->normal_map) return;
@@ -42,5 +36,6 @@ void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
   while (vl_scene_material(w->scene, (vlMaterialId){i + 1}) != m) i++;
   double rgb[4];
   pixels_around(&w->normal_maps[i], at->u, 1 - at->v, VL_WRAP_REPEAT, VL_WRAP_REPEAT, rgb);
-  tilt_normal(rgb, 1, at);
+  frame f = make_frame(at->shading_normal, at->tangent);
+  at->shading_normal = normalize(from_local(f, make_vector(2 * rgb[0] - 1, 2 * rgb[1] - 1, 2 * rgb[2] - 1)));
 }

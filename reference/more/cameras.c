@@ -2,8 +2,6 @@
  * projection turns a point (u, v) of its plane into a direction: x right, y down, z forward. */
 #include "more.h"
 
-/* ---- distortion -------------------------------------------------------------------------------------------------- */
-
 /* Brown's and OpenCV's model: from the ideal point to where the lens puts it. */
 static square_point distorted(const vlDistortionMap *d, square_point p) {
   const double *n = d->numerator, *e = d->denominator, *t = d->tangential, *prism = d->prism;
@@ -36,8 +34,6 @@ bool without_distortion(const vlCamera *c, double *x, double *y) {
   *y = p.y;
   return error < 1e-9;
 }
-
-/* ---- projections ------------------------------------------------------------------------------------------------- */
 
 static vector by_angle(double u, double v, double theta) {
   double r = hypot(u, v), share = r > 0 ? sin(theta) / r : 1;

@@ -87,10 +87,8 @@ static double width_at(const curve *c, double u, vector direction) {
 static int feet(const curve *across, double reach, double u[DEGREE]) {
   const vector *p = across->p;
   double x[4], y[4], foot[DEGREE + 1] = {0};
-  if (fmin(fmin(p[0].y, p[1].y), fmin(p[2].y, p[3].y)) > reach) return 0;
-  if (fmax(fmax(p[0].y, p[1].y), fmax(p[2].y, p[3].y)) < -reach) return 0;
-  if (fmin(fmin(p[0].x, p[1].x), fmin(p[2].x, p[3].x)) > reach) return 0;
-  if (fmax(fmax(p[0].x, p[1].x), fmax(p[2].x, p[3].x)) < -reach) return 0;
+  for (int k = 0; k < 3; k++) reach += length(subtract(p[k + 1], p[k])); /* the curve is shorter than its polygon */
+  if (hypot(p[0].x, p[0].y) > reach) return 0;
   to_powers(p[0].x, p[1].x, p[2].x, p[3].x, x);
   to_powers(p[0].y, p[1].y, p[2].y, p[3].y, y);
   for (int i = 0; i < 4; i++) {

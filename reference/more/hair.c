@@ -144,11 +144,3 @@ void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result) {
   phi += l.o.phi;
   result->wi = make_vector(sine_i, cosine_i * cos(phi), cosine_i * sin(phi));
 }
-
-/* The coefficient that gives many hairs together a colour (Chiang et al. 2016, eq. 9). */
-spectrum absorption_of_hair_color(spectrum looks, double beta_n) {
-  double n = beta_n;
-  double fit = 5.969 - 0.215 * n + 2.532 * n * n - 10.73 * pow(n, 3) + 5.574 * pow(n, 4) + 0.245 * pow(n, 5);
-  for (int i = 0; i < CHANNELS; i++) looks.c[i] = square(log(fmax(1e-4, looks.c[i])) / fit);
-  return looks;
-}

@@ -19,5 +19,6 @@ typedef struct more_bsdf {
   /* principled: shares of metal, of the dielectric that transmits, of diffuse light that goes on, of the coat */
   double metallic, clear, passed_on, coat;
   spectrum f0; /* principled: what the dielectric reflects of light along the normal, and of grazing light */
-  double f90;
+  double f90, sheen_alpha;
+  spectrum sheen, tint, tint_rgb; /* tint: of what goes through, at the wavelengths and by channels of RGB */
 } more_bsdf;

@@ -11,6 +11,14 @@ static spectrum pigment(const world *w, vlFloatInput amount, const vlSpectrum *o
   return scaled(fmax(0, number_at(w, amount, at)), absorption);
 }
 
+/* The coefficient that gives many hairs together a colour (Chiang et al. 2016, eq. 9). */
+static spectrum absorption_of_hair_color(spectrum looks, double beta_n) {
+  double n = beta_n;
+  double fit = 5.969 - 0.215 * n + 2.532 * n * n - 10.73 * pow(n, 3) + 5.574 * pow(n, 4) + 0.245 * pow(n, 5);
+  for (int i = 0; i < CHANNELS; i++) looks.c[i] = square(log(fmax(1e-4, looks.c[i])) / fit);
+  return looks;
+}
+
 static spectrum hair_absorption(const world *w, const vlMaterialDef *m, const shade_record *at, double beta_n,
                                 const wavelengths *lambda) {
   const vlHairDef *hair = &m->hair;

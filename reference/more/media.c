@@ -1,10 +1,6 @@
 /* more/media.c: what homogeneous media emit; media given on a grid, clouds (pbrt book 11.4). */
 #include "more.h"
 
-bool is_homogeneous(const vlMediumDef *m) {
-  return m->kind == VL_MEDIUM_HOMOGENEOUS;
-}
-
 /* The integral of sigma_a L exp(-sigma_t x) over the distance. */
 spectrum emission_along(const vlMediumDef *m, double distance, const wavelengths *lambda) {
   spectrum a = coefficient(m, &m->sigma_a, lambda), s = coefficient(m, &m->sigma_s, lambda);

@@ -42,16 +42,15 @@ spectrum coated_value(const bsdf *b, vector wo, vector wi, sampler *s, double *d
 bool sample_coated(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
 spectrum hair_value(const bsdf *b, vector wo, vector wi, double *density);
 void sample_hair(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-spectrum absorption_of_hair_color(spectrum looks, double beta_n);
 /* more/principled.c; and coated.c: the coat alone, as glass. */
 bsdf coat_of(const bsdf *b);
 void make_principled(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
                      bsdf *b);
 spectrum principled_value(const bsdf *b, vector wo, vector wi, double *density);
 bool sample_principled(const bsdf *b, vector wo, sampler *s, bsdf_sample *result);
-/* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. A texel of a normal map, its
- * x and y times a factor. */
-void tilt_normal(const double rgb[4], double factor, shade_record *at);
+/* The path goes from wo to wi, in the world: if that is through the surface, its colour tints the path's light. */
+void cross_surface(const bsdf *b, vector wo, vector wi, wavelengths *lambda);
+/* more/bump.c: changes the shading normal and the tangent. Called before any BSDF is made. */
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at);
 
 /* more/textures.c */
@@ -62,7 +61,6 @@ spectrum more_spectrum(const world *w, const vlTextureDef *def, vlParameterRole 
 /* more/noise.c */
 double fbm(vector p, double omega, uint32_t octaves);
 double turbulence(vector p, double omega, uint32_t octaves);
-double windy_waves(vector p);
 bool is_in_dot(square_point st);
 double cloud_density(vector p, double density, double wispiness, double frequency);
 void marble(vector p, double omega, uint32_t octaves, double variation, double rgb[3]);
@@ -80,9 +78,8 @@ void read_more_light(light *l);
 double emission_factor(const world *w, const light *l);
 
 /* more/media.c: what a homogeneous medium emits along a distance; media that are not the same everywhere, along a ray.
- * As in medium.h. */
+ * As in world.h. */
 spectrum emission_along(const vlMediumDef *m, double distance, const wavelengths *lambda);
-bool is_homogeneous(const vlMediumDef *m);
 spectrum more_transmittance(const vlMediumDef *m, ray r, double distance, sampler *s, const wavelengths *lambda);
 bool scatters_in_more(const vlMediumDef *m, ray r, double *distance, sampler *s, const wavelengths *lambda,
                       spectrum *throughput, spectrum *emitted);

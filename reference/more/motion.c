@@ -15,8 +15,6 @@ struct motion {
   matrix rest_from_group; /* the inverse of the first pose */
 };
 
-/* ---- between two poses ------------------------------------------------------------------------------------------- */
-
 static matrix transposed(matrix m) {
   return (matrix){{m.x.x, m.y.x, m.z.x}, {m.x.y, m.y.y, m.z.y}, {m.x.z, m.y.z, m.z.z}, {0, 0, 0}};
 }
@@ -68,8 +66,6 @@ static matrix between(const pose *a, const pose *b, double time) {
   return m;
 }
 
-/* ---- instances --------------------------------------------------------------------------------------------------- */
-
 motion *make_motion(const vlInstanceInfo *info) {
   if (!info->moves) return NULL;
   motion *m = resize(NULL, 1, sizeof *m);
@@ -108,8 +104,6 @@ void carry_along(shade_record *record) {
   record->shading_normal = normalize(transform_normal(&back, record->shading_normal));
   record->thickness *= cbrt(determinant(&moved));
 }
-
-/* ---- cameras ----------------------------------------------------------------------------------------------------- */
 
 frame camera_pose(const vlCamera *c, double time) {
   if (!c->moves) return load_matrix(c->world_from_camera);

@@ -71,11 +71,6 @@ double turbulence(vector p, double omega, uint32_t octaves) {
   return octaves_of(p, omega, octaves, true) + 0.2 * pow(omega, octaves);
 }
 
-/* Waves as high as a slow wind is strong. */
-double windy_waves(vector p) {
-  return fabs(fbm(scale(0.1, p), 0.5, 3)) * fbm(p, 0.5, 6);
-}
-
 /* A cloud, thick below y = 0.5 and thin at y = 1: octaves of noise at places that the slopes of finer noise displace
  * (docs/media.md). */
 double cloud_density(vector p, double density, double wispiness, double frequency) {

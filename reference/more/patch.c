@@ -3,10 +3,6 @@
 #include "more.h"
 #include "program/program.h"
 
-static double triple(vector a, vector b, vector c) {
-  return dot(a, cross(b, c));
-}
-
 /* The roots of a u^2 + b u + c in [0, 1], without cancellation. */
 static int roots_in_unit_interval(double a, double b, double c, double u[2]) {
   double found[2];
@@ -37,8 +33,8 @@ static bool meet_patch(const primitive *p, ray r, meeting *m) {
     vector from_ray = subtract(start, r.origin);
     vector across = cross(d, line);
     double scale2 = dot(across, across);
-    double v = triple(from_ray, d, across) / scale2;
-    double t = triple(from_ray, line, across) / scale2;
+    double v = dot(from_ray, cross(d, across)) / scale2;
+    double t = dot(from_ray, cross(line, across)) / scale2;
     if (!(v >= 0 && v <= 1 && t > r.t_min && t < r.t_max)) continue;
     *m = (meeting){t, u[i], v};
     r.t_max = t;
@@ -47,8 +43,7 @@ static bool meet_patch(const primitive *p, ray r, meeting *m) {
   return found;
 }
 
-/* Texture coordinates: (u, v) itself, or the corners' coordinates blended. The tangent points along the first of them.
- */
+/* Texture coordinates: (u, v) itself, or the corners' coordinates blended. The tangent points along the first one. */
 static void patch_coordinates(const vlShapeDef *def, const uint32_t *face, const double *weights, double u, double v,
                               vector dpdu, vector dpdv, shade_record *record) {
   record->u = u;

@@ -43,7 +43,7 @@ double more_number(const world *w, const vlTextureDef *def, const shade_record *
   vector p = in_texture_space(def, at);
   if (def->kind == VL_TEXTURE_FBM) return fbm(p, (double)def->omega, def->octaves);
   if (def->kind == VL_TEXTURE_WRINKLED) return turbulence(p, (double)def->omega, def->octaves);
-  if (def->kind == VL_TEXTURE_WINDY) return windy_waves(p);
+  if (def->kind == VL_TEXTURE_WINDY) return fabs(fbm(scale(0.1, p), 0.5, 3)) * fbm(p, 0.5, 6);
   const vlFloatInput inputs[4] = {def->float_a, def->float_b, def->float_c, def->float_d};
   double share[4], sum = 0;
   shares_of(w, def, at, share);

@@ -11,27 +11,20 @@ static bool check_shape(const vlShapeDef *def, vlError *error) {
   return true;
 }
 
-/* Transmitted light has its colour per channel of RGB: wavelengths do not know these. */
-static bool check_principled(const vlMaterialDef *def, bool rgb, vlError *error) {
+static bool check_principled(const vlMaterialDef *def, vlError *error) {
   const vlPrincipledDef *d = &def->principled;
-  const vlSpectrum *sheen = &d->sheen_color.value;
-  bool no_sheen = sheen->kind == VL_SPECTRUM_CONSTANT
-                      ? sheen->value <= 0
-                      : sheen->kind == VL_SPECTRUM_RGB && sheen->rgb[0] + sheen->rgb[1] + sheen->rgb[2] <= 0;
   bool clear = d->transmission.texture.index || d->transmission.value > 0;
-  if (!no_sheen || d->sheen_color.texture.index) return refuse(error, def->source, "sheen");
   if (d->iridescence.texture.index || d->iridescence.value > 0) return refuse(error, def->source, "a thin film");
   if (d->normal.index || d->clearcoat_normal.index || d->anisotropy_rotation.texture.index ||
       d->anisotropy_rotation.value != 0)
     return refuse(error, def->source, "a principled material's own normals or tangents");
-  if (clear && !d->thin_walled) return refuse(error, def->source, "a principled solid that transmits light");
-  return !clear || rgb || refuse(error, def->source, "a principled sheet in a spectral render");
+  return !clear || d->thin_walled || refuse(error, def->source, "a principled solid that transmits light");
 }
 
-static bool check_material(const vlMaterialDef *def, bool rgb, vlError *error) {
+static bool check_material(const vlMaterialDef *def, vlError *error) {
   bool coated = def->kind == VL_MATERIAL_COATED_DIFFUSE;
   if (coated && def->conserve_energy) return refuse(error, def->source, "a coat that conserves energy");
-  if (def->kind == VL_MATERIAL_PRINCIPLED) return check_principled(def, rgb, error);
+  if (def->kind == VL_MATERIAL_PRINCIPLED) return check_principled(def, error);
   bool missing = def->kind == VL_MATERIAL_MEASURED || def->kind == VL_MATERIAL_SUBSURFACE;
   return !missing || refuse_kind(error, def->source, "materials", (uint32_t)def->kind);
 }
@@ -114,7 +107,7 @@ bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlE
   }
   const vlMaterialDef *material;
   for (uint32_t i = 1; (material = vl_scene_material(scene, (vlMaterialId){i})); i++) {
-    if (!check_material(material, defs->build.color == VL_COLOR_RGB, error)) return false;
+    if (!check_material(material, error)) return false;
   }
   const vlLightDef *lamp;
   for (uint32_t i = 1; (lamp = vl_scene_light(scene, (vlLightId){i})); i++) {

@@ -62,6 +62,12 @@ void vl_observer_tabulate(float xyz[3 * VL_SPECTRUM_VALUES]) {
   }
 }
 
+void vl_channels_tabulate(float shares[3 * VL_SPECTRUM_VALUES]) {
+  for (int i = 0; i < VL_LAMBDA_COUNT; i++) {
+    for (int k = 0; k < 3; k++) shares[3 * i + k] = vl_channel_shares[4 * i + k];
+  }
+}
+
 vlResult vl_white_tabulate(vlColorSpace space, float values[VL_SPECTRUM_VALUES]) {
   if (!values || !is_space(space)) return VL_ERROR_ARGUMENT;
   memcpy(values, vl_space_illuminant(space), VL_LAMBDA_COUNT * sizeof *values);

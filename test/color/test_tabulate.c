@@ -51,6 +51,33 @@ static void reflectances_have_their_color(void **state) {
   }
 }
 
+/* White light of which one channel alone is left has that channel's colour; the three together are white light. */
+static void channels_have_their_colors(void **state) {
+  (void)state;
+  static float observer[3 * VL_SPECTRUM_VALUES], white[VL_SPECTRUM_VALUES], shares[3 * VL_SPECTRUM_VALUES];
+  double matrix[9], luminance = 0, xyz[3][3] = {{0}};
+  vl_observer_tabulate(observer);
+  vl_channels_tabulate(shares);
+  assert_int_equal(vl_white_tabulate(VL_SPACE_SRGB, white), VL_OK);
+  assert_int_equal(vl_color_space_matrix(VL_SPACE_SRGB, matrix), VL_OK);
+  for (int i = 0; i < VL_SPECTRUM_VALUES; i++) {
+    const float *s = shares + 3 * i;
+    assert_true(s[0] >= 0 && s[1] >= 0 && s[2] >= 0);
+    assert_float_equal(s[0] + s[1] + s[2], 1, 1e-5);
+    luminance += (double)observer[3 * i + 1] * (double)white[i];
+    for (int c = 0; c < 3; c++) {
+      for (int k = 0; k < 3; k++) xyz[c][k] += (double)observer[3 * i + k] * (double)white[i] * (double)s[c];
+    }
+  }
+  for (int c = 0; c < 3; c++) {
+    for (int k = 0; k < 3; k++) {
+      double rgb =
+          (matrix[3 * k] * xyz[c][0] + matrix[3 * k + 1] * xyz[c][1] + matrix[3 * k + 2] * xyz[c][2]) / luminance;
+      assert_float_equal(rgb, c == k ? 1 : 0, 2e-3);
+    }
+  }
+}
+
 static void wrong_arguments_are_refused(void **state) {
   (void)state;
   float values[VL_SPECTRUM_VALUES], rgb[3] = {0, 0, 0};
@@ -72,6 +99,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(roles_give_their_spectra),
       cmocka_unit_test(reflectances_have_their_color),
+      cmocka_unit_test(channels_have_their_colors),
       cmocka_unit_test(wrong_arguments_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

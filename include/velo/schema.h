@@ -67,6 +67,7 @@ typedef struct vlParameter {
   const char *name;        /**< in pbrt files; null: not in files */
   const char *alias;       /**< another name in files; `name` takes precedence; may be null */
   const char *member;      /**< path in the def, for documentation: "hair.beta_m" */
+  const char *keyword;     /**< of calls and of velo/setting.h; null: the last word of member */
   const char *description; /**< one line */
   const char *unit;        /**< of the value in files: "nm", "degrees"; null: none */
   vlParameterType type;    /**< how it is stored */

@@ -179,7 +179,7 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
     int special = set_special(def, keep, text, value);
     if (special < 0) return false;
     if (special) continue;
-    const vlParameter *row = find_parameter(camera_rows.rows, camera_rows.count, text);
+    const vlParameter *row = vl_setting(VL_SETTING_CAMERA, text);
     const vlKindFamily *family = row ? NULL : vl_kind_family_find("cameras");
     for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
       row = find_parameter(family->rows[k]->parameters, family->rows[k]->parameter_count, text);
@@ -192,7 +192,7 @@ static bool set_keywords(vlCameraDef *def, PyObject *keep, PyObject *keywords) {
         if (!word || PyList_Append(names, word) < 0) Py_CLEAR(names);
         Py_XDECREF(word);
       }
-      if (names && !append_names(names, camera_rows.rows, camera_rows.count)) Py_CLEAR(names);
+      if (names && !append_settings(names, VL_SETTING_CAMERA)) Py_CLEAR(names);
       return raise_unknown("keyword of a camera", text, names);
     }
     if (!set_parameter(&target, row, value)) return false;
@@ -396,12 +396,12 @@ static PyObject *camera_warning(Camera *self, void *unused) {
 static PyObject *camera_get(Camera *self, PyObject *name) {
   PyObject *keep = PyList_New(0), *result = NULL;
   const char *text = keep ? keep_text(keep, name, "name") : NULL;
-  const vlParameter *row = text ? find_parameter(camera_rows.rows, camera_rows.count, text) : NULL;
+  const vlParameter *row = text ? vl_setting(VL_SETTING_CAMERA, text) : NULL;
   if (row) {
     result = get_parameter((const char *)&self->def, row);
   } else if (text) {
     PyObject *names = PyList_New(0);
-    if (names && !append_names(names, camera_rows.rows, camera_rows.count)) Py_CLEAR(names);
+    if (names && !append_settings(names, VL_SETTING_CAMERA)) Py_CLEAR(names);
     raise_unknown("parameter of a camera", text, names);
   }
   Py_XDECREF(keep);

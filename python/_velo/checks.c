@@ -42,32 +42,73 @@ int to_double(PyObject *value, double *number) {
 }
 
 /* A whole number of any type: 1 read, 0 not one or beyond 64 bits, -1 an exception of the caller's own. */
-static int to_whole(PyObject *value, int64_t *whole) {
-  double number;
-  if (PyIndex_Check(value) && !PyBool_Check(value)) {
-    PyObject *index = PyNumber_Index(value);
-    int overflow = 0;
-    long long read = index ? PyLong_AsLongLongAndOverflow(index, &overflow) : -1;
-    Py_XDECREF(index);
-    if (PyErr_Occurred() && !unfit()) return -1;
-    *whole = (int64_t)read;
-    bool fine = !PyErr_Occurred() && !overflow;
-    PyErr_Clear();
-    return fine;
+static int to_whole(PyObject *value, double *number) {
+  if (!PyIndex_Check(value) || PyBool_Check(value)) return to_double(value, number);
+  PyObject *index = PyNumber_Index(value);
+  int overflow = 0;
+  long long read = index ? PyLong_AsLongLongAndOverflow(index, &overflow) : -1;
+  Py_XDECREF(index);
+  if (PyErr_Occurred() && !unfit()) return -1;
+  *number = (double)read;
+  bool fine = !PyErr_Occurred() && !overflow;
+  PyErr_Clear();
+  return fine;
+}
+
+/* What the caller gave, for a row. *bytes holds the text, or is null. False: an exception of the caller's own. */
+static bool to_given(const vlParameter *row, PyObject *value, vlGiven *given, PyObject **bytes) {
+  *given = (vlGiven){.kind = VL_GIVEN_OTHER};
+  *bytes = NULL;
+  if (value == Py_None) {
+    given->kind = VL_GIVEN_NOTHING;
+  } else if (PyBool_Check(value)) {
+    given->kind = VL_GIVEN_FLAG;
+    given->number = value == Py_True;
+  } else if (PyUnicode_Check(value)) {
+    *bytes = PyUnicode_AsUTF8String(value);
+    if (!*bytes) PyErr_Clear();
+    given->text = *bytes ? PyBytes_AsString(*bytes) : NULL;
+    if (given->text && strlen(given->text) == (size_t)PyBytes_Size(*bytes)) given->kind = VL_GIVEN_TEXT;
+  } else {
+    int read = row->type == VL_PARAMETER_COUNT ? to_whole(value, &given->number) : to_double(value, &given->number);
+    if (read < 0) return false;
+    bool flag = row->type == VL_PARAMETER_BOOL && (given->number == 0 || given->number == 1); /* numpy's booleans */
+    if (read) given->kind = flag ? VL_GIVEN_FLAG : VL_GIVEN_NUMBER;
   }
-  int read = to_double(value, &number);
-  if (read <= 0) return read;
-  if (!(fabs(number) < 9e15) || number != floor(number)) return 0;
-  *whole = (int64_t)number;
-  return 1;
+  return true;
+}
+
+/* factor: the value's unit (vlGiven). */
+static bool read_given(PyObject *value, const char *what, const vlParameter *row, double factor, double *number) {
+  char message[VL_GIVEN_MESSAGE];
+  vlGiven given;
+  PyObject *bytes;
+  if (!to_given(row, value, &given, &bytes)) return false;
+  given.factor = factor;
+  bool fine = vl_given_check(row, what, &given, number, message);
+  PyObject *shown = fine ? NULL : call_package("shown", "(O)", value);
+  PyObject *text = shown ? PyUnicode_AsUTF8String(shown) : NULL;
+  if (text) {
+    given.shown = PyBytes_AsString(text);
+    vl_given_check(row, what, &given, number, message);
+    raise_usage("%s", message);
+  }
+  Py_XDECREF(text);
+  Py_XDECREF(shown);
+  Py_XDECREF(bytes);
+  return fine;
+}
+
+bool read_row(PyObject *value, const char *what, const vlParameter *row, double *number) {
+  return read_given(value, what, row, 1, number);
 }
 
 bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole) {
-  int read = to_whole(value, whole);
-  if (read < 0) return false;
-  if (read && *whole >= low && *whole <= high) return true;
-  if (high == INT64_MAX) return raise_value(what, value, "a whole number of at least %lld", (long long)low), false;
-  return raise_value(what, value, "a whole number from %lld to %lld", (long long)low, (long long)high), false;
+  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = (double)low, .high = (double)high};
+  double number;
+  if (!read_row(value, what, &row, &number)) return false;
+  *whole = (int64_t)number;
+  return true;
 }
 
 bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high, uint32_t *count) {
@@ -81,53 +122,93 @@ bool read_size(PyObject *width, PyObject *height, uint32_t most, uint32_t size[2
   return read_count(width, "width", 1, most, &size[0]) && read_count(height, "height", 1, most, &size[1]);
 }
 
-/* "a number above 0, or infinity" */
-static void put_rule(const Range *r, char *text, size_t size) {
-  bool low = r->low > -INFINITY, high = r->high < INFINITY;
-  const char *more = r->infinite ? ", or infinity" : r->unset ? ", or None" : "";
-  if (!low && !high)
-    snprintf(text, size, "a finite number%s", more);
-  else if (!high)
-    snprintf(text, size, "a finite number%s %g%s", r->above ? " above" : " of at least", r->low, more);
-  else if (!low)
-    snprintf(text, size, "a finite number %s %g%s", r->below ? "below" : "of at most", r->high, more);
-  else
-    snprintf(text, size, "a number %s %g %s %g%s", r->above ? "above" : "from", r->low,
-             r->below   ? "to below"
-             : r->above ? "up to"
-                        : "to",
-             r->high, more);
-}
-
-bool read_real(PyObject *value, const char *what, const Range *r, double *number) {
-  if (value == Py_None && r->unset) {
-    *number = VL_UNSET;
-    return true;
-  }
-  int read = to_double(value, number);
-  if (read < 0) return false;
-  double x = *number;
-  bool finite = read && (r->single ? fabs(x) <= (double)__FLT_MAX__ : isfinite(x));
-  if (read && isinf(x) && r->infinite) finite = true;
-  bool low = finite && (r->above ? x > r->low : x >= r->low), high = finite && (r->below ? x < r->high : x <= r->high);
-  if (low && high) return true;
-  char rule[160];
-  put_rule(r, rule, sizeof rule);
-  return raise_value(what, value, "%s", rule), false;
-}
-
 bool read_finite(PyObject *value, const char *what, double *number) {
-  const Range any = {.low = -INFINITY, .high = INFINITY};
-  return read_real(value, what, &any, number);
+  const vlParameter any = {.type = VL_PARAMETER_DOUBLE};
+  return read_row(value, what, &any, number);
 }
 
 bool read_flag(PyObject *value, const char *what, bool *flag) {
-  double number = value == Py_True;
-  int read = PyBool_Check(value) ? 1 : to_double(value, &number); /* numpy's booleans are numbers */
-  if (read < 0) return false;
-  if (!read || (number != 0 && number != 1)) return raise_value(what, value, "True or False"), false;
-  *flag = number == 1;
+  const vlParameter any = {.type = VL_PARAMETER_BOOL};
+  double number;
+  if (!read_row(value, what, &any, &number)) return false;
+  *flag = number != 0;
   return true;
+}
+
+/* check_value(value, what, type, low, high): the number, a bool or an int, where it fits; type: "count", "number" or
+ * "flag". */
+PyObject *check_value(PyObject *module, PyObject *arguments) {
+  static const vlParameterType of[] = {VL_PARAMETER_COUNT, VL_PARAMETER_DOUBLE, VL_PARAMETER_BOOL};
+  static const char *const words[] = {"count", "number", "flag", NULL};
+  (void)module;
+  PyObject *value, *type;
+  const char *what;
+  double number, low, high;
+  if (!PyArg_ParseTuple(arguments, "OsOdd:check_value", &value, &what, &type, &low, &high)) return NULL;
+  int found = find_choice(words, "type", type);
+  if (found < 0) return NULL;
+  const vlParameter row = {.type = of[found], .low = low, .high = high};
+  if (!read_row(value, what, &row, &number)) return NULL;
+  if (row.type == VL_PARAMETER_BOOL) return PyBool_FromLong(number != 0);
+  return row.type == VL_PARAMETER_COUNT ? PyLong_FromDouble(number) : PyFloat_FromDouble(number);
+}
+
+/* check_choice(value, what, [words]): the index of the word. */
+PyObject *check_choice(PyObject *module, PyObject *arguments) {
+  enum { MOST_WORDS = 64 };
+  (void)module;
+  PyObject *value, *list;
+  const char *what, *words[MOST_WORDS + 1] = {NULL};
+  if (!PyArg_ParseTuple(arguments, "OsO!:check_choice", &value, &what, &PyList_Type, &list)) return NULL;
+  Py_ssize_t count = sequence_size(list, "the list of words", 1, MOST_WORDS);
+  PyObject *keep = count > 0 ? PyList_New(0) : NULL, *result = NULL;
+  if (keep && keep_texts(keep, list, count, "a word", words)) {
+    int found = find_choice(words, what, value);
+    if (found >= 0) result = PyLong_FromLong(found);
+  }
+  Py_XDECREF(keep);
+  return result;
+}
+
+/* check_setting(value, what, group, name, by_unit): the value of a setting's row, where it fits; by_unit: in the row's
+ * unit (degrees), not in that of the library (radians). */
+PyObject *check_setting(PyObject *module, PyObject *arguments) {
+  (void)module;
+  PyObject *value;
+  const char *what, *group, *name;
+  double number;
+  int by_unit;
+  if (!PyArg_ParseTuple(arguments, "Osssp:check_setting", &value, &what, &group, &name, &by_unit)) return NULL;
+  const vlParameter *row = NULL;
+  for (int i = 0; vl_settings((vlSettingGroup)i); i++)
+    if (strcmp(vl_settings((vlSettingGroup)i)->name, group) == 0) row = vl_setting((vlSettingGroup)i, name);
+  if (!row) return raise_usage("there is no setting %s of %s", name, group);
+  double factor = by_unit && row->factor != 0 ? row->factor : 1;
+  if (!read_given(value, what, row, factor, &number)) return NULL;
+  if (row->type == VL_PARAMETER_COUNT) return PyLong_FromDouble(number);
+  if (row->type == VL_PARAMETER_FLOAT || row->type == VL_PARAMETER_DOUBLE) return PyFloat_FromDouble(number / factor);
+  Py_INCREF(value);
+  return value;
+}
+
+/* unknown_name(thing, name, [names]): the message about a name that is not one of them. */
+PyObject *unknown_name(PyObject *module, PyObject *arguments) {
+  (void)module;
+  PyObject *list;
+  const char *thing, *name;
+  if (!PyArg_ParseTuple(arguments, "ssO!:unknown_name", &thing, &name, &PyList_Type, &list)) return NULL;
+  const size_t count = (size_t)PyList_Size(list);
+  const char **names = PyMem_Malloc((count + 1) * sizeof *names);
+  PyObject *keep = PyList_New(0), *result = NULL;
+  bool fine = names && keep && keep_texts(keep, list, (Py_ssize_t)count, "a name", names);
+  if (fine) {
+    char message[VL_GIVEN_MESSAGE];
+    vl_unknown_name(thing, "", name, names, count, message);
+    result = text_object(message);
+  }
+  PyMem_Free(names);
+  Py_XDECREF(keep);
+  return result;
 }
 
 const char *keep_text(PyObject *keep, PyObject *value, const char *what) {

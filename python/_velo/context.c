@@ -100,7 +100,9 @@ static void log_message(void *user, vlLogLevel level, const vlError *where, cons
 }
 
 /* More threads than a few for each processor wait for each other: a thousand on two processors take seconds. */
-enum { MOST_THREADS = 1024, MOST_PER_PROCESSOR = 4 };
+enum { MOST_PER_PROCESSOR = 4 };
+
+static const int64_t MOST_MEMORY = (int64_t)1 << 53; /* bytes; larger numbers are not exact */
 
 static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *keywords) {
   static char *names[] = {"threads", "max_memory", "keep_inputs", NULL};
@@ -110,9 +112,11 @@ static PyObject *context_new(PyTypeObject *type, PyObject *arguments, PyObject *
   int64_t memory = 0;
   if (!PyArg_ParseTupleAndKeywords(arguments, keywords, "|OOO:Context", names, &threads, &most, &keep_inputs))
     return NULL;
-  if (threads && !read_count(threads, "threads", 1, MOST_THREADS, &def.threads)) return NULL;
+  double count = def.threads;
+  if (threads && !read_row(threads, "threads", vl_setting(VL_SETTING_CONTEXT, "threads"), &count)) return NULL;
+  def.threads = (uint32_t)count;
   if (def.threads > most_threads) def.threads = most_threads;
-  if (most && !read_whole(most, "max_memory", 0, INT64_MAX, &memory)) return NULL;
+  if (most && !read_whole(most, "max_memory", 0, MOST_MEMORY, &memory)) return NULL;
   if (keep_inputs && !read_flag(keep_inputs, "keep_inputs", &def.keep_inputs)) return NULL;
   def.max_memory = (size_t)memory;
   def.log = log_message;

@@ -65,9 +65,8 @@ static PyObject *film_image(Film *self, PyObject *arguments) {
   static Develop *const functions[] = {vl_film_develop, vl_film_errors, spectrum};
   PyObject *name, *number;
   double exposure;
-  const Range any = {.low = -INFINITY, .high = INFINITY, .single = true};
   if (!PyArg_ParseTuple(arguments, "OO:_image", &name, &number) || !readable(self) ||
-      !read_real(number, "exposure", &any, &exposure))
+      !read_row(number, "exposure", vl_setting(VL_SETTING_RENDER, "exposure"), &exposure))
     return NULL;
   int kind = find_choice(kinds, "kind of image", name);
   vlDevelopDef def = vl_default_develop_def();

@@ -208,7 +208,8 @@ static PyObject *image_write(PyObject *module, PyObject *arguments) {
   const Target target = {(char *)&def, keep, NULL, false};
   const char *file = keep_path(keep, path, "path");
   Py_ssize_t count = PyList_Size(images);
-  if (!file || !set_parameters(&target, write_rows, "option of an image file", keywords)) return Py_DECREF(keep), NULL;
+  if (!file || !set_parameters(&target, VL_SETTING_WRITE, "option of an image file", keywords))
+    return Py_DECREF(keep), NULL;
   if (count < 1 || count > 64) return Py_DECREF(keep), raise_usage("1 to 64 images");
   Context *context = NULL;
   for (Py_ssize_t i = 0; i < count; i++) {
@@ -235,9 +236,8 @@ static PyObject *image_view(Image *self, PyObject *arguments) {
   static const char *const views[] = {"standard", "khronos_neutral", "agx", "raw", NULL};
   PyObject *name, *number;
   double exposure;
-  const Range stops = {.low = -1000, .high = 1000};
   if (!PyArg_ParseTuple(arguments, "OO:_view", &name, &number) || !open_image(self) ||
-      !read_real(number, "exposure", &stops, &exposure))
+      !read_row(number, "exposure", vl_setting(VL_SETTING_PROGRAM, "exposure"), &exposure))
     return NULL;
   int view = find_choice(views, "view", name);
   Call call;

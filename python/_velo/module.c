@@ -109,6 +109,10 @@ static PyMethodDef functions[] = {
     {"sensor_names", sensor_names, METH_NOARGS, "Names of the library's sensors."},
     {"channel_names", channel_names, METH_NOARGS, "Names of ground truth channels."},
     {"kinds", kinds, METH_VARARGS, "Kinds of a family with their keywords."},
+    {"check_value", check_value, METH_VARARGS, "A number, where it is one that may be given."},
+    {"check_choice", check_choice, METH_VARARGS, "The index of a word, where it is one of some."},
+    {"check_setting", check_setting, METH_VARARGS, "The value of a setting, where it is one."},
+    {"unknown_name", unknown_name, METH_VARARGS, "The message about an unknown name."},
     {"shut_down", shut_down, METH_NOARGS, "Stops the calls of other threads; later ones are errors."},
     {NULL, NULL, 0, NULL},
 };

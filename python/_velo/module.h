@@ -8,7 +8,7 @@
 #endif
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
-#include <velo/schema.h>
+#include <velo/setting.h>
 #include <velo/velo.h>
 
 /* ---- objects ----------------------------------------------------------------------------------------------------- */
@@ -166,15 +166,6 @@ PyObject *raise_value(const char *what, PyObject *value, const char *format, ...
 
 enum { MOST_PIXELS = 1 << 24 }; /* of a side of a camera's image */
 
-/* What a number may be. */
-typedef struct Range {
-  double low, high;  /* -INFINITY, INFINITY: no limit, but the number is finite */
-  bool above, below; /* low, high themselves are not in the range */
-  bool infinite;     /* may be infinite */
-  bool unset;        /* None: VL_UNSET */
-  bool single;       /* must fit a float */
-} Range;
-
 /* A str of a text that need not be UTF-8. */
 PyObject *text_object(const char *text);
 /* 1: *number is read; 0: it is not a number; -1: an exception of the caller's own. */
@@ -183,9 +174,15 @@ int to_double(PyObject *value, double *number);
 bool read_whole(PyObject *value, const char *what, int64_t low, int64_t high, int64_t *whole);
 bool read_count(PyObject *value, const char *what, uint32_t low, uint32_t high, uint32_t *count);
 bool read_size(PyObject *width, PyObject *height, uint32_t most, uint32_t size[2]);
-bool read_real(PyObject *value, const char *what, const Range *range, double *number);
+/* A value of any row of one number, a flag or a choice, in the def's unit. */
+bool read_row(PyObject *value, const char *what, const vlParameter *row, double *number);
 bool read_finite(PyObject *value, const char *what, double *number);
 bool read_flag(PyObject *value, const char *what, bool *flag);
+/* For the package's own checks. */
+PyObject *check_value(PyObject *module, PyObject *arguments);
+PyObject *check_choice(PyObject *module, PyObject *arguments);
+PyObject *check_setting(PyObject *module, PyObject *arguments);
+PyObject *unknown_name(PyObject *module, PyObject *arguments);
 /* The number of items of a sequence that is not a text. */
 Py_ssize_t sequence_size(PyObject *value, const char *what, Py_ssize_t low, Py_ssize_t high);
 /* UTF-8 text of a str, kept alive by the list. */
@@ -233,19 +230,14 @@ PyObject *get_parameter(const char *def, const vlParameter *row);
 bool raise_unknown(const char *thing, const char *name, PyObject *names);
 /* Appends the names of rows to a list. */
 bool append_names(PyObject *list, const vlParameter *rows, size_t count);
+bool append_settings(PyObject *list, vlSettingGroup group);
 /* Index of a word in a list that ends with null, comparing letters and digits only; -1 with an exception. */
 int find_choice(const char *const *choices, const char *what, PyObject *value);
 bool keep_object(PyObject *keep, PyObject *object); /* appends, without stealing */
 bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *spectrum, const char *what);
 
-/* Rows of defs that velo/schema.h has no rows for. */
-typedef struct Rows {
-  const vlParameter *rows;
-  size_t count;
-} Rows;
-extern const Rows scene_rows, load_rows, complete_rows, camera_rows, channels_rows, write_rows;
 /* Sets each item of a dict. Unknown names are UsageErrors. */
-bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject *keywords);
+bool set_parameters(const Target *target, vlSettingGroup group, const char *thing, PyObject *keywords);
 
 /* Kind `name` of a family; -1 with an exception. thing: what messages call it. */
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name);

@@ -13,7 +13,7 @@ static void settings_dealloc(Settings *self) {
 
 static const vlParameter *settings_row(const char *name) {
   static const char *const families[] = {"tracers", "films", "samplers"};
-  const vlParameter *row = find_parameter(scene_rows.rows, scene_rows.count, name);
+  const vlParameter *row = vl_setting(VL_SETTING_RENDER, name);
   for (size_t i = 0; !row && i < sizeof families / sizeof *families; i++) {
     const vlKindFamily *family = vl_kind_family_find(families[i]);
     for (uint32_t k = 0; !row && family && k < family->kind_count; k++) {
@@ -48,7 +48,7 @@ static PyObject *settings_set(Settings *self, PyObject *arguments) {
   const vlParameter *row = settings_row(name);
   if (!row) {
     PyObject *names = PyList_New(0);
-    if (names && !append_names(names, scene_rows.rows, scene_rows.count)) Py_CLEAR(names);
+    if (names && !append_settings(names, VL_SETTING_RENDER)) Py_CLEAR(names);
     return raise_unknown("keyword of render", name, names), NULL;
   }
   if (strcmp(row->member, "render.tracer") == 0 && is_object(value, TYPE_OWN)) {
@@ -95,19 +95,19 @@ static PyObject *settings_get(Settings *self, PyObject *name) {
   return result;
 }
 
-enum { MOST_FILM = 65536 }; /* pixels of a side */
-
 static PyObject *settings_size(Settings *self, PyObject *arguments) {
   PyObject *width, *height;
-  uint32_t size[2];
+  double size[2];
   if (!PyArg_ParseTuple(arguments, "OO:set_size", &width, &height)) return NULL;
-  if (!read_count(width, "resolution's width", 1, MOST_FILM, &size[0]) ||
-      !read_count(height, "resolution's height", 1, MOST_FILM, &size[1]))
+  if (!read_row(width, "resolution's width", vl_setting(VL_SETTING_PROGRAM, "width"), &size[0]) ||
+      !read_row(height, "resolution's height", vl_setting(VL_SETTING_PROGRAM, "height"), &size[1]))
     return NULL;
   vlFilmDef *film = &self->defs.film;
-  film->width = size[0], film->height = size[1];
+  film->width = (uint32_t)size[0];
+  film->height = (uint32_t)size[1];
   film->crop[0] = film->crop[1] = 0;
-  film->crop[2] = size[0], film->crop[3] = size[1];
+  film->crop[2] = film->width;
+  film->crop[3] = film->height;
   Py_RETURN_NONE;
 }
 
@@ -149,7 +149,7 @@ static PyObject *settings_copy(Settings *self, PyObject *unused) {
 static PyObject *settings_names(Settings *self, PyObject *unused) {
   (void)self, (void)unused;
   PyObject *names = PyList_New(0);
-  if (names && !append_names(names, scene_rows.rows, scene_rows.count)) Py_CLEAR(names);
+  if (names && !append_settings(names, VL_SETTING_RENDER)) Py_CLEAR(names);
   return names;
 }
 
@@ -350,7 +350,7 @@ static PyObject *channels(PyObject *module, PyObject *arguments) {
   const uint64_t width = def->crop[2] - def->crop[0], height = def->crop[3] - def->crop[1];
   if (!check_memory(world->context, 16 * width * height * (uint64_t)PyList_Size(names), "ground truth")) return NULL;
   const Target target = {(char *)def, settings->keep, NULL, false};
-  if (!set_parameters(&target, channels_rows, "keyword of channels", keywords)) return NULL;
+  if (!set_parameters(&target, VL_SETTING_CHANNELS, "keyword of channels", keywords)) return NULL;
   LongCall call;
   if (!long_call_begin(&call, world->context, Py_None)) return NULL;
   def->cancel = call.cancel;

@@ -75,7 +75,7 @@ static PyObject *scene_load(Scene *self, PyObject *arguments) {
   Loading l = {.def = vl_default_load_def()};
   const Target target = {(char *)&l.def, keep, self, false};
   bool fine = keep && PyArg_ParseTuple(arguments, "OO!O:_load", &path, &PyDict_Type, &keywords, &callback) &&
-              scene_open(self) && set_parameters(&target, load_rows, "keyword of load", keywords) &&
+              scene_open(self) && set_parameters(&target, VL_SETTING_LOAD, "keyword of load", keywords) &&
               (l.file = keep_path(keep, path, "path")) && load_file(self, &l, callback);
   Py_XDECREF(keep);
   if (!fine) return NULL;
@@ -89,7 +89,7 @@ static PyObject *scene_complete(Scene *self, PyObject *keywords) {
   const Target target = {(char *)&def, keep, self, false};
   Call call;
   if (!keep || !PyDict_Check(keywords) || !scene_open(self) ||
-      !set_parameters(&target, complete_rows, "keyword of load", keywords) ||
+      !set_parameters(&target, VL_SETTING_COMPLETE, "keyword of load", keywords) ||
       !call_begin(&call, self->context, &self->busy))
     return Py_XDECREF(keep), NULL;
   vlError error = {0};

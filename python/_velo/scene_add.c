@@ -392,7 +392,7 @@ PyObject *scene_load_group(Scene *self, PyObject *arguments) {
   Loading l = {.def = vl_default_load_def(), .loaded = &loaded};
   const Target target = {(char *)&l.def, keep, self, false};
   if (!keep || !PyArg_ParseTuple(arguments, "OOO!O:_load_group", &path, &name, &PyDict_Type, &keywords, &callback) ||
-      !scene_open(self) || !set_parameters(&target, load_rows, "keyword of load_group", keywords) ||
+      !scene_open(self) || !set_parameters(&target, VL_SETTING_LOAD, "keyword of load_group", keywords) ||
       !(l.file = keep_path(keep, path, "path")) || (name != Py_None && !(l.name = keep_text(keep, name, "name"))) ||
       !load_file(self, &l, callback))
     goto end;

@@ -42,24 +42,18 @@ static bool append_text(PyObject *list, const char *text) {
   return fine;
 }
 
-static const char *last_word(const char *member) {
-  const char *dot = strrchr(member, '.');
-  return dot ? dot + 1 : member;
-}
-
-/* The keyword that messages show: the member's last word, or the name that a row of rows.c gives in its place. */
-static const char *shown_name(const vlParameter *p) {
-  bool own = p->name && (strcmp(p->name, "filter") == 0 || strncmp(p->name, "filter_", 7) == 0 ||
-                         strcmp(p->name, "stereo_mode") == 0);
-  return own ? p->name : last_word(p->member);
-}
-
 bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
   for (size_t i = 0; i < count; i++)
     if (rows[i].member && rows[i].member[0] && !(rows[i].flags & VL_PARAMETER_SHORTHAND) &&
-        !append_text(list, shown_name(&rows[i])))
+        rows[i].type != VL_PARAMETER_BLOCK && !strchr(rows[i].member, '[') &&
+        !append_text(list, vl_setting_keyword(&rows[i])))
       return false;
   return true;
+}
+
+bool append_settings(PyObject *list, vlSettingGroup group) {
+  const vlKindRow *rows = vl_settings(group);
+  return append_names(list, rows->parameters, rows->parameter_count);
 }
 
 /* The text of a str without zeros, in *bytes; null: it is none. */
@@ -70,20 +64,9 @@ static const char *name_text(PyObject *value, PyObject **bytes) {
 }
 
 int find_choice(const char *const *choices, const char *what, PyObject *value) {
-  PyObject *bytes = NULL;
-  const char *text = name_text(value, &bytes);
-  if (!text) return Py_XDECREF(bytes), raise_value(what, value, "a name, a str"), -1;
-  int found = -1;
-  for (int i = 0; choices[i] && found < 0; i++)
-    if (same_word(choices[i], text)) found = i;
-  if (found < 0) {
-    PyObject *names = PyList_New(0);
-    for (int i = 0; names && choices[i]; i++)
-      if (!append_text(names, choices[i])) Py_CLEAR(names);
-    raise_unknown(what, text, names);
-  }
-  Py_DECREF(bytes);
-  return found;
+  const vlParameter row = {.type = VL_PARAMETER_CHOICE, .choices = choices};
+  double number;
+  return read_row(value, what, &row, &number) ? (int)number : -1;
 }
 
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
@@ -117,7 +100,7 @@ static int fits(const vlParameter *p, const char *name) {
   bool shorthand = p->flags & VL_PARAMETER_SHORTHAND;
   if (!p->member || !p->member[0] || (shorthand && !p->second)) return 0;
   if (!shorthand && strcmp(p->member, name) == 0) return 4;
-  if (!shorthand && strcmp(last_word(p->member), name) == 0) return 3;
+  if (!shorthand && strcmp(vl_setting_keyword(p), name) == 0) return 3;
   if (!shorthand && strlen(p->member) == strlen(name) && same_word(p->member, name)) return 2;
   return p->name && strcmp(p->name, name) == 0;
 }
@@ -142,14 +125,14 @@ static PyObject *get_attribute(PyObject *object, const char *name) {
   return value;
 }
 
-#define ANY_FLOAT \
-  { .low = -INFINITY, .high = INFINITY, .single = true }
+static const vlParameter any_float = {.type = VL_PARAMETER_FLOAT};
+static const vlParameter positive = {
+    .type = VL_PARAMETER_FLOAT, .low = 0, .high = INFINITY, .flags = VL_PARAMETER_ABOVE_LOW};
 
 /* The parts of velo.Spectrum: kind, scale, value. */
 static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s, const char *what) {
   static const char *const kinds[] = {"constant", "rgb", "blackbody", "sampled", "named", NULL};
   static const char *const spaces[] = {"srgb", "dci_p3", "rec2020", "aces2065_1", NULL};
-  const Range positive = {.low = 0, .high = INFINITY, .above = true, .single = true}, any = ANY_FLOAT;
   PyObject *kind = get_attribute(object, "kind"), *value = get_attribute(object, "value");
   PyObject *scale = get_attribute(object, "scale"), *space = get_attribute(object, "space");
   bool parts = kind && value && scale && space;
@@ -179,14 +162,14 @@ static bool read_spectrum_object(PyObject *keep, PyObject *object, vlSpectrum *s
     for (int i = 0; i < 2; i++) numbers_release(&n[i]), Py_XDECREF(pairs[i]);
   } else if (fine && k == VL_SPECTRUM_BLACKBODY) {
     double kelvin = 0;
-    fine = read_real(value, what, &positive, &kelvin);
+    fine = read_row(value, what, &positive, &kelvin);
     if (fine) *s = vl_spectrum_blackbody((float)kelvin);
   } else if (fine) {
     fine = read_spectrum(keep, value, s, what);
   }
   if (fine) {
     double factor = 1;
-    fine = read_real(scale, what, &any, &factor);
+    fine = read_row(scale, what, &any_float, &factor);
     s->space = (vlColorSpace)place;
     s->scale = (float)factor;
   }
@@ -208,9 +191,8 @@ bool read_spectrum(PyObject *keep, PyObject *value, vlSpectrum *s, const char *w
   }
   PyErr_Clear();
   if (PyNumber_Check(value) && !PySequence_Check(value)) {
-    const Range any = ANY_FLOAT;
     double number;
-    if (!read_real(value, what, &any, &number)) return false;
+    if (!read_row(value, what, &any_float, &number)) return false;
     *s = vl_spectrum_constant((float)number);
     return true;
   }
@@ -240,39 +222,8 @@ static uint32_t handle_index(const Scene *scene, PyObject *value, const char *fa
     if (second) memcpy(second, &v_, sizeof v_); \
   } while (0)
 
-/* What a row says about its number. */
-static Range row_range(const vlParameter *p) {
-  Range r = {.low = -INFINITY, .high = INFINITY, .single = p->type != VL_PARAMETER_DOUBLE};
-  bool limits = (p->low != 0 || p->high != 0) && !(p->flags & VL_PARAMETER_CLAMPED);
-  if (limits) r.low = p->low, r.high = p->high;
-  r.above = limits && p->flags & VL_PARAMETER_ABOVE_LOW;
-  r.below = limits && p->flags & VL_PARAMETER_BELOW_HIGH;
-  r.infinite = p->flags & VL_PARAMETER_INFINITE;
-  r.unset = p->type == VL_PARAMETER_DOUBLE && p->flags & VL_PARAMETER_UNSET;
-  return r;
-}
-
-static bool set_number(const vlParameter *p, PyObject *value, char *place, char *second) {
-  const char *what = shown_name(p);
-  const Range range = row_range(p);
-  if (p->type == VL_PARAMETER_COUNT) {
-    uint32_t count, low = range.low > 0 ? (uint32_t)range.low : 0;
-    uint32_t high = range.high < 4294967295.0 ? (uint32_t)range.high : UINT32_MAX;
-    if (!read_count(value, what, low, high, &count)) return false;
-    PUT(uint32_t, count);
-    return true;
-  }
-  double number;
-  if (!read_real(value, what, &range, &number)) return false;
-  if (p->type == VL_PARAMETER_FLOAT)
-    PUT(float, number);
-  else
-    PUT(double, number);
-  return true;
-}
-
 static bool set_input(const Target *t, const vlParameter *p, PyObject *value, char *place, bool spectrum) {
-  const char *what = shown_name(p);
+  const char *what = vl_setting_keyword(p);
   vlTextureId texture = {0};
   if (is_object(value, TYPE_HANDLE)) {
     texture.index = handle_index(t->scene, value, "textures", what);
@@ -290,25 +241,36 @@ static bool set_input(const Target *t, const vlParameter *p, PyObject *value, ch
   int read = to_double(value, &number);
   if (read < 0) return false;
   if (!read) return raise_value(what, value, "a number or a texture"), false;
-  const Range range = row_range(p);
-  if (!read_real(value, what, &range, &number)) return false;
+  if (!read_row(value, what, p, &number)) return false;
   input->value = (float)number;
   return true;
 }
 
 bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
-  const char *what = shown_name(p);
+  const char *what = vl_setting_keyword(p);
   char *place = t->def + p->offset, *second = p->second ? t->def + p->second : NULL;
+  double number;
   switch (p->type) {
-    case VL_PARAMETER_BOOL: {
-      bool truth;
-      if (!read_flag(value, what, &truth)) return false;
-      PUT(bool, truth);
+    case VL_PARAMETER_BOOL:
+      if (!read_row(value, what, p, &number)) return false;
+      PUT(bool, number != 0);
       return true;
-    }
     case VL_PARAMETER_COUNT:
+      if (!read_row(value, what, p, &number)) return false;
+      PUT(uint32_t, number);
+      return true;
     case VL_PARAMETER_FLOAT:
-    case VL_PARAMETER_DOUBLE: return set_number(p, value, place, second);
+      if (!read_row(value, what, p, &number)) return false;
+      PUT(float, number);
+      return true;
+    case VL_PARAMETER_DOUBLE:
+      if (!read_row(value, what, p, &number)) return false;
+      PUT(double, number);
+      return true;
+    case VL_PARAMETER_CHOICE:
+      if (!read_row(value, what, p, &number)) return false;
+      PUT(int, number);
+      return true;
     case VL_PARAMETER_FLOAT3: {
       float three[3];
       if (!floats_copy(value, what, 3, three)) return false;
@@ -319,12 +281,6 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
       double three[3];
       if (!numbers_copy(value, what, 3, three)) return false;
       memcpy(place, three, sizeof three);
-      return true;
-    }
-    case VL_PARAMETER_CHOICE: {
-      int choice = find_choice(p->choices, what, value);
-      if (choice < 0) return false;
-      PUT(int, choice);
       return true;
     }
     case VL_PARAMETER_STRING:
@@ -357,17 +313,17 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
   return false;
 }
 
-bool set_parameters(const Target *target, Rows rows, const char *thing, PyObject *keywords) {
+bool set_parameters(const Target *target, vlSettingGroup group, const char *thing, PyObject *keywords) {
   PyObject *name, *value;
   Py_ssize_t position = 0;
   while (PyDict_Next(keywords, &position, &name, &value)) {
     const char *text = keep_text(target->keep, name, thing);
     if (!text) return false;
-    const vlParameter *row = find_parameter(rows.rows, rows.count, text);
+    const vlParameter *row = vl_setting(group, text);
     bool fine = row != NULL;
     if (!row) {
       PyObject *names = PyList_New(0);
-      if (names && !append_names(names, rows.rows, rows.count)) Py_CLEAR(names);
+      if (names && !append_settings(names, group)) Py_CLEAR(names);
       raise_unknown(thing, text, names);
     } else {
       fine = set_parameter(target, row, value);

@@ -3,11 +3,10 @@ from __future__ import annotations
 
 import itertools
 import math
-import numbers
-import operator
 import os
 from typing import Any, Optional, Sequence
 
+from velo import _velo
 from velo._errors import wrong_value
 
 
@@ -84,40 +83,27 @@ def path(value: Any, what: str) -> Any:
 
 def flag(value: Any, what: str) -> bool:
     """True or False."""
-    if isinstance(value, (str, bytes)) or not (value is True or value is False or type(value).__name__ in ("bool_", "bool")):
-        raise wrong_value(what, "True or False", value)
-    return bool(value)
+    return bool(_velo.check_value(value, what, "flag", 0, 0))
 
 
 def whole(value: Any, what: str, low: int, high: int) -> int:
-    """A whole number in a range."""
-    rule = f"a whole number from {low} to {high}"
-    if isinstance(value, bool):
-        raise wrong_value(what, rule, value)
-    if isinstance(value, numbers.Real) and not isinstance(value, numbers.Integral) and float(value).is_integer():
-        value = int(value)
-    try:
-        found = operator.index(value)
-    except TypeError:
-        raise wrong_value(what, rule, value) from None
-    if not low <= found <= high:
-        raise wrong_value(what, rule, value)
-    return found
+    """A whole number in a range; the bounds are at most 2**53."""
+    return int(_velo.check_value(value, what, "count", low, high))
 
 
 def number(value: Any, what: str, low: float = -math.inf, high: float = math.inf) -> float:
     """A finite number in a range."""
-    if low > -math.inf and high < math.inf:
-        rule = f"a number from {low:g} to {high:g}"
-    else:
-        rule = "a finite number" + (f" of at least {low:g}" if low > -math.inf else "")
-    try:
-        found = math.nan if isinstance(value, (bool, str, bytes, complex)) else float(value)
-    except (TypeError, ValueError, OverflowError):
-        found = math.nan
-    if not math.isfinite(found) or not low <= found <= high:
-        raise wrong_value(what, rule, value)
-    return found
+    return float(_velo.check_value(value, what, "number", low, high))
+
+
+def setting(value: Any, what: str, group: str, name: str) -> Any:
+    """The value of a setting by its row (velo/setting.h), in the row's unit: group "render", name "spp"."""
+    return _velo.check_setting(value, what, group, name, True)
+
+
+def choice(value: Any, what: str, words: Sequence[str]) -> str:
+    """One of some words."""
+    return words[_velo.check_choice(value, what, list(words))]
 
 
 def nothing_or(check: Any, value: Any, *arguments: Any) -> Optional[Any]:

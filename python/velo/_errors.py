@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import contextlib
-import difflib
 import logging
 from typing import Any, Iterator, NamedTuple, Optional, Sequence
 
@@ -81,12 +80,9 @@ def fork_error() -> ForkError:
 
 
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
-    """There is no `thing` of that name: the message has the nearest names."""
-    known = sorted(set(names))
-    near = difflib.get_close_matches(name, known, n=3, cutoff=0.6)
-    if near:
-        return UsageError(f"unknown {thing} {shown(name)}: did you mean {' or '.join(near)}?")
-    return UsageError(f"unknown {thing} {shown(name)} (known: {', '.join(known)})")
+    """There is no `thing` of that name: the message has the nearest name."""
+    from velo import _velo
+    return UsageError(_velo.unknown_name(thing, name, sorted(set(names))))
 
 
 _MOST_SHOWN = 200  # characters of a value in a message

@@ -1,12 +1,13 @@
 /* camera/camera.c: the public functions: a camera from its def; a camera at another resolution. */
 #include <math.h>
+#include <stdio.h>
 
 #include "base/cookie.h"
 #include "base/error.h"
-#include "base/text.h"
 #include "camera/kinds.h"
 #include "camera/own.h"
 #include "camera/parts.h"
+#include "schema/schema.h"
 
 vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
   return (vlCameraDef){
@@ -57,92 +58,29 @@ vlCameraDef vl_default_camera_def(uint32_t width, uint32_t height) {
   };
 }
 
-static vlResult check_vector(const char *name, const double v[3], vlError *error) {
-  for (int i = 0; i < 3; i++)
-    if (!isfinite(v[i]))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is (%g %g %g); it must be finite", name, v[0], v[1], v[2]);
-  return VL_OK;
-}
-
-/* Optional numbers may be left out, but a NaN is not left out. */
-static vlResult check_optional(const vlCameraDef *d, vlError *error) {
-  const vlLensDef *lens = &d->lens;
-  const struct {
-    const char *name;
-    double value;
-  } numbers[] = {
-      {"fov", d->fov},
-      {"view distance", d->view_distance},
-      {"zoom", d->zoom},
-      {"pixel size", d->pixel_size},
-      {"focal_mm", d->focal_mm},
-      {"sensor_width_mm", d->sensor_width_mm},
-      {"fx", d->fx},
-      {"fy", d->fy},
-      {"skew", d->skew},
-      {"cx", d->cx},
-      {"cy", d->cy},
-      {"screen_min_x", d->screen_min_x},
-      {"screen_max_x", d->screen_max_x},
-      {"screen_min_y", d->screen_min_y},
-      {"screen_max_y", d->screen_max_y},
-      {"focus distance", d->focus_distance},
-      {"f-number", lens->f_number},
-      {"unit_mm", lens->unit_mm},
-      {"focus_point", lens->focus_point[0]},
-      {"focus_point", lens->focus_point[1]},
-      {"focus_point", lens->focus_point[2]},
-      {"focus_pixel", lens->focus_pixel[0]},
-      {"focus_pixel", lens->focus_pixel[1]},
-      {"iso", lens->iso},
-      {"seconds", lens->seconds},
-      {"roll_close", d->roll_close},
-      {"pose_times", d->pose_times[0]},
-      {"pose_times", d->pose_times[1]},
-      {"shape", d->shape[0]},
-      {"shape", d->shape[1]},
-      {"max_angle", d->max_angle},
-      {"convergence", d->stereo.convergence},
-  };
-  for (size_t i = 0; i < VL_LENGTH(numbers); i++)
-    if (isnan(numbers[i].value) && !vl_is_unset(numbers[i].value))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is NaN; it must be a number", numbers[i].name);
-  if (isinf(d->stereo.convergence) || !isfinite(d->stereo.interocular))
-    return vl_fail(error, VL_ERROR_ARGUMENT,
-                   "camera: the interocular distance is %g and the convergence %g; both must be finite",
-                   d->stereo.interocular, d->stereo.convergence);
-  return VL_OK;
-}
-
-/* Checks all parameters except intrinsics and pose. */
-static vlResult check_rest(const vlCameraDef *d, vlError *error) {
-  vlResult optional = check_optional(d, error);
-  if (optional != VL_OK) return optional;
-  if (!vl_projection_row(d->projection))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown projection %d", (int)d->projection);
-  if ((uint32_t)d->fov_axis > VL_FOV_LARGER)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown field-of-view axis %d", (int)d->fov_axis);
-  if (d->width == 0 || d->height == 0 || d->width > 1u << 24 || d->height > 1u << 24)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: an image of %u x %u pixels; each side must be 1 to 16777216",
-                   d->width, d->height);
-  if (!d->has_matrix) {
-    vlResult result = check_vector("eye", d->eye, error);
-    if (result == VL_OK) result = check_vector("lookat", d->lookat, error);
-    if (result == VL_OK) result = check_vector("up", d->up, error);
-    if (result != VL_OK) return result;
+/* Checks each member by the row of its setting. */
+static vlResult check_rows(const vlCameraDef *d, vlError *error) {
+  const vlKindRow *rows = vl_settings(VL_SETTING_CAMERA);
+  for (uint32_t i = 0; i < rows->parameter_count; i++) {
+    const vlParameter *p = &rows->parameters[i];
+    char name[80];
+    char message[VL_GIVEN_MESSAGE];
+    if (p->flags & VL_PARAMETER_SHORTHAND) continue;
+    if (d->projection == VL_PROJECTION_OWN && p->offset == offsetof(vlCameraDef, projection)) continue;
+    snprintf(name, sizeof name, "camera: %s", vl_setting_keyword(p));
+    if (!vl_parameter_check(p, d, name, message)) return vl_fail(error, VL_ERROR_ARGUMENT, "%s", message);
   }
-  if (!isfinite(d->roll)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: roll is %g; it must be finite", d->roll);
-  if (!(d->lens_radius >= 0.0) || isinf(d->lens_radius))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: lens radius is %g; it must be 0 (a pinhole) or above",
-                   d->lens_radius);
-  if (d->focus_distance <= 0.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: focus distance is %g; it must be above zero", d->focus_distance);
-  if (!isfinite(d->shutter_open) || !isfinite(d->shutter_close) || d->shutter_close < d->shutter_open)
+  return VL_OK;
+}
+
+/* Checks what each number may be, and those that no other function compares. */
+static vlResult check_rest(const vlCameraDef *d, vlError *error) {
+  vlResult result = check_rows(d, error);
+  if (result != VL_OK) return result;
+  if (d->shutter_close < d->shutter_open)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the shutter opens at %g and closes at %g", d->shutter_open,
                    d->shutter_close);
-  if (!(d->exposure_time > 0.0) || isinf(d->exposure_time))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: exposure time is %g; it must be above zero", d->exposure_time);
-  if (!(d->near_plane >= 0.0) || !(d->far_plane > d->near_plane))
+  if (!(d->far_plane > d->near_plane))
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: near plane %g and far plane %g; needed is 0 <= near < far",
                    d->near_plane, d->far_plane);
   return VL_OK;

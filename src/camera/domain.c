@@ -208,9 +208,6 @@ vlResult vl_camera_domain(const vlCameraDef *def, vlCamera *camera, const char *
     if (!(row->traits & VL_PROJECTION_CIRCLE) || (kind == VL_PROJECTION_PERSPECTIVE && camera->distortion.steps == 0))
       return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle has no meaning for the %s projection",
                      vl_projection_name(kind));
-    if (!(angle > 0.0 && angle <= pi))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: max_angle is %g radians; it must be above 0 and at most pi",
-                     angle);
   }
   bool given = !vl_is_unset(def->fx) || !vl_is_unset(def->fy) || !vl_is_unset(def->view_distance) ||
                !vl_is_unset(def->focal_mm) || !vl_is_unset(def->screen_min_x);

@@ -37,41 +37,7 @@ static vlResult take(Quantity *q, double value, const char *from, vlError *error
   return VL_OK;
 }
 
-/* Checks that a given value is finite and, if `positive`, above zero. */
-static vlResult check(const char *name, double value, bool positive, vlError *error) {
-  if (vl_is_unset(value)) return VL_OK;
-  if (isinf(value)) return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is infinite", name);
-  if (positive && value <= 0.0)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g; it must be above zero", name, value);
-  return VL_OK;
-}
-
-static vlResult check_all(const vlCameraDef *d, vlError *error) {
-  const struct {
-    const char *name;
-    double value;
-    bool positive;
-  } values[] = {
-      {"fov", d->fov, false},
-      {"view distance d", d->view_distance, true},
-      {"zoom", d->zoom, true},
-      {"pixel size s", d->pixel_size, true},
-      {"focal_mm", d->focal_mm, true},
-      {"sensor_width_mm", d->sensor_width_mm, true},
-      {"fx", d->fx, true},
-      {"fy", d->fy, true},
-      {"skew", d->skew, false},
-      {"cx", d->cx, false},
-      {"cy", d->cy, false},
-      {"screen_min_x", d->screen_min_x, false},
-      {"screen_max_x", d->screen_max_x, false},
-      {"screen_min_y", d->screen_min_y, false},
-      {"screen_max_y", d->screen_max_y, false},
-  };
-  for (size_t i = 0; i < VL_LENGTH(values); i++) {
-    vlResult result = check(values[i].name, values[i].value, values[i].positive, error);
-    if (result != VL_OK) return result;
-  }
+static vlResult check_fov(const vlCameraDef *d, vlError *error) {
   if (d->fov <= 0.0)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: fov is %g radians (%g degrees); it must be above zero", d->fov,
                    d->fov * 180.0 / pi);
@@ -251,7 +217,7 @@ vlResult vl_camera_intrinsics(const vlCameraDef *d, vlCamera *camera, vlError *e
                 {"principal point cx", VL_UNSET, ""},
                 {"principal point cy", VL_UNSET, ""}};
   bool orthographic = d->projection == VL_PROJECTION_ORTHOGRAPHIC, screen;
-  TRY(check_all(d, error));
+  TRY(check_fov(d, error));
   TRY(screen_given(d, &screen, error));
   if (!vl_is_unset(d->fx)) TRY(take(&g.fx, d->fx, "fx", error));
   if (!vl_is_unset(d->fy)) TRY(take(&g.fy, d->fy, "fy", error));

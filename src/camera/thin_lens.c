@@ -19,31 +19,7 @@ static bool given(double value) {
 
 static vlResult check(const vlCameraDef *def, vlError *error) {
   const vlLensDef *d = &def->lens;
-  const double right = 1.5707963267948966;
-  const struct {
-    const char *name;
-    double value;
-  } positive[] = {{"f_number", d->f_number},
-                  {"unit_mm", d->unit_mm},
-                  {"ratio", d->ratio},
-                  {"iso", d->iso},
-                  {"seconds", d->seconds}};
-  for (size_t i = 0; i < VL_LENGTH(positive); i++)
-    if (given(positive[i].value) && (!(positive[i].value > 0.0) || isinf(positive[i].value)))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g; it must be above zero", positive[i].name,
-                     positive[i].value);
-  const struct {
-    const char *name;
-    double value;
-  } angles[] = {
-      {"tilt_x", d->tilt_x}, {"tilt_y", d->tilt_y}, {"lens_tilt_x", d->lens_tilt_x}, {"lens_tilt_y", d->lens_tilt_y}};
-  for (size_t i = 0; i < VL_LENGTH(angles); i++)
-    if (!(fabs(angles[i].value) < right))
-      return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %s is %g radians; it must be less than a right angle",
-                     angles[i].name, angles[i].value);
-  if (!isfinite(d->rotation))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: the lens's rotation is %g; it must be finite", d->rotation);
-  if (d->blades != 0 && (d->blades < 3 || d->blades > VL_MOST_BLADES))
+  if (d->blades != 0 && d->blades < 3)
     return vl_fail(error, VL_ERROR_ARGUMENT, "camera: %u blades; there are 0 (a round opening) or 3 to %d", d->blades,
                    VL_MOST_BLADES);
   if (d->blades != 0 && d->aperture)

@@ -91,10 +91,6 @@ static vlResult make_motion(const vlCameraDef *def, vlCamera *camera, const char
 vlResult vl_camera_time_part(const vlCameraDef *def, vlCamera *camera, const char **warning, vlError *error) {
   vlResult result = check_curve(def, error);
   if (result != VL_OK) return result;
-  if (!(def->readout >= 0.0) || isinf(def->readout))
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: readout takes %g seconds; it must not be negative", def->readout);
-  if ((uint32_t)def->readout_direction > VL_READOUT_LEFT)
-    return vl_fail(error, VL_ERROR_ARGUMENT, "camera: unknown readout direction %d", (int)def->readout_direction);
   camera->readout = def->readout;
   camera->readout_direction = def->readout_direction;
   camera->shutter_points = def->shutter_points;

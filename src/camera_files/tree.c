@@ -1,11 +1,13 @@
 /* camera_files/tree.c: reads values from a file's tree, with errors that name the field; collects text for writing. */
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "base/json.h"
 #include "base/text.h"
 #include "camera_files/files.h"
+#include "velo/setting.h"
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   char message[400];
@@ -162,9 +164,12 @@ vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const ch
   double number = 0.0;
   vlResult result = vl_camera_number(file, object, key, &number);
   if (result != VL_OK) return result;
-  if (!(number >= 1.0 && number <= 1 << 24) || number != floor(number))
-    return vl_camera_wrong_in(file, object, key, "%s: \"%s\" is %g; an image's side is 1 to 16777216 whole pixels",
-                              file->dialect, key, number);
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = number};
+  char name[120];
+  char message[VL_GIVEN_MESSAGE];
+  snprintf(name, sizeof name, "%s: \"%s\"", file->dialect, key);
+  if (!vl_given_check(vl_setting(VL_SETTING_CAMERA, "width"), name, &given, NULL, message))
+    return vl_camera_wrong_in(file, object, key, "%s", message);
   *value = (uint32_t)number;
   return VL_OK;
 }

@@ -2,11 +2,12 @@
  * exactly, in the unit of the def. Fields that have their defaults are not written. Unknown fields are errors. */
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #include "base/text.h"
 #include "camera/kinds.h"
 #include "camera_files/fields.h"
-#include "velo/schema.h"
+#include "velo/setting.h"
 
 /* By vlProjection; "" for those that the file cannot hold: a lens of many elements. */
 #define COUNT_ONE(NAME, name) +1
@@ -139,12 +140,6 @@ static void list_fields(Fields *fields) {
   }
 }
 
-static uint32_t count_choices(const vlParameter *p) {
-  uint32_t count = 0;
-  while (p->choices[count]) count++;
-  return count;
-}
-
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static vlResult check_names(const vlCameraFile *file, const json_t *tree, const Fields *fields) {
@@ -159,9 +154,9 @@ static vlResult check_names(const vlCameraFile *file, const json_t *tree, const 
     bool found = false;
     for (size_t i = 0; i < count; i++) found |= vl_text_is(key, known[i]);
     if (found) continue;
-    const char *near = vl_nearest_name(key, known, count);
-    return vl_camera_wrong(file, "velo: unknown field \"%s\"%s%s%s", vl_short_text(key).text,
-                           near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
+    char message[VL_GIVEN_MESSAGE];
+    vl_unknown_name("field", "", vl_short_text(key).text, known, count, message);
+    return vl_camera_wrong(file, "velo: %s", message);
   }
   return VL_OK;
 }
@@ -228,35 +223,30 @@ static vlResult read_pose_close(const vlCameraFile *file, const json_t *tree, co
   return read_matrix(file, tree, field->name, &d->has_matrix_close, d->world_from_camera_close);
 }
 
+/* Checks one value by the field's row, or a finite number where no row holds it; null is unset. */
+static vlResult read_item(const vlCameraFile *file, const json_t *item, const Field *field, double *number) {
+  static const vlParameter any = {.type = VL_PARAMETER_DOUBLE, .flags = VL_PARAMETER_UNSET};
+  char name[80];
+  char message[VL_GIVEN_MESSAGE];
+  vlGiven given = {.kind = VL_GIVEN_OTHER};
+  if (json_is_null(item)) given.kind = VL_GIVEN_NOTHING;
+  if (json_is_boolean(item)) given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
+  if (json_is_number(item)) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
+  if (json_is_string(item)) given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
+  snprintf(name, sizeof name, "velo: \"%s\"", field->name);
+  if (vl_given_check(field->row ? field->row : &any, name, &given, number, message)) return VL_OK;
+  return vl_camera_wrong_in(file, item, NULL, "%s", message);
+}
+
 /* Reads one number, or a list with null for unset. */
-static vlResult read_numbers(const vlCameraFile *file, const json_t *tree, const Field *field, double *values) {
-  const json_t *list = json_object_get(tree, field->name);
-  if (field->count == 1) return vl_camera_number(file, tree, field->name, values);
-  if (json_array_size(list) != field->count)
-    return vl_camera_wrong(file, "velo: \"%s\" must be a list of %u numbers", field->name, field->count);
-  for (uint32_t i = 0; i < field->count; i++) {
-    const json_t *item = json_array_get(list, i);
-    if (!json_is_number(item) && !json_is_null(item))
-      return vl_camera_wrong(file, "velo: \"%s\" holds something that is no number", field->name);
-    values[i] = json_is_null(item) ? VL_UNSET : json_number_value(item);
-  }
-  return VL_OK;
-}
-
-static vlResult read_count(const vlCameraFile *file, const json_t *tree, const Field *field, uint32_t *count) {
-  double number = 0.0;
-  vlResult result = vl_camera_number(file, tree, field->name, &number);
-  if (result != VL_OK) return result;
-  if (!(number >= 0.0 && number < 1e6) || number != floor(number))
-    return vl_camera_wrong(file, "velo: \"%s\" is %g; it must be a whole number", field->name, number);
-  *count = (uint32_t)number;
-  return VL_OK;
-}
-
-static vlResult read_choice(const vlCameraFile *file, const json_t *tree, const Field *field, int *choice) {
-  uint32_t index = 0;
-  vlResult result = word(file, tree, field->name, field->row->choices, count_choices(field->row), &index);
-  if (result == VL_OK) *choice = (int)index;
+static vlResult read_numbers(const vlCameraFile *file, const json_t *value, const Field *field, double *values) {
+  if (field->count == 1) return read_item(file, value, field, values);
+  if (json_array_size(value) != field->count)
+    return vl_camera_wrong_in(file, value, NULL, "velo: \"%s\" must be a list of %u numbers", field->name,
+                              field->count);
+  vlResult result = VL_OK;
+  for (uint32_t i = 0; i < field->count && result == VL_OK; i++)
+    result = read_item(file, json_array_get(value, i), field, &values[i]);
   return result;
 }
 
@@ -266,16 +256,13 @@ static vlResult read_field(const vlCameraFile *file, const json_t *tree, const F
   const json_t *value = json_object_get(tree, field->name);
   if (field->read) return field->read(file, tree, field, def);
   if (!value) return VL_OK;
-  switch (field->form) {
-    case COUNT: return read_count(file, tree, field, at);
-    case CHOICE: return read_choice(file, tree, field, at);
-    case NUMBERS: return read_numbers(file, tree, field, at);
-    case BOOL:
-      if (!json_is_boolean(value)) return vl_camera_wrong(file, "velo: \"%s\" must be true or false", field->name);
-      *(bool *)at = json_is_true(value);
-      return VL_OK;
-    case NOT_HELD: break;
-  }
+  if (field->form == NUMBERS) return read_numbers(file, value, field, at);
+  double number;
+  vlResult result = read_item(file, value, field, &number);
+  if (result != VL_OK) return result;
+  if (field->form == COUNT) *(uint32_t *)at = (uint32_t)number;
+  if (field->form == CHOICE) *(int *)at = (int)number;
+  if (field->form == BOOL) *(bool *)at = number != 0;
   return VL_OK;
 }
 

@@ -77,12 +77,14 @@ static bool take_parameter(const Take *t, const vlParameter *p, char *def, bool 
 
 bool vl_row_take(vlScene *scene, const vlKindRow *row, void *def, bool spectrum, vlSource source, const char *what) {
   const Take t = {scene, source, what};
-  char message[200];
+  char name[200];
+  char message[VL_GIVEN_MESSAGE];
   for (uint32_t i = 0; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
     if (p->flags & VL_PARAMETER_SHORTHAND) continue;
     if (!take_parameter(&t, p, def, spectrum)) return false;
-    if (vl_parameter_check(p, def, what, message)) continue;
+    snprintf(name, sizeof name, "%s: parameter \"%s\"", what, vl_parameter_label(p));
+    if (vl_parameter_check(p, def, name, message)) continue;
     vl_scene_fail(scene, VL_ERROR_SCENE, source, "%s", message);
     return false;
   }

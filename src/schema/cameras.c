@@ -3,10 +3,17 @@
 #include "velo/camera.h"
 
 #define DEGREES 0.017453292519943295
+#define PI 3.14159265358979323846
 #define PARAMETER(TYPE, ...) VL_PARAMETER(TYPE, vlCameraDef, __VA_ARGS__)
 #define NUMBER(name, member, ...) PARAMETER(DOUBLE, name, member, __VA_ARGS__)
 #define OPTIONAL(name, member, ...) PARAMETER(DOUBLE, name, member, __VA_ARGS__, .flags = VL_PARAMETER_UNSET)
+#define ABOVE_0 VL_FROM(0), .flags = VL_PARAMETER_ABOVE_LOW
+#define UNSET_OR_ABOVE_0 VL_FROM(0), .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW
+#define POSITIVE(name, member, ...) PARAMETER(DOUBLE, name, member, __VA_ARGS__, UNSET_OR_ABOVE_0)
+#define WITHIN(least, most, name, member, ...) \
+  PARAMETER(DOUBLE, name, member, __VA_ARGS__, VL_RANGE(least, most), .flags = VL_PARAMETER_UNSET)
 #define ANGLE .unit = "degrees", .factor = DEGREES
+#define TILT ANGLE, VL_RANGE(-0.5 * PI, 0.5 * PI), .flags = VL_PARAMETER_ABOVE_LOW | VL_PARAMETER_BELOW_HIGH
 #define OPTIONAL_ANGLE(name, member, text) OPTIONAL(name, member, text, ANGLE)
 #define BLOCK(name, member, type, line) PARAMETER(BLOCK, name, member, line, .text = type, .flags = VL_PARAMETER_RULE)
 #define VECTOR(name, member, line, more, ...) \
@@ -37,7 +44,7 @@ static const char *const directions[] = {"down", "up", "right", "left", NULL};
        "width of the screen window divided by its height; unset: that of the film", .unit = NULL),                   \
       BLOCK("screenwindow", screen_min_x, "float",                                                                   \
             "screen window: x0, x1, y0, y1 of the image on the plane at distance 1, y up"),                          \
-      NUMBER("lensradius", lens_radius, "radius of the thin lens, scene units; 0: a pinhole", VL_FROM(0)),           \
+      NUMBER("lensradius", lens_radius, "radius of the thin lens, scene units; 0: a pinhole", VL_RANGE(0, 1e30)),    \
       WORD("focaldistance", DOUBLE, focus_distance, "distance to the plane in focus, scene units", VL_DEFAULT(1e6)), \
       SHUTTER
 
@@ -85,77 +92,82 @@ VL_KIND_ROW(realistic, .name = "realistic", .description = "a lens of many eleme
              0),                                                                                                     \
       OPTIONAL_ANGLE("rollclose", roll_close, "roll when the shutter closes; unset: roll")
 #define INTRINSICS                                                                                                     \
-  OPTIONAL("d", view_distance, "view distance; the focal length in pixels is zoom * d / pixelsize", .unit = NULL),     \
-      OPTIONAL("zoom", zoom, "factor on d; unset: 1", .unit = NULL),                                                   \
-      OPTIONAL("pixelsize", pixel_size, "side of a pixel in the unit of d; unset: 1", .unit = NULL),                   \
+  POSITIVE("d", view_distance, "view distance; the focal length in pixels is zoom * d / pixelsize", .unit = NULL),     \
+      POSITIVE("zoom", zoom, "factor on d; unset: 1", .unit = NULL),                                                   \
+      POSITIVE("pixelsize", pixel_size, "side of a pixel in the unit of d; unset: 1", .unit = NULL),                   \
       OPTIONAL_ANGLE("fov", fov, "field of view along fovaxis"),                                                       \
       PARAMETER(CHOICE, "fovaxis", fov_axis, "the extent of the image that fov spans", .choices = axes,                \
                 VL_DEFAULT(VL_FOV_SMALLER)),                                                                           \
-      OPTIONAL("focallength", focal_mm, "focal length; requires sensorwidth", .unit = "mm"),                           \
-      OPTIONAL("sensorwidth", sensor_width_mm, "width of the sensor, for focallength", .unit = "mm"),                  \
-      OPTIONAL("fx", fx, "horizontal focal length", .unit = "pixels"),                                                 \
-      OPTIONAL("fy", fy, "vertical focal length", .unit = "pixels"),                                                   \
+      POSITIVE("focallength", focal_mm, "focal length; requires sensorwidth", .unit = "mm"),                           \
+      POSITIVE("sensorwidth", sensor_width_mm, "width of the sensor, for focallength", .unit = "mm"),                  \
+      POSITIVE("fx", fx, "horizontal focal length", .unit = "pixels"),                                                 \
+      POSITIVE("fy", fy, "vertical focal length", .unit = "pixels"),                                                   \
       OPTIONAL("cx", cx, "column of the principal point from the image's left edge; unset: the centre",                \
                .unit = "pixels"),                                                                                      \
       OPTIONAL("cy", cy, "row of the principal point from the image's top edge; unset: the centre", .unit = "pixels"), \
       OPTIONAL("skew", skew, "skew coefficient of the camera matrix", .unit = "pixels")
-#define TIME                                                                                                     \
-  SHUTTER,                                                                                                       \
-      WORD("shuttercurve", CHOICE, shutter_points,                                                               \
-           "shape of the shutter curve: how far the shutter is open over time", .choices = curves),              \
-      WORD("shutterrise", DOUBLE, shutter_points, "trapezoid: fraction of the shutter's time in which it opens", \
-           VL_DEFAULT(0.1), VL_RANGE(0, 0.5)),                                                                   \
-      BLOCK("shutterpoints", shutter_at, "float",                                                                \
-            "shutter curve, 2 to 16 pairs: fraction of the shutter's time, and opening"),                        \
-      NUMBER("readout", readout, "rolling shutter: time from the first row's exposure to the last one's",        \
-             .unit = "s"),                                                                                       \
-      PARAMETER(CHOICE, "readoutdirection", readout_direction,                                                   \
+#define TIME                                                                                                           \
+  SHUTTER,                                                                                                             \
+      WORD("shuttercurve", CHOICE, shutter_points,                                                                     \
+           "shape of the shutter curve: how far the shutter is open over time", .choices = curves),                    \
+      WORD("shutterrise", DOUBLE, shutter_points, "trapezoid: fraction of the shutter's time in which it opens",       \
+           VL_DEFAULT(0.1), VL_RANGE(0, 0.5)),                                                                         \
+      BLOCK("shutterpoints", shutter_at, "float",                                                                      \
+            "shutter curve, 2 to 16 pairs: fraction of the shutter's time, and opening"),                              \
+      NUMBER("readout", readout, "rolling shutter: time from the first row's exposure to the last one's", .unit = "s", \
+             VL_FROM(0)),                                                                                              \
+      PARAMETER(CHOICE, "readoutdirection", readout_direction,                                                         \
                 "direction in which the rolling shutter reads the sensor", .choices = directions)
-#define STEREO                                                                                                     \
-  PARAMETER(CHOICE, "stereo", stereo.mode, "arrangement of the two cameras (eyes) of a stereo pair",               \
-            .choices = stereo_modes),                                                                              \
-      PARAMETER(CHOICE, "stereoeye", stereo_eye, "which eyes are rendered", .choices = stereo_eyes),               \
-      NUMBER("interocular", stereo.interocular, "distance between the eyes, scene units", VL_DEFAULT(0.065)),      \
-      OPTIONAL("convergence", stereo.convergence, "depth where the eyes' axes or image windows meet, scene units", \
-               .unit = NULL)
+#define STEREO                                                                                               \
+  PARAMETER(CHOICE, "stereo", stereo.mode, "arrangement of the two cameras (eyes) of a stereo pair",         \
+            .choices = stereo_modes, .keyword = "stereo_mode"),                                              \
+      PARAMETER(CHOICE, "stereoeye", stereo_eye, "which eyes are rendered", .choices = stereo_eyes),         \
+      NUMBER("interocular", stereo.interocular, "distance between the eyes, scene units", VL_DEFAULT(0.065), \
+             VL_RANGE(1e-9, 1e9)),                                                                           \
+      WITHIN(1e-9, 1e12, "convergence", stereo.convergence,                                                  \
+             "depth where the eyes' axes or image windows meet, scene units", .unit = NULL)
 #define FILM                                                                                                         \
-  NUMBER("exposuretime", exposure_time, "exposure: factor on the image's values", VL_DEFAULT(1)),                    \
-      NUMBER("near", near_plane, "depth of the near clipping plane, scene units", .unit = NULL),                     \
+  NUMBER("exposuretime", exposure_time, "exposure: factor on the image's values", VL_DEFAULT(1), ABOVE_0),           \
+      NUMBER("near", near_plane, "depth of the near clipping plane, scene units", VL_FROM(0)),                       \
       NUMBER("far", far_plane, "depth of the far clipping plane, scene units", VL_DEFAULT((double)__builtin_inff()), \
-             .flags = VL_PARAMETER_INFINITE)
+             VL_FROM(0), .flags = VL_PARAMETER_INFINITE | VL_PARAMETER_ABOVE_LOW)
 #define PINHOLE                                      \
   POSE, INTRINSICS, TIME, STEREO, FILM,              \
       PARAMETER(BOOL, "vignetting", lens.vignetting, \
                 "natural vignetting: the image darkens with cos^4 of the angle from the axis")
-#define LENS                                                                                                           \
-  NUMBER("lensradius", lens_radius, "radius of the lens, scene units; 0: a pinhole", VL_FROM(0)),                      \
-      PARAMETER(DOUBLE, "focusdistance", focus_distance,                                                               \
-                "distance to the plane in focus, scene units; unset: infinity", .alias = "focaldistance",              \
-                .flags = VL_PARAMETER_UNSET | VL_PARAMETER_INFINITE),                                                  \
-      OPTIONAL("fnumber", lens.f_number, "f-number: focal length divided by the lens's diameter; replaces lensradius", \
-               .unit = NULL),                                                                                          \
-      NUMBER("unitmm", lens.unit_mm, "length of one scene unit", VL_DEFAULT(1000), .unit = "mm"),                      \
-      VECTOR("focuspoint", lens.focus_point, "a world-space point that the plane in focus contains",                   \
-             VL_PARAMETER_UNSET, 0),                                                                                   \
-      BLOCK("focuspixel", lens.focus_pixel, "float", "x, y of a pixel: the surface that it shows is in focus"),        \
-      PARAMETER(COUNT, "blades", lens.blades, "number of corners of a polygonal aperture; 0: round"),                  \
-      NUMBER("bladerotation", lens.rotation, "rotation of the aperture", ANGLE),                                       \
-      NUMBER("apertureratio", lens.ratio,                                                                              \
-             "height of the aperture divided by its width; 2 for typical anamorphic lenses", VL_DEFAULT(1)),           \
-      NUMBER("tiltx", lens.tilt_x, "tilt of the plane in focus about the camera's x axis", ANGLE),                     \
-      NUMBER("tilty", lens.tilt_y, "tilt of the plane in focus about the camera's y axis", ANGLE),                     \
-      NUMBER("lenstiltx", lens.lens_tilt_x, "tilt of the lens about the camera's x axis (Scheimpflug principle)",      \
-             ANGLE),                                                                                                   \
-      NUMBER("lenstilty", lens.lens_tilt_y, "tilt of the lens about the camera's y axis", ANGLE),                      \
-      OPTIONAL("iso", lens.iso, "sensitivity: the exposure is seconds * iso / (120 fnumber^2)", .unit = NULL),         \
-      OPTIONAL("seconds", lens.seconds, "exposure time for iso; unset: the shutter's time", .unit = "s"),              \
-      BLOCK("aperture", lens.aperture, "string",                                                                       \
+#define LENS                                                                                                          \
+  NUMBER("lensradius", lens_radius, "radius of the lens, scene units; 0: a pinhole", VL_RANGE(0, 1e30)),              \
+      PARAMETER(DOUBLE, "focusdistance", focus_distance,                                                              \
+                "distance to the plane in focus, scene units; unset: infinity", .alias = "focaldistance", VL_FROM(0), \
+                .flags = VL_PARAMETER_UNSET | VL_PARAMETER_INFINITE | VL_PARAMETER_ABOVE_LOW),                        \
+      WITHIN(1e-6, 1e6, "fnumber", lens.f_number,                                                                     \
+             "f-number: focal length divided by the lens's diameter; replaces lensradius", .unit = NULL),             \
+      NUMBER("unitmm", lens.unit_mm, "length of one scene unit", VL_DEFAULT(1000), .unit = "mm",                      \
+             VL_RANGE(1e-12, 1e12)),                                                                                  \
+      VECTOR("focuspoint", lens.focus_point, "a world-space point that the plane in focus contains",                  \
+             VL_PARAMETER_UNSET, 0),                                                                                  \
+      BLOCK("focuspixel", lens.focus_pixel, "float", "x, y of a pixel: the surface that it shows is in focus"),       \
+      PARAMETER(COUNT, "blades", lens.blades, "number of corners of a polygonal aperture, from 3; 0: round",          \
+                VL_RANGE(0, 32)),                                                                                     \
+      NUMBER("bladerotation", lens.rotation, "rotation of the aperture", ANGLE),                                      \
+      NUMBER("apertureratio", lens.ratio,                                                                             \
+             "height of the aperture divided by its width; 2 for typical anamorphic lenses", VL_DEFAULT(1), ABOVE_0), \
+      NUMBER("tiltx", lens.tilt_x, "tilt of the plane in focus about the camera's x axis", TILT),                     \
+      NUMBER("tilty", lens.tilt_y, "tilt of the plane in focus about the camera's y axis", TILT),                     \
+      NUMBER("lenstiltx", lens.lens_tilt_x, "tilt of the lens about the camera's x axis (Scheimpflug principle)",     \
+             TILT),                                                                                                   \
+      NUMBER("lenstilty", lens.lens_tilt_y, "tilt of the lens about the camera's y axis", TILT),                      \
+      WITHIN(1e-6, 1e12, "iso", lens.iso, "sensitivity: the exposure is seconds * iso / (120 fnumber^2)",             \
+             .unit = NULL),                                                                                           \
+      WITHIN(1e-12, 1e12, "seconds", lens.seconds, "exposure time for iso; unset: the shutter's time", .unit = "s"),  \
+      BLOCK("aperture", lens.aperture, "string",                                                                      \
             "shape of the aperture: circle, gaussian, square, pentagon, star or an image file")
-#define MODEL                                                                                                          \
-  PINHOLE, LENS,                                                                                                       \
-      OPTIONAL_ANGLE("maxangle", max_angle,                                                                            \
-                     "angle from the axis to the edge of the image circle; unset: the projection's limit, or half of " \
-                     "a fisheye's fov")
+#define MODEL                                                                                                       \
+  PINHOLE, LENS,                                                                                                    \
+      PARAMETER(DOUBLE, "maxangle", max_angle,                                                                      \
+                "angle from the axis to the edge of the image circle; unset: the projection's limit, or half of a " \
+                "fisheye's fov",                                                                                    \
+                ANGLE, VL_RANGE(0, PI), .flags = VL_PARAMETER_UNSET | VL_PARAMETER_ABOVE_LOW)
 #define COEFFICIENTS \
   BLOCK("coefficients", distortion_coefficients, "float", "distortion coefficients, in OpenCV's order")
 #define SHAPE(name, index, line, ...) OPTIONAL(name, shape[index], line, __VA_ARGS__)
@@ -221,6 +233,40 @@ static const vlParameter double_sphere_parameters[] = {
     MODEL, SHAPE("xi", 0, "required: the model's parameter xi", VL_RANGE(-0.999, 0.999)),
     SHAPE("alpha", 1, "required: the model's parameter alpha", VL_RANGE(0, 1))};
 VL_KIND_ROW(double_sphere, .name = "doublesphere", .description = "the double sphere model (Usenko)")
+
+/* ---- the settings of cameras, in calls and messages ---------------------------------------------------------------
+ */
+
+static const char *const projections[] = {
+#define NAME(NAME, name) #name,
+    VL_PROJECTION_KINDS(NAME)
+#undef NAME
+        NULL};
+static const char *const distortions[] = {"none", "opencv", "radial", "thin_prism", NULL};
+#define SIDE(member, line) \
+  PARAMETER(COUNT, NULL, member, line, VL_RANGE(1, 16777216), VL_DEFAULT(640), .unit = "pixels")
+#define SCREEN(member, line) OPTIONAL(NULL, member, line, .unit = NULL)
+static const vlParameter camera_settings_parameters[] = {
+    PARAMETER(CHOICE, NULL, projection, "map from directions to the image", .choices = projections),
+    SIDE(width, "width of the image"),
+    SIDE(height, "height of the image"),
+    SCREEN(screen_min_x, "left edge of the window at distance 1"),
+    SCREEN(screen_max_x, "right edge of this window"),
+    SCREEN(screen_min_y, "lower edge of this window"),
+    SCREEN(screen_max_y, "upper edge of this window"),
+    OPTIONAL(NULL, shape[0], "first parameter of the projection", .unit = NULL),
+    OPTIONAL(NULL, shape[1], "second parameter of the projection", .unit = NULL),
+    OPTIONAL(NULL, lens.focus_pixel[0], "column of the point in focus", .unit = "pixels"),
+    OPTIONAL(NULL, lens.focus_pixel[1], "row of the point in focus", .unit = "pixels"),
+    OPTIONAL(NULL, pose_times[0], "time of the first pose; unset: when the shutter opens", .unit = "s"),
+    OPTIONAL(NULL, pose_times[1], "time of the second pose; unset: when the last row's shutter closes", .unit = "s"),
+    PARAMETER(CHOICE, NULL, distortion, "model of the lens distortion", .choices = distortions),
+    MODEL};
+const vlKindRow vl_camera_settings_row = {
+    .name = "camera",
+    .description = "a camera, in calls and in the messages of the page",
+    .parameters = camera_settings_parameters,
+    .parameter_count = sizeof camera_settings_parameters / sizeof *camera_settings_parameters};
 
 #define CAMERAS(X) VL_CAMERA_KINDS(X) VL_PROJECTION_KINDS(X)
 #define ROW(NAME, name) &name##_row,

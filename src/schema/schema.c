@@ -7,7 +7,7 @@
 static const vlKindFamily *const families[] = {&vl_material_family,     &vl_texture_family, &vl_light_family,
                                                &vl_emission_family,     &vl_shape_family,   &vl_medium_family,
                                                &vl_pixel_filter_family, &vl_sampler_family, &vl_tracer_family,
-                                               &vl_film_family,         &vl_camera_family};
+                                               &vl_film_family,         &vl_camera_family,  &vl_setting_family};
 
 const vlKindFamily *vl_kind_family(uint32_t index) {
   return index < sizeof families / sizeof *families ? families[index] : NULL;
@@ -47,7 +47,7 @@ const vlParameter *vl_row_find(const vlKindRow *row, const char *name) {
 }
 
 const char *vl_parameter_label(const vlParameter *p) {
-  return p->name ? p->name : p->member;
+  return p->name ? p->name : vl_setting_keyword(p);
 }
 
 /* ---- defaults ---------------------------------------------------------------------------------------------------- */

@@ -6,6 +6,7 @@
 
 #include "velo/scene_base.h"
 #include "velo/schema.h"
+#include "velo/setting.h"
 #include "velo/spectrum.h"
 
 /* ---- for the files that hold rows --------------------------------------------------------------------------------
@@ -98,6 +99,10 @@ typedef enum vlCameraKind {
       VL_CAMERA_OF_PROJECTION /* + vlProjection */
 } vlCameraKind;
 extern const vlKindFamily vl_camera_family;
+/* The settings (velo/setting.h), a row for each group; no files of scenes name them. */
+extern const vlKindFamily vl_setting_family;
+/* The settings of cameras: the parameters of all kinds, and what files say by rules. */
+extern const vlKindRow vl_camera_settings_row;
 
 /* Power of a light, by pbrt's definition. luminance: of the light's colour, with its scale. radius: of a sphere around
  * the scene. NaN: the power depends on an image. */
@@ -131,8 +136,10 @@ void vl_row_copy_members(const vlKindRow *row, const void *from, void *to);
 /* The name of a parameter in messages: its name in files, else its member's. */
 const char *vl_parameter_label(const vlParameter *parameter);
 /* Checks the value of a parameter: it must be finite, in range and a known choice, and must not be missing if it is
- * required. If the result is false, message holds the reason. */
-bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *what, char message[200]);
+ * required. If the result is false, message holds the reason (velo/setting.h: VL_GIVEN_MESSAGE). name: of the value in
+ * the message. */
+bool vl_parameter_check(const vlParameter *parameter, const void *def, const char *name,
+                        char message[VL_GIVEN_MESSAGE]);
 /* Gives the value of a parameter as a number. This works for counts, floats, doubles, choices, bools, and inputs
  * without texture that hold one number. False: the parameter is of another type. */
 bool vl_parameter_number(const vlParameter *parameter, const void *def, double *number);

@@ -232,10 +232,6 @@ static void orthographic(void **state) {
 static void error_messages(void **state) {
   (void)state;
   EXPECT_ERROR(d.cookie = 0, "def.cookie", NULL);
-  EXPECT_ERROR(d.width = 0, "0 x 480", NULL);
-  EXPECT_ERROR(d.height = 1u << 25, "33554432", NULL);
-  EXPECT_ERROR(d.projection = (vlProjection)99, "projection 99", NULL);
-  EXPECT_ERROR(d.fov_axis = (vlFovAxis)9, "axis 9", NULL);
   /* over-determined: both values are named */
   EXPECT_ERROR((d.fov = RADIANS(60), d.view_distance = 500), "fov 60 degrees", "d 500");
   EXPECT_ERROR((d.fov = RADIANS(60), d.fov_axis = VL_FOV_VERTICAL, d.view_distance = 500), "415.69", "500");
@@ -257,38 +253,20 @@ static void error_messages(void **state) {
   /* ranges */
   EXPECT_ERROR(d.fov = RADIANS(180), "180 degrees", NULL);
   EXPECT_ERROR(d.fov = 0, "fov is 0", NULL);
-  EXPECT_ERROR(d.fov = INFINITY, "fov is infinite", NULL);
-  EXPECT_ERROR(d.view_distance = 0, "view distance d is 0", NULL);
-  EXPECT_ERROR(d.view_distance = -3, "view distance d is -3", NULL);
-  EXPECT_ERROR((d.view_distance = 3, d.zoom = 0), "zoom is 0", NULL);
-  EXPECT_ERROR((d.view_distance = 3, d.pixel_size = 0), "pixel size s is 0", NULL);
   EXPECT_ERROR((d.view_distance = 1e300, d.pixel_size = 1e-300), "no finite focal length", NULL);
   EXPECT_ERROR(d.view_distance = 1e200, "out of range", NULL);
-  EXPECT_ERROR(d.fx = -1, "fx is -1", NULL);
-  EXPECT_ERROR(d.cx = INFINITY, "cx is infinite", NULL);
   /* pose */
   EXPECT_ERROR((set3(d.eye, 1, 2, 3), set3(d.lookat, 1, 2, 3)), "eye and lookat are the same point (1 2 3)", NULL);
-  EXPECT_ERROR(d.eye[1] = NAN, "eye", "nan");
-  EXPECT_ERROR(d.lookat[2] = INFINITY, "lookat", "inf");
-  EXPECT_ERROR(d.up[0] = NAN, "up", "nan");
   EXPECT_ERROR((d.eye[0] = 1.7e308, d.lookat[0] = -1.7e308), "too far apart", NULL);
   EXPECT_ERROR(set3(d.up, 0, 0, 0), "up is the zero vector", NULL);
-  EXPECT_ERROR(d.roll = NAN, "roll", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = NAN), "not finite", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 0), "singular", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[5] = 1e308), "stretches by 1e+308", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[1] = 1, d.world_from_camera[5] = 0), "singular", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[14] = 1), "last row", NULL);
   /* the rest */
-  EXPECT_ERROR(d.lens_radius = -1, "lens radius is -1", NULL);
-  EXPECT_ERROR(d.lens_radius = NAN, "lens radius", NULL);
-  EXPECT_ERROR(d.focus_distance = 0, "focus distance is 0", NULL);
   EXPECT_ERROR(d.shutter_close = -1, "shutter opens at 0", "closes at -1");
-  EXPECT_ERROR(d.exposure_time = 0, "exposure time is 0", NULL);
-  EXPECT_ERROR(d.exposure_time = NAN, "exposure time", NULL);
-  EXPECT_ERROR(d.near_plane = -1, "near plane -1", NULL);
   EXPECT_ERROR((d.near_plane = 5, d.far_plane = 5), "far plane 5", NULL);
-  EXPECT_ERROR(d.far_plane = NAN, "far plane", NULL);
   /* null arguments; after an error the camera is unchanged */
   vlCameraDef good = vl_default_camera_def(4, 4), bad = good;
   vlCamera c = camera_of(0), before = c;

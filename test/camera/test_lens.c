@@ -459,15 +459,11 @@ static void refused(const char *what, const char *also, const vlCameraDef *def) 
 static void wrong_lenses(void **state) {
   (void)state;
   REFUSED(d.lens.f_number = 2, "f_number 2", "focal length");
-  REFUSED(d.lens.f_number = -2, "f_number is -2", "above zero");
   REFUSED((d.focal_mm = 50, d.sensor_width_mm = 36, d.lens.f_number = 2, d.lens_radius = 1), "0.0125",
           "lens_radius is 1");
   REFUSED((d.focal_mm = 50, d.lens.f_number = 2), "focal_mm is given", "sensor_width_mm");
   REFUSED((d.projection = VL_PROJECTION_ORTHOGRAPHIC, d.lens.f_number = 2), "f_number 2", "focal length");
-  REFUSED(d.lens.ratio = 0, "ratio is 0", "");
   REFUSED(d.lens.blades = 2, "2 blades", "3 to 32");
-  REFUSED(d.lens.blades = 33, "33 blades", "3 to 32");
-  REFUSED(d.lens.tilt_x = 1.6, "tilt_x is 1.6", "right angle");
   REFUSED((d.lens.tilt_x = 0.1, d.lens.lens_tilt_y = 0.1), "tilt_x 0.1", "lens_tilt_y 0.1");
   REFUSED(d.lens.lens_tilt_y = 0.1, "focal length", "focal_mm");
   REFUSED((d.projection = VL_PROJECTION_EQUIDISTANT, d.lens.tilt_x = 0.1), "tilted plane", "equidistant");
@@ -482,8 +478,6 @@ static void wrong_lenses(void **state) {
   REFUSED(d.lens.seconds = 1, "seconds 1", "iso");
   REFUSED((d.lens.iso = 100, d.lens.f_number = 8, d.exposure_time = 2), "exposure_time 2", "iso 100");
   REFUSED((d.lens.iso = 100, d.lens.f_number = 8, d.shutter_close = 0), "0 seconds", "iso 100");
-  REFUSED(d.lens.rotation = INFINITY, "rotation", "finite");
-  REFUSED(d.focus_distance = 0, "focus distance is 0", "");
 }
 
 /* Each allocation in turn fails: the failure is reported, and no memory leaks. */

@@ -51,7 +51,7 @@ usage time_unit '1h30m' render scene.pbrt --time 5d
 usage time_zero 'above 0' render scene.pbrt --time 0
 usage exposure '"nan"' render scene.pbrt --exposure nan
 usage sampler 'did you mean "sobol"?' render scene.pbrt --sampler sobool
-usage sampler_list 'independent, regular, stratified' render scene.pbrt --sampler q
+usage sampler_list 'independent, random, regular, stratified' render scene.pbrt --sampler q
 usage tracer 'did you mean "raycast"?' render scene.pbrt --tracer raycats
 usage view 'standard, neutral, agx, raw' render scene.pbrt --view q
 usage isa 'base, v2, v3, v4' render scene.pbrt --isa avx

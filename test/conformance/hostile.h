@@ -6,6 +6,7 @@
 #define TEST_CONFORMANCE_HOSTILE_H
 
 #include "parameters.h"
+#include "velo/setting.h"
 
 /* ---- defs -------------------------------------------------------------------------------------------------------- */
 
@@ -98,6 +99,7 @@ static bool put_number(const vlParameter *p, char *def, double number) {
 }
 
 static bool must_fail(const vlParameter *p, double x) {
+  if (isinf(x) && x > 0 && p->flags & VL_PARAMETER_INFINITE) return false;
   bool limited = (p->low != 0 || p->high != 0) && !(p->flags & VL_PARAMETER_CLAMPED);
   bool low = limited && (p->flags & VL_PARAMETER_ABOVE_LOW ? x <= p->low : x < p->low);
   bool high = limited && (p->flags & VL_PARAMETER_BELOW_HIGH ? x >= p->high : x > p->high);
@@ -133,6 +135,10 @@ static void hostile_defs(void **state) {
         if (!(p->flags & VL_PARAMETER_SHORTHAND)) check_def(family, (int)i, p);
       }
   }
+  const vlKindRow *camera = vl_settings(VL_SETTING_CAMERA);
+  for (uint32_t k = 0; k < camera->parameter_count; k++)
+    if (!(camera->parameters[k].flags & VL_PARAMETER_SHORTHAND))
+      check_def(vl_kind_family_find("cameras"), 0, &camera->parameters[k]);
   expect_no_failures();
 }
 

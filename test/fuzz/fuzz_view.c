@@ -18,9 +18,10 @@ static void check_limits(const ViewMessage *m) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   static ViewMessage message;
-  const char *why = NULL, *warning = NULL;
-  if (!message_parse((const char *)data, size, &message, &why)) {
-    if (!why) abort();
+  const char *warning = NULL;
+  char why[VL_GIVEN_MESSAGE] = "";
+  if (!message_parse((const char *)data, size, &message, why)) {
+    if (!why[0]) abort();
     return 0;
   }
   check_limits(&message);

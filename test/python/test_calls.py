@@ -296,7 +296,7 @@ def materials_textures_lights_and_shapes_change():
         velo.Scene().hide(floor)
     with raises(velo.UsageError, "not materials"):
         scene.hide(paint)
-    with raises(velo.UsageError, "did you mean paint"):
+    with raises(velo.UsageError, 'did you mean "paint"'):
         scene.find("materials", "pain")
     with raises(velo.UsageError, "transform", "nan"):
         scene.set(scene.handles("instances")[0], transform=numpy.full((4, 4), numpy.nan))

@@ -127,14 +127,14 @@ def wrong_data_is_refused_with_name_value_and_range():
                           ({"cameras": []}, ("recipe.cameras", "1 to 1000")), ({"models": []}, ("recipe.models",)),
                           ({"resolution": [2**32 + 8, 8]}, ("recipe.resolution[0]", "65536", "4294967304")),
                           ({"cameras": [{"kind": "arund"}]}, ("recipe.cameras[0]", "around", "'arund'")),
-                          ({"cameras": [{"kind": "fixed", "keywords": {"fow": 1}}]}, ("recipe.cameras[0]", "'fow'")),
+                          ({"cameras": [{"kind": "fixed", "keywords": {"fow": 1}}]}, ("recipe.cameras[0]", '"fow"')),
                           ({"cameras": [{"kind": "fixed", "keywords": {"fov": NAN}}]}, ("recipe.cameras[0]", "fov", "nan")),
                           ({"cameras": [{"kind": "around", "keywords": {"eye": [0, 0, 1]}}]}, ("recipe.cameras[0].keywords.eye",)),
                           ({"cameras": [{"kind": "rig", "base": {"kind": "around"}, "parts": []}]}, ("recipe.cameras[0].parts",)),
                           ({"render": {"spp": 3}}, ("recipe.render.spp", "recipe.spp")), ({"render": {"max_deph": 3}}, ("recipe.render", "max_depth")),
                           ({"render": {"max_depth": -1}}, ("recipe.render", "max_depth", "-1")), ({"channels": ["Q"]}, ("recipe.channels[0]", "'Q'")),
                           ({"environment": {"kind": "studiio"}}, ("recipe.environment.kind", "studio", "'studiio'")),
-                          ({"model": []}, ("'model'", "models")), ({"placing": {"kind": "poses", "frames": [[["a", [[2, 0, 0, 0]] + EYE[1:]]]]}},
+                          ({"model": []}, ('"model"', "models")), ({"placing": {"kind": "poses", "frames": [[["a", [[2, 0, 0, 0]] + EYE[1:]]]]}},
                                                                 ("recipe.placing.frames[0][0][1]", "rotation"))):
         with cases.raises(velo.UsageError, *texts):
             make({**FULL, **change})

@@ -178,13 +178,16 @@ static void bad_shapes(void **state) {
     size_t offset;
     float value;
     const char *message;
-  } quadrics[] = {
-      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0, "sphere: parameter \"radius\" must be above 0, it is 0"},
-      {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2, "disk: parameter \"radius\" must be above 0, it is -2"},
-      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN, "cylinder: parameter \"radius\" is not finite"},
-      {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1, "inner radius must be less than the radius"},
-      {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, z_min), 1, "zmin must be below zmax"},
-      {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0, "sphere: parameter \"phimax\" must be above 0, it is 0"}};
+  } quadrics[] = {{VL_SHAPE_SPHERE, offsetof(vlShapeDef, radius), 0,
+                   "sphere: parameter \"radius\" must be a number above 0; it is 0"},
+                  {VL_SHAPE_DISK, offsetof(vlShapeDef, radius), -2,
+                   "disk: parameter \"radius\" must be a number above 0; it is -2"},
+                  {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, radius), NAN,
+                   "cylinder: parameter \"radius\" must be a number above 0; it is nan"},
+                  {VL_SHAPE_DISK, offsetof(vlShapeDef, inner_radius), 1, "inner radius must be less than the radius"},
+                  {VL_SHAPE_CYLINDER, offsetof(vlShapeDef, z_min), 1, "zmin must be below zmax"},
+                  {VL_SHAPE_SPHERE, offsetof(vlShapeDef, phi_max), 0,
+                   "sphere: parameter \"phimax\" must be a number above 0 degrees; it is 0 degrees"}};
   for (size_t i = 0; i < sizeof quadrics / sizeof *quadrics; i++) {
     d = vl_default_shape_def(quadrics[i].kind);
     memcpy((char *)&d + quadrics[i].offset, &quadrics[i].value, sizeof(float));
@@ -237,7 +240,7 @@ static void bad_materials_and_lights(void **state) {
   l = vl_default_light_def(VL_LIGHT_POINT);
   l.power = INFINITY;
   vl_scene_add_light(scene, &l);
-  refuses(VL_ERROR_SCENE, "point light: parameter \"power\" is not finite");
+  refuses(VL_ERROR_SCENE, "point light: parameter \"power\" must be a finite number; it is inf");
   l.cookie = 0;
   vl_scene_add_light(scene, &l);
   refuses(VL_ERROR_ARGUMENT, "light: def.cookie is not that of a default def of this version");

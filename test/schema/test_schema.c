@@ -22,12 +22,12 @@ static void well_formed(void **state) {
   uint32_t families = 0;
   for (; (family = vl_kind_family(families)); families++) {
     assert_ptr_equal(vl_kind_family_find(family->name), family);
-    assert_true(family->kind_count > 0 && family->name && family->thing && family->directive);
+    assert_true(family->kind_count > 0 && family->name && family->thing);
     for (uint32_t i = 0; i < family->kind_count; i++) {
       const vlKindRow *row = family->rows[i];
       assert_non_null(row);
       assert_true(row->description && row->description[0] && family->constants[i]);
-      assert_true(row->parameter_count <= 64); /* readers have room for so many */
+      assert_true(row->parameter_count <= 64 || !family->directive); /* readers have room for so many */
       if (row->name) assert_int_equal(vl_kind_find(family, row->name), i);
       if (row->alias) assert_int_equal(vl_kind_find(family, row->alias), i);
       for (uint32_t k = 0; k < row->parameter_count; k++) {

@@ -103,7 +103,7 @@ static void refused(void **state) {
   finish(&m);
   m = make(0.1f, 0, false, false);
   assert_int_equal(m.result, VL_ERROR_SCENE);
-  assert_non_null(strstr(m.error.message, "parameter \"edgelength\" must be above 0"));
+  assert_non_null(strstr(m.error.message, "parameter \"edgelength\" must be a number above 0"));
   finish(&m);
   m = make(0.1f, 1, false, true);
   assert_int_equal(m.result, VL_ERROR_SCENE);

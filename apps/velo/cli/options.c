@@ -15,44 +15,11 @@
 
 enum { LONGEST_NAME = 40 };
 
-/* Edit distance between a and b: insertions, deletions, changes and swaps of letters; case ignored. */
-static int edit_distance(const char *a, const char *b) {
-  int n = (int)strlen(a), m = (int)strlen(b);
-  if (n > LONGEST_NAME || m > LONGEST_NAME) return LONGEST_NAME;
-  int d[LONGEST_NAME + 1][LONGEST_NAME + 1];
-  for (int i = 0; i <= n; i++) {
-    for (int j = 0; j <= m; j++) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      int same = tolower((unsigned char)a[i - 1]) == tolower((unsigned char)b[j - 1]);
-      int best = d[i - 1][j - 1] + !same;
-      if (d[i - 1][j] + 1 < best) best = d[i - 1][j] + 1;
-      if (d[i][j - 1] + 1 < best) best = d[i][j - 1] + 1;
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < best)
-        best = d[i - 2][j - 2] + 1;
-      d[i][j] = best;
-    }
-  }
-  return d[n][m];
-}
-
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count) {
   static char text[160];
-  const char *best = NULL;
-  int best_distance = LONGEST_NAME, length = (int)strlen(wrong);
-  for (int i = 0; i < count; i++) {
-    int distance = edit_distance(wrong, names[i]);
-    /* An abbreviation counts as one wrong letter. */
-    if (length >= 2 && strncmp(names[i], wrong, (size_t)length) == 0) distance = distance < 1 ? distance : 1;
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = names[i];
-    }
-  }
-  if (!best || best_distance * 3 > (length > 3 ? length + 1 : 3)) return "";
-  snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, best);
+  const char *near = vl_near_name(wrong, names, (size_t)count);
+  text[0] = 0;
+  if (near) snprintf(text, sizeof text, "; did you mean \"%s%s\"?", prefix, near);
   return text;
 }
 
@@ -156,14 +123,6 @@ static bool read_bytes(const char *text, int64_t *bytes) {
   return !*unit && *bytes > 0;
 }
 
-static bool read_size(const Option *option, const char *text, int64_t size[2]) {
-  const char *x = strpbrk(text, "xX");
-  if (!x || !read_integer(text, x, &size[0]) || !read_integer(x + 1, NULL, &size[1])) return false;
-  for (int i = 0; i < 2; i++)
-    if ((double)size[i] < option->min || (double)size[i] > option->max) return false;
-  return true;
-}
-
 /* Reads four values separated by commas; either pointer may be null. */
 static bool read_four(const char *text, int64_t *integers, double *numbers) {
   for (int i = 0; i < 4; i++) {
@@ -176,57 +135,112 @@ static bool read_four(const char *text, int64_t *integers, double *numbers) {
 }
 
 static int bad_value(const Option *option, const char *text, const char *wanted) {
-  return report_usage("--%s \"%s\": %s", option->name, text, wanted);
+  return report_usage("--%s %s; it is \"%s\"", option->name, wanted, text);
+}
+
+/* ---- values of rows ---------------------------------------------------------------------------------------------- */
+
+/* The setting whose name or alias is the option's. */
+static const vlParameter *setting_of(const char *name) {
+  static const vlSettingGroup groups[] = {VL_SETTING_PROGRAM,  VL_SETTING_RENDER,   VL_SETTING_CAMERA,
+                                          VL_SETTING_COMPLETE, VL_SETTING_CHANNELS, VL_SETTING_CONTEXT};
+  const vlParameter *row = NULL;
+  for (size_t i = 0; i < sizeof groups / sizeof *groups && !row; i++) row = vl_setting(groups[i], name);
+  return row;
+}
+
+vlParameter option_row(const Option *option) {
+  const bool own = option->min != 0 || option->max != 0;
+  const vlParameter *row = own ? NULL : setting_of(option->kind == OPTION_SIZE ? "width" : option->name);
+  if (row) return *row;
+  const bool whole = option->kind == OPTION_INTEGER || option->kind == OPTION_SIZE;
+  return (vlParameter){
+      .type = whole ? VL_PARAMETER_COUNT : VL_PARAMETER_DOUBLE, .low = option->min, .high = option->max};
+}
+
+int option_number(const char *name, const char *text, const vlParameter *row, double *number) {
+  char message[VL_GIVEN_MESSAGE];
+  int64_t whole = 0;
+  double value = 0;
+  bool counts = row->type == VL_PARAMETER_COUNT;
+  bool read = counts ? read_integer(text, NULL, &whole) : read_number(text, NULL, &value);
+  const vlGiven given = {.kind = read ? VL_GIVEN_NUMBER : VL_GIVEN_TEXT,
+                         .number = counts ? (double)whole : value,
+                         .text = text,
+                         .factor = row->factor};
+  if (!vl_given_check(row, name, &given, NULL, message)) return report_usage("%s", message);
+  if (number) *number = given.number;
+  return -1;
+}
+
+/* Reads WIDTHxHEIGHT. */
+static int read_size(const Option *option, const char *text, int64_t size[2]) {
+  const vlParameter row = option_row(option);
+  const char *x = strpbrk(text, "xX");
+  char side[2][24] = {"", ""};
+  if (!x || (size_t)(x - text) >= sizeof side[0] || strlen(x + 1) >= sizeof side[1])
+    return report_usage("--%s must be WIDTHxHEIGHT; it is \"%s\"", option->name, text);
+  memcpy(side[0], text, (size_t)(x - text));
+  strcpy(side[1], x + 1);
+  for (int i = 0; i < 2; i++) {
+    char name[80];
+    double number;
+    snprintf(name, sizeof name, "--%s WIDTHxHEIGHT: the %s", option->name, i ? "height" : "width");
+    int status = option_number(name, side[i], &row, &number);
+    if (status >= 0) return status;
+    size[i] = (int64_t)number;
+  }
+  return -1;
 }
 
 static int read_choice(const Option *option, const char *text, OptionValue *value) {
-  const char *names[32];
-  char list[400] = "";
-  int count = 0;
+  enum { MAX_NAMES = 64 };
   const Choice *choices = option_choices(option);
-  for (const Choice *c = choices; c->name; c++) {
-    if (strcmp(c->name, text) == 0) {
-      value->integer = c->value;
-      return -1;
-    }
-    if (count < 32) names[count++] = c->name;
-    if (c == choices || c->value != c[-1].value) {
-      size_t n = strlen(list);
-      snprintf(list + n, sizeof list - n, "%s%s", n ? ", " : "", c->name);
-    }
-  }
-  const char *near = did_you_mean("", text, names, count);
-  if (*near) return report_usage("--%s: unknown name \"%s\"%s", option->name, text, near);
-  return report_usage("--%s: unknown name \"%s\"; accepted are %s", option->name, text, list);
+  const char *names[MAX_NAMES + 1] = {NULL};
+  char what[80];
+  char message[VL_GIVEN_MESSAGE];
+  double index;
+  for (int i = 0; i < MAX_NAMES && choices[i].name; i++) names[i] = choices[i].name;
+  const vlParameter row = {.type = VL_PARAMETER_CHOICE, .choices = names};
+  const vlGiven given = {.kind = VL_GIVEN_TEXT, .text = text};
+  snprintf(what, sizeof what, "--%s", option->name);
+  if (!vl_given_check(&row, what, &given, &index, message)) return report_usage("%s", message);
+  value->integer = choices[(int)index].value;
+  return -1;
+}
+
+/* Reads a value of OPTION_INTEGER or OPTION_NUMBER. */
+static int read_row(const Option *option, const char *text, OptionValue *value) {
+  const vlParameter row = option_row(option);
+  char name[80];
+  snprintf(name, sizeof name, "--%s", option->name);
+  int status = option_number(name, text, &row, &value->number);
+  if (option->kind == OPTION_INTEGER) value->integer = (int64_t)value->number;
+  return status;
 }
 
 static int read_value(const Option *option, const char *text, Arguments *arguments) {
   OptionValue *value = &arguments->values[option->id];
-  char wanted[160];
   value->text = text;
   switch (option->kind) {
     case OPTION_FLAG: break;
     case OPTION_INTEGER:
-      if (read_integer(text, NULL, &value->integer) && (double)value->integer >= option->min &&
-          (double)value->integer <= option->max)
-        break;
-      snprintf(wanted, sizeof wanted, "must be a whole number from %.0f to %.0f", option->min, option->max);
-      return bad_value(option, text, wanted);
-    case OPTION_NUMBER:
-      if (read_number(text, NULL, &value->number) && value->number >= option->min && value->number <= option->max)
-        break;
-      snprintf(wanted, sizeof wanted, "must be a number from %g to %g", option->min, option->max);
-      return bad_value(option, text, wanted);
+    case OPTION_NUMBER: {
+      int status = read_row(option, text, value);
+      if (status >= 0) return status;
+      break;
+    }
     case OPTION_TIME:
       if (read_time(text, &value->number)) break;
       return bad_value(option, text, "must be a time above 0 such as 30, 30s, 5m or 1h30m");
     case OPTION_BYTES:
       if (read_bytes(text, &value->integer)) break;
       return bad_value(option, text, "must be a size such as 500M, 2G or 1.5GiB");
-    case OPTION_SIZE:
-      if (read_size(option, text, value->integers)) break;
-      snprintf(wanted, sizeof wanted, "must be WIDTHxHEIGHT, each from %.0f to %.0f", option->min, option->max);
-      return bad_value(option, text, wanted);
+    case OPTION_SIZE: {
+      int status = read_size(option, text, value->integers);
+      if (status >= 0) return status;
+      break;
+    }
     case OPTION_CROP:
       if (read_four(text, value->integers, NULL) && value->integers[0] >= 0 && value->integers[1] >= 0 &&
           value->integers[0] < value->integers[2] && value->integers[1] < value->integers[3])

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "cli/choice.h"
+#include "velo/setting.h"
 
 typedef enum OptionKind {
   OPTION_FLAG,
@@ -32,7 +33,7 @@ typedef struct Option {
   OptionKind kind;
   const char *value; /* placeholder in the help page; null for flags */
   const char *help;  /* the help page wraps it */
-  double min, max;
+  double min, max;   /* both 0: the range of the setting of that name (velo/setting.h) */
   const Choice *choices;
 } Option;
 
@@ -97,6 +98,11 @@ void options_print_exit_statuses(void);
 
 /* For "render": "; did you mean \"render\"?". Empty when no name is near. Valid until the next call. */
 const char *did_you_mean(const char *prefix, const char *wrong, const char *const *names, int count);
+/* The row of an option of one number: of the setting of its name, or with its own range. */
+vlParameter option_row(const Option *option);
+/* Reads a number by a row, in the row's unit. -1: it is read; else the exit code, after a report. name: of the value in
+ * the message. number may be null. */
+int option_number(const char *name, const char *text, const vlParameter *row, double *number);
 /* The names that an option takes; null: any text. */
 const Choice *option_choices(const Option *option);
 /* The name of a choice's value. */

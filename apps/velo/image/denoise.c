@@ -89,11 +89,11 @@ static const Option denoise_options[] = {
      "path of the library of Open Image Denoise; default: the system's", 0, 0, NULL},
     {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV",
-     -64, 64, NULL},
+    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV", 0,
+     0, NULL},
     {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
     {DENOISE_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of worker threads; default: one for each processor. The image does not depend on it", 1, 1024, NULL},
+     "number of worker threads; default: one for each processor. The image does not depend on it", 0, 0, NULL},
     {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took", 0, 0, NULL},
     {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
 

@@ -16,12 +16,10 @@ int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
     *meter = true;
     return -1;
   }
-  char *end;
-  double number = strtod(value->text, &end);
-  if (end == value->text || *end || !(number >= -64 && number <= 64))
-    return report_usage("--exposure \"%s\": must be auto or a number from -64 to 64", value->text);
-  *ev = (float)number;
-  return -1;
+  double number;
+  int status = option_number("--exposure (or auto)", value->text, vl_setting(VL_SETTING_PROGRAM, "exposure"), &number);
+  if (status < 0) *ev = (float)number;
+  return status;
 }
 
 static double luminance(const vlImage *image, const int rgb[3], uint32_t x, uint32_t y) {

@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/report.h"
-#include "velo/schema.h"
+#include "velo/setting.h"
 
 enum { KINDS_DICTIONARY };
 
@@ -35,6 +35,11 @@ static const char *type_name(const vlParameter *p) {
   return "";
 }
 
+/* Whole numbers without an exponent. */
+static void print_number(double number) {
+  printf(fabs(number) < 1e15 && number == floor(number) ? "%.0f" : "%g", number);
+}
+
 static void print_default(const vlParameter *p) {
   const double k = p->factor != 0 ? 1 / p->factor : 1;
   if (p->flags & VL_PARAMETER_REQUIRED) {
@@ -53,7 +58,7 @@ static void print_default(const vlParameter *p) {
   } else if (p->type == VL_PARAMETER_FLOAT3 || p->type == VL_PARAMETER_DOUBLE3 || p->flags & VL_PARAMETER_RGB) {
     printf("%g %g %g", p->value[0], p->value[1], p->value[2]);
   } else {
-    printf("%g", k * p->value[0]);
+    print_number(k * p->value[0]);
   }
 }
 
@@ -63,11 +68,15 @@ static void print_range(const vlParameter *p) {
     for (int i = 0; p->choices[i]; i++) printf("%s%s", i ? ", " : "", p->choices[i]);
   } else if (p->low != 0 || p->high != 0) {
     bool whole = p->type == VL_PARAMETER_COUNT && p->high >= 4294967295.0;
-    if (isinf(p->high) || whole)
-      printf("%s %g", p->flags & VL_PARAMETER_ABOVE_LOW ? ">" : "≥", k * p->low);
-    else
-      printf("%s%g to %g%s", p->flags & VL_PARAMETER_ABOVE_LOW ? "> " : "", k * p->low, k * p->high,
-             p->flags & VL_PARAMETER_BELOW_HIGH ? ", excluded" : "");
+    bool open = isinf(p->high) || whole;
+    bool above = p->flags & VL_PARAMETER_ABOVE_LOW;
+    printf("%s", above ? "> " : open ? "≥ " : "");
+    print_number(k * p->low);
+    if (!open) {
+      printf(" to ");
+      print_number(k * p->high);
+      if (p->flags & VL_PARAMETER_BELOW_HIGH) printf(", excluded");
+    }
     if (p->flags & VL_PARAMETER_CLAMPED) printf(", clamped");
   }
 }
@@ -98,7 +107,8 @@ static const vlKindRow *base_of(const vlKindFamily *family, uint32_t kind) {
   return base;
 }
 
-static void print_row(const vlKindRow *row, const vlKindRow *base) {
+/* settings: of velo/setting.h, which have keywords instead of names in files. */
+static void print_row(const vlKindRow *row, const vlKindRow *base, bool settings) {
   uint32_t first = base ? base->parameter_count : 0;
   printf("**`%s`**%s%s%s: %s.", row->name, row->alias ? " (also `" : "", row->alias ? row->alias : "",
          row->alias ? "`)" : "", row->description);
@@ -107,11 +117,12 @@ static void print_row(const vlKindRow *row, const vlKindRow *base) {
   bool any = false;
   for (uint32_t i = first; i < row->parameter_count; i++) {
     const vlParameter *p = &row->parameters[i];
-    if (!p->name) continue;
+    const char *name = settings ? vl_setting_keyword(p) : p->name;
+    if (!name || (settings && p->flags & VL_PARAMETER_RULE)) continue;
     if (!any) printf("| parameter | type | default | range | |\n| --- | --- | --- | --- | --- |\n");
     any = true;
-    printf("| `%s`", p->name);
-    if (p->alias) printf(" (also `%s`)", p->alias);
+    printf("| `%s`", name);
+    if (p->alias && !settings) printf(" (also `%s`)", p->alias);
     printf(" | %s | ", type_name(p));
     print_default(p);
     printf("%s%s | ", p->unit ? " " : "", p->unit ? p->unit : "");
@@ -123,7 +134,7 @@ static void print_row(const vlKindRow *row, const vlKindRow *base) {
 
 static void print_tables(const vlKindFamily *family) {
   for (uint32_t i = 0; i < family->kind_count; i++)
-    if (family->rows[i]->name) print_row(family->rows[i], base_of(family, i));
+    if (family->rows[i]->name) print_row(family->rows[i], base_of(family, i), !family->directive);
 }
 
 /* One token per line, quoted, including the quotes that scene files put around it. */
@@ -132,6 +143,7 @@ static void print_word(const char *type, const char *name) {
 }
 
 static void print_words(const vlKindFamily *family) {
+  if (!family->directive) return; /* settings are in no scene file */
   printf("# %s\n\"%s\"\n", family->name, family->directive);
   for (uint32_t i = 0; i < family->kind_count; i++) {
     const vlKindRow *row = family->rows[i];

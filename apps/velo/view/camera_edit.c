@@ -104,13 +104,8 @@ static bool set_fov(Edit *e, const MessageField *f) {
   return true;
 }
 static bool set_fov_axis(Edit *e, const MessageField *f) {
-  static const char *const names[] = {"vertical", "horizontal", "diagonal", "smaller", "larger"};
-  for (int i = 0; i < 5; i++)
-    if (strcmp(names[i], f->text) == 0) {
-      e->def->fov_axis = (vlFovAxis)i;
-      return true;
-    }
-  return false;
+  e->def->fov_axis = (vlFovAxis)f->choice;
+  return true;
 }
 static bool set_focal_mm(Edit *e, const MessageField *f) {
   spell_lens_mm(e->now, e->def);
@@ -183,14 +178,10 @@ static void start_projection(const ViewCamera *now, vlCameraDef *def) {
 }
 
 static bool set_projection(Edit *e, const MessageField *f) {
-  for (int i = 0; i <= VL_PROJECTION_OPTICS; i++) {
-    if (strcmp(vl_projection_name((vlProjection)i), f->text) != 0) continue;
-    if (e->def->projection == (vlProjection)i) return true;
-    e->def->projection = (vlProjection)i;
-    start_projection(e->now, e->def);
-    return true;
-  }
-  return false;
+  if (e->def->projection == (vlProjection)f->choice) return true;
+  e->def->projection = (vlProjection)f->choice;
+  start_projection(e->now, e->def);
+  return true;
 }
 static bool set_shape(Edit *e, const MessageField *f) {
   if (f->count > 2) return false;
@@ -203,18 +194,13 @@ static bool set_max_angle(Edit *e, const MessageField *f) {
   return true;
 }
 static bool set_distortion(Edit *e, const MessageField *f) {
-  static const char *const names[] = {"none", "opencv", "radial", "thin prism"};
   static const uint32_t counts[] = {0, 5, 2, 8};
-  for (int i = 0; i < 4; i++)
-    if (strcmp(names[i], f->text) == 0) {
-      if (e->def->distortion != (vlDistortion)i) {
-        e->def->distortion_count = counts[i];
-        memset(e->def->distortion_coefficients, 0, sizeof e->def->distortion_coefficients);
-      }
-      e->def->distortion = (vlDistortion)i;
-      return true;
-    }
-  return false;
+  if (e->def->distortion != (vlDistortion)f->choice) {
+    e->def->distortion_count = counts[f->choice];
+    memset(e->def->distortion_coefficients, 0, sizeof e->def->distortion_coefficients);
+  }
+  e->def->distortion = (vlDistortion)f->choice;
+  return true;
 }
 static bool set_coefficients(Edit *e, const MessageField *f) {
   if (f->count > 14) return false;
@@ -263,7 +249,7 @@ static bool set_focus_distance(Edit *e, const MessageField *f) {
   return one(f, &e->def->focus_distance);
 }
 static bool set_blades(Edit *e, const MessageField *f) {
-  if (f->count != 1 || f->numbers[0] < 0 || f->numbers[0] > 1000) return false;
+  if (f->count != 1) return false;
   e->def->lens.blades = (uint32_t)f->numbers[0];
   return true;
 }
@@ -309,45 +295,90 @@ static bool set_exposure_time(Edit *e, const MessageField *f) {
 /* In the order in which the fields of one message are applied. */
 static const struct {
   const char *name;
+  const char *setting; /* its numbers, in the row's unit, are values of this setting; null: of none */
   Setter *set;
-} setters[] = {{"projection", set_projection},
-               {"fov_axis", set_fov_axis},
-               {"fov", set_fov},
-               {"d", set_d},
-               {"zoom", set_zoom},
-               {"s", set_s},
-               {"sensor_width_mm", set_sensor_mm},
-               {"focal_mm", set_focal_mm},
-               {"fx", set_fx},
-               {"fy", set_fy},
-               {"cx", set_cx},
-               {"cy", set_cy},
-               {"skew", set_skew},
-               {"shape", set_shape},
-               {"max_angle", set_max_angle},
-               {"distortion", set_distortion},
-               {"coefficients", set_coefficients},
-               {"eye", set_eye},
-               {"lookat", set_lookat},
-               {"up", set_up},
-               {"roll", set_roll},
-               {"lens_radius", set_lens_radius},
-               {"f_number", set_f_number},
-               {"focus_distance", set_focus_distance},
-               {"blades", set_blades},
-               {"rotation", set_rotation},
-               {"ratio", set_ratio},
-               {"tilt_x", set_tilt_x},
-               {"tilt_y", set_tilt_y},
-               {"lens_tilt_x", set_lens_tilt_x},
-               {"lens_tilt_y", set_lens_tilt_y},
-               {"near", set_near},
-               {"far", set_far},
-               {"exposure_time", set_exposure_time}};
+} setters[] = {{"projection", "projection", set_projection},
+               {"fov_axis", "fov_axis", set_fov_axis},
+               {"fov", "fov", set_fov},
+               {"d", "view_distance", set_d},
+               {"zoom", "zoom", set_zoom},
+               {"s", "pixel_size", set_s},
+               {"sensor_width_mm", "sensor_width_mm", set_sensor_mm},
+               {"focal_mm", "focal_mm", set_focal_mm},
+               {"fx", "fx", set_fx},
+               {"fy", "fy", set_fy},
+               {"cx", "cx", set_cx},
+               {"cy", "cy", set_cy},
+               {"skew", "skew", set_skew},
+               {"shape", "shape[0]", set_shape},
+               {"max_angle", "max_angle", set_max_angle},
+               {"distortion", "distortion", set_distortion},
+               {"coefficients", NULL, set_coefficients},
+               {"eye", "eye", set_eye},
+               {"lookat", "lookat", set_lookat},
+               {"up", "up", set_up},
+               {"roll", "roll", set_roll},
+               {"lens_radius", "lens_radius", set_lens_radius},
+               {"f_number", "f_number", set_f_number},
+               {"focus_distance", "focus_distance", set_focus_distance},
+               {"blades", "blades", set_blades},
+               {"rotation", "rotation", set_rotation},
+               {"ratio", "ratio", set_ratio},
+               {"tilt_x", "tilt_x", set_tilt_x},
+               {"tilt_y", "tilt_y", set_tilt_y},
+               {"lens_tilt_x", "lens_tilt_x", set_lens_tilt_x},
+               {"lens_tilt_y", "lens_tilt_y", set_lens_tilt_y},
+               {"near", "near_plane", set_near},
+               {"far", "far_plane", set_far},
+               {"exposure_time", "exposure_time", set_exposure_time}};
 enum { SETTERS = sizeof setters / sizeof *setters };
 
-static vlResult refuse_field(vlError *error, const char *what, const char *name) {
-  snprintf(error->message, sizeof error->message, "%s \"%s\"", what, vl_short_text(name).text);
+enum { PROJECTIONS = VL_PROJECTION_OPTICS + 1 };
+
+/* The row of a field's values; projections have the names of the page, which `names` gets. */
+static vlParameter row_of(const char *setting, const char *names[PROJECTIONS + 1]) {
+  vlParameter row = *vl_setting(VL_SETTING_CAMERA, setting);
+  if (strcmp(setting, "projection") != 0) return row;
+  for (int i = 0; i < PROJECTIONS; i++) names[i] = vl_projection_name((vlProjection)i);
+  names[PROJECTIONS] = NULL;
+  row.choices = names;
+  return row;
+}
+
+/* Checks the values of a field by its row, and finds its choice. */
+static vlResult check_field(MessageField *field, const char *setting, vlError *error) {
+  char name[80];
+  char message[VL_GIVEN_MESSAGE];
+  if (!setting || field->null) return VL_OK;
+  const char *names[PROJECTIONS + 1];
+  const vlParameter row = row_of(setting, names);
+  snprintf(name, sizeof name, "camera: %s", field->name);
+  vlGiven given = {.kind = VL_GIVEN_TEXT, .text = field->text, .factor = row.factor};
+  uint32_t count = field->count ? field->count : 1;
+  for (uint32_t i = 0; i < count; i++) {
+    double number;
+    if (field->count) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[i], .factor = row.factor};
+    if (!vl_given_check(&row, name, &given, &number, message)) {
+      snprintf(error->message, sizeof error->message, "%s", message);
+      return error->code = VL_ERROR_ARGUMENT;
+    }
+    field->choice = row.type == VL_PARAMETER_CHOICE ? (int)number : 0;
+  }
+  return VL_OK;
+}
+
+static vlResult refuse_count(vlError *error, const MessageField *field) {
+  snprintf(error->message, sizeof error->message, "camera: %s has %u numbers, which is not their number", field->name,
+           field->count);
+  return error->code = VL_ERROR_ARGUMENT;
+}
+
+static vlResult refuse_name(vlError *error, const char *name) {
+  const char *names[SETTERS];
+  char message[VL_GIVEN_MESSAGE];
+  for (int i = 0; i < SETTERS; i++) names[i] = setters[i].name;
+  vl_unknown_name("field of the camera", "", name, names, SETTERS, message);
+  snprintf(error->message, sizeof error->message, "%s", message);
   return error->code = VL_ERROR_ARGUMENT;
 }
 
@@ -356,16 +387,17 @@ static vlResult apply_fields(Edit *edit, vlError *error) {
   uint32_t known = 0;
   for (int s = 0; s < SETTERS; s++)
     for (uint32_t i = 0; i < message->field_count; i++) {
-      const MessageField *field = &message->fields[i];
-      if (strcmp(field->name, setters[s].name) != 0) continue;
+      MessageField field = message->fields[i];
+      if (strcmp(field.name, setters[s].name) != 0) continue;
       known++;
-      if (!setters[s].set(edit, field)) return refuse_field(error, "camera: wrong value of", field->name);
+      if (check_field(&field, setters[s].setting, error) != VL_OK) return VL_ERROR_ARGUMENT;
+      if (!setters[s].set(edit, &field)) return refuse_count(error, &field);
     }
   if (known == message->field_count) return VL_OK;
   for (uint32_t i = 0; i < message->field_count; i++) {
     int s = 0;
     while (s < SETTERS && strcmp(setters[s].name, message->fields[i].name) != 0) s++;
-    if (s == SETTERS) return refuse_field(error, "camera: unknown field", message->fields[i].name);
+    if (s == SETTERS) return refuse_name(error, message->fields[i].name);
   }
   return VL_OK;
 }

@@ -3,6 +3,7 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const char *const kinds[] = {"seen",    "camera", "undo",    "redo",    "reset",   "settings",
@@ -10,33 +11,55 @@ static const char *const kinds[] = {"seen",    "camera", "undo",    "redo",    "
                                     "outside", "paths",  "cameras", "steer",   "scene"};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* The following functions return false for a value of a wrong type or out of range. A missing value is right. */
+/* The following functions return false for a value of a wrong type or out of range, and say why. A missing value is
+ * right. */
 
-static bool read_count(const json_t *object, const char *key, double most, uint32_t *value, bool *given) {
-  const json_t *item = json_object_get(object, key);
+typedef struct Reader {
+  const json_t *object;
+  char *why; /* VL_GIVEN_MESSAGE bytes */
+} Reader;
+
+static const vlParameter serial_row = {.type = VL_PARAMETER_COUNT};
+
+static bool refuse(const Reader *r, const char *format, const char *key) {
+  snprintf(r->why, VL_GIVEN_MESSAGE, format, key);
+  return false;
+}
+
+static vlGiven given_of(const json_t *item) {
+  vlGiven given = {.kind = VL_GIVEN_OTHER};
+  if (json_is_null(item)) given.kind = VL_GIVEN_NOTHING;
+  if (json_is_boolean(item)) given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
+  if (json_is_number(item)) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
+  if (json_is_string(item)) given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
+  return given;
+}
+
+static bool read_number(const Reader *r, const char *key, const vlParameter *row, double *value, bool *given) {
+  const json_t *item = json_object_get(r->object, key);
   if (!item) return true;
-  if (!json_is_integer(item)) return false;
-  json_int_t number = json_integer_value(item);
-  if (number < 0 || (double)number > most) return false;
-  *value = (uint32_t)number;
+  const vlGiven found = given_of(item);
+  if (!vl_given_check(row, key, &found, value, r->why)) return false;
   if (given) *given = true;
   return true;
 }
 
-static bool read_double(const json_t *object, const char *key, double limit, double *value) {
-  const json_t *item = json_object_get(object, key);
-  if (!item) return true;
-  if (!json_is_number(item)) return false;
-  *value = json_number_value(item);
-  return isfinite(*value) && fabs(*value) <= limit;
+static bool read_setting(const Reader *r, const char *key, double *value) {
+  return read_number(r, key, vl_setting(VL_SETTING_PROGRAM, key), value, NULL);
 }
 
-static bool read_bool(const json_t *object, const char *key, bool *value, bool *given) {
-  const json_t *item = json_object_get(object, key);
-  if (!item) return true;
-  if (!json_is_boolean(item)) return false;
-  *value = json_is_true(item);
-  if (given) *given = true;
+static bool read_count(const Reader *r, const char *key, const vlParameter *row, uint32_t *value, bool *given) {
+  double number = *value;
+  if (!read_number(r, key, row, &number, given)) return false;
+  *value = (uint32_t)number;
+  return true;
+}
+
+static bool read_bool(const Reader *r, const char *key, bool *value, bool *given) {
+  static const vlParameter row = {.type = VL_PARAMETER_BOOL};
+  double number = *value;
+  if (!read_number(r, key, &row, &number, given)) return false;
+  *value = number != 0;
   return true;
 }
 
@@ -50,24 +73,27 @@ static bool copy_text(const json_t *item, char *text, size_t size) {
   return true;
 }
 
-static bool read_text(const json_t *object, const char *key, char text[MESSAGE_NAME], bool *given) {
-  const json_t *item = json_object_get(object, key);
+static bool read_text(const Reader *r, const char *key, char text[MESSAGE_NAME], bool *given) {
+  const json_t *item = json_object_get(r->object, key);
   if (!item) return true;
   if (given) *given = true;
-  return copy_text(item, text, MESSAGE_NAME);
+  return copy_text(item, text, MESSAGE_NAME) || refuse(r, "%s must be text of at most 199 bytes", key);
 }
 
-/* An array of `count` whole numbers; null: all 0. */
-static bool read_counts(const json_t *object, const char *key, uint32_t count, uint32_t *values, bool *given) {
-  const json_t *item = json_object_get(object, key);
+/* An array of `count` numbers of sides or edges; null: all 0. */
+static bool read_counts(const Reader *r, const char *key, uint32_t count, uint32_t *values, bool *given) {
+  const json_t *item = json_object_get(r->object, key);
+  const vlParameter edge = {.type = VL_PARAMETER_COUNT, .high = vl_setting(VL_SETTING_PROGRAM, "width")->high};
   if (!item) return true;
   *given = true;
   if (json_is_null(item)) return true;
-  if (!json_is_array(item) || json_array_size(item) != count) return false;
+  if (!json_is_array(item) || json_array_size(item) != count)
+    return refuse(r, count == 2 ? "%s must be a list of 2 numbers" : "%s must be a list of 4 numbers", key);
   for (uint32_t i = 0; i < count; i++) {
-    const json_t *number = json_array_get(item, i);
-    if (!json_is_integer(number) || json_integer_value(number) < 0 || json_integer_value(number) > 65536) return false;
-    values[i] = (uint32_t)json_integer_value(number);
+    double number;
+    const vlGiven found = given_of(json_array_get(item, i));
+    if (!vl_given_check(&edge, key, &found, &number, r->why)) return false;
+    values[i] = (uint32_t)number;
   }
   return true;
 }
@@ -95,58 +121,43 @@ static bool read_field(const char *name, const json_t *value, MessageField *fiel
   return true;
 }
 
-static bool read_fields(const json_t *object, ViewMessage *message) {
-  json_t *set = json_object_get(object, "set");
+static bool read_fields(const Reader *r, ViewMessage *message) {
+  json_t *set = json_object_get(r->object, "set");
   if (!set) return true;
-  if (!json_is_object(set) || json_object_size(set) > MESSAGE_FIELDS) return false;
+  if (!json_is_object(set) || json_object_size(set) > MESSAGE_FIELDS)
+    return refuse(r, "%s must be names and values", "set");
   const char *name;
   json_t *value;
-  json_object_foreach(set, name,
-                      value) if (!read_field(name, value, &message->fields[message->field_count++])) return false;
-  return true;
-}
-
-static bool read_members(const json_t *object, ViewMessage *m, const char **why) {
-  bool numbers = read_count(object, "serial", 4294967295.0, &m->serial, NULL) &&
-                 read_count(object, "change", 4294967295.0, &m->change, NULL) &&
-                 read_count(object, "gesture", 4294967295.0, &m->gesture, NULL) &&
-                 read_count(object, "id", 4294967295.0, &m->id, NULL) && read_double(object, "x", 65536, &m->x) &&
-                 read_double(object, "y", 65536, &m->y) && read_double(object, "exposure", 64, &m->exposure) &&
-                 read_count(object, "samples", 65536, &m->samples, NULL) &&
-                 read_count(object, "show", 64, &m->show, NULL) &&
-                 read_count(object, "spp", 1 << 24, &m->spp, &m->has_spp) && (!m->has_spp || m->spp > 0);
-  if (!numbers) {
-    *why = "a number is of a wrong type or out of range";
-    return false;
-  }
-  bool rest = read_bool(object, "paused", &m->paused, &m->has_paused) && read_bool(object, "boxes", &m->boxes, NULL) &&
-              read_bool(object, "curves", &m->curves, NULL) && read_bool(object, "field", &m->field, NULL) &&
-              read_bool(object, "mark", &m->mark, NULL) && read_bool(object, "by_sample", &m->by_sample, NULL) &&
-              read_counts(object, "crop", 4, m->crop, &m->has_crop) &&
-              read_counts(object, "size", 2, m->size, &m->has_size);
-  if (!rest) {
-    *why = "a setting is of a wrong type or out of range";
-    return false;
-  }
-  bool texts = read_text(object, "channel", m->channel, &m->has_channel) && read_text(object, "what", m->what, NULL) &&
-               read_text(object, "name", m->name, NULL) && read_text(object, "dialect", m->dialect, NULL) &&
-               read_text(object, "view", m->view, NULL);
-  if (!texts) {
-    *why = "a text is of a wrong type or too long";
-    return false;
-  }
-  if (!read_fields(object, m)) {
-    *why = "a field of the camera is of a wrong type";
-    return false;
+  json_object_foreach(set, name, value) {
+    MessageField *field = &message->fields[message->field_count++];
+    if (!read_field(name, value, field)) return refuse(r, "set: %.40s is of a wrong type", name);
   }
   return true;
 }
 
-bool message_parse(const char *text, size_t size, ViewMessage *message, const char **why) {
+static bool read_members(const Reader *r, ViewMessage *m) {
+  const vlParameter *samples = vl_setting(VL_SETTING_PROGRAM, "samples");
+  const vlParameter *show = vl_setting(VL_SETTING_PROGRAM, "show");
+  return read_count(r, "serial", &serial_row, &m->serial, NULL) &&
+         read_count(r, "change", &serial_row, &m->change, NULL) &&
+         read_count(r, "gesture", &serial_row, &m->gesture, NULL) && read_count(r, "id", &serial_row, &m->id, NULL) &&
+         read_setting(r, "x", &m->x) && read_setting(r, "y", &m->y) && read_setting(r, "exposure", &m->exposure) &&
+         read_count(r, "samples", samples, &m->samples, NULL) && read_count(r, "show", show, &m->show, NULL) &&
+         read_count(r, "spp", vl_setting(VL_SETTING_RENDER, "spp"), &m->spp, &m->has_spp) &&
+         read_bool(r, "paused", &m->paused, &m->has_paused) && read_bool(r, "boxes", &m->boxes, NULL) &&
+         read_bool(r, "curves", &m->curves, NULL) && read_bool(r, "field", &m->field, NULL) &&
+         read_bool(r, "mark", &m->mark, NULL) && read_bool(r, "by_sample", &m->by_sample, NULL) &&
+         read_counts(r, "crop", 4, m->crop, &m->has_crop) && read_counts(r, "size", 2, m->size, &m->has_size) &&
+         read_text(r, "channel", m->channel, &m->has_channel) && read_text(r, "what", m->what, NULL) &&
+         read_text(r, "name", m->name, NULL) && read_text(r, "dialect", m->dialect, NULL) &&
+         read_text(r, "view", m->view, NULL) && read_fields(r, m);
+}
+
+bool message_parse(const char *text, size_t size, ViewMessage *message, char why[VL_GIVEN_MESSAGE]) {
   memset(message, 0, sizeof *message);
-  *why = "not a JSON object";
+  strcpy(why, "not a JSON object");
   if (size > MESSAGE_LARGEST) {
-    *why = "too long";
+    strcpy(why, "too long");
     return false;
   }
   json_error_t error;
@@ -158,10 +169,10 @@ bool message_parse(const char *text, size_t size, ViewMessage *message, const ch
   const char *type = json_string_value(json_object_get(object, "type"));
   int kind = 0;
   while (kind < KINDS && !(type && strcmp(type, kinds[kind]) == 0)) kind++;
-  *why = "unknown type";
-  bool good = kind < KINDS;
-  message->kind = good ? (MessageKind)kind : MESSAGE_SEEN;
-  good = good && read_members(object, message, why);
+  if (kind == KINDS) vl_unknown_name("type of message", "", type ? type : "", kinds, KINDS, why);
+  const Reader reader = {object, why};
+  message->kind = kind < KINDS ? (MessageKind)kind : MESSAGE_SEEN;
+  bool good = kind < KINDS && read_members(&reader, message);
   json_decref(object);
   return good;
 }

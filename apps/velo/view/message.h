@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "velo/setting.h"
+
 enum {
   MESSAGE_LARGEST = 65536, /* bytes */
   MESSAGE_NAME = 200,      /* longest text of a message, bytes with the zero */
@@ -41,6 +43,7 @@ typedef struct MessageField {
   bool null;      /* removes the field */
   double numbers[MESSAGE_NUMBERS];
   char text[40];
+  int choice; /* of a text: the index that camera_edit finds */
 } MessageField;
 
 typedef struct ViewMessage {
@@ -59,7 +62,7 @@ typedef struct ViewMessage {
   double exposure; /* EV */
 } ViewMessage;
 
-/* Parses a message of `size` bytes. False: it is malformed; *why is then a constant string. */
-bool message_parse(const char *text, size_t size, ViewMessage *message, const char **why);
+/* Parses a message of `size` bytes. False: it is malformed; why then holds the reason. */
+bool message_parse(const char *text, size_t size, ViewMessage *message, char why[VL_GIVEN_MESSAGE]);
 
 #endif

@@ -176,8 +176,12 @@ static int send_next(struct lws *wsi, Connection *connection) {
 
 /* ---- receiving --------------------------------------------------------------------------------------------------- */
 
+/* A reason has at most 123 bytes of UTF-8. */
 static int refuse(struct lws *wsi, enum lws_close_status status, const char *why) {
-  lws_close_reason(wsi, status, (unsigned char *)why, strlen(why));
+  size_t length = strlen(why);
+  if (length > 120) length = 120;
+  while (length > 0 && ((unsigned char)why[length] & 0xc0) == 0x80) length--;
+  lws_close_reason(wsi, status, (unsigned char *)why, length);
   return -1;
 }
 
@@ -193,8 +197,8 @@ static void take_over(Server *server, Client *client) {
 static int handle(struct lws *wsi, Client *client, const char *text, size_t size) {
   Server *server = server_of(wsi);
   static ViewMessage message; /* the server's thread alone uses it */
-  const char *why;
-  if (!message_parse(text, size, &message, &why)) return refuse(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
+  char why[VL_GIVEN_MESSAGE];
+  if (!message_parse(text, size, &message, why)) return refuse(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, why);
   if (message.kind == MESSAGE_SEEN) {
     if (message.serial == client->waits_for) client->waits_for = 0;
     lws_callback_on_writable(wsi);

@@ -26,6 +26,11 @@ def number(low: float = -math.inf, high: float = math.inf) -> Check:
     return lambda value, where: _check.number(value, where, low, high)
 
 
+def setting(group: str, name: str) -> Check:
+    """A setting of velo's, by its row."""
+    return lambda value, where: _check.setting(value, where, group, name)
+
+
 def either(one: Check, what: str) -> Check:
     """One value, or a pair of bounds for a random one: the first is not above the second."""
     def check(value: Any, where: str) -> Any:
@@ -99,11 +104,7 @@ def flag(value: Any, where: str) -> bool:
 
 def choice(*words: str) -> Check:
     """One of some words."""
-    def check(value: Any, where: str) -> str:
-        if not (isinstance(value, str) and value in words):
-            raise wrong_value(where, f"one of {', '.join(words)}", value)
-        return value
-    return check
+    return lambda value, where: _check.choice(value, where, words)
 
 
 def optional(one: Check) -> Check:
@@ -285,15 +286,15 @@ _RULES: dict[type, dict[str, Check]] = {
     kinds.Trajectory: {"file": text, "keywords": _KEYWORDS, "name": file_name},
     kinds.Rig: {"base": lambda value, where: member(*_MOVED)(value, where), "parts": items(_part, 1, 1000)},
     kinds.Lights: {"count": count(10000), "low": vector(3), "high": vector(3), "power": range_(0, 1e12), "kelvin": range_(1, 1e6)},
-    kinds.Environment: {"kind": choice("studio", "sky", "white", "auto", "none"), "files": items(text, 0, 100000), "strength": range_(0, 1e6),
-                        "rotation": optional(number(-1e6, 1e6))},
+    kinds.Environment: {"kind": choice("studio", "sky", "white", "auto", "none"), "files": items(text, 0, 100000), "strength": either(setting("complete", "strength"), "a number"),
+                        "rotation": optional(setting("complete", "rotation"))},
     kinds.Materials: {"color": bounds(vector(3, 0, 1)), "roughness": range_(0, 1), "metallic": range_(0, 1), "textures": items(text, 0, 100000)},
     kinds.Ground: {"size": number(1e-12, 1e12), "height": number(), "up": direction, "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Distractors: {"count": count(10000), "size": range_(1e-12, 1e12), "materials": lambda v, w: member(kinds.Materials)(v, w)},
     kinds.Recipe: {
-        "seed": whole(0, 2**63 - 1), "frames": whole(1, MOST_FRAMES), "spp": whole(1, 1 << 24), "scene": text,
-        "resolution": lambda v, w: tuple(_check.whole(side, f"{w}[{i}]", 1, 65536) for i, side in
-                                         enumerate(_check.tuple_of(v, 2, w, "width and height, whole numbers from 1 to 65536"))),
+        "seed": whole(0, 2**53), "frames": whole(1, MOST_FRAMES), "spp": setting("render", "spp"), "scene": text,
+        "resolution": lambda v, w: tuple(_check.setting(side, f"{w}[{i}]", "program", ("width", "height")[i]) for i, side in
+                                         enumerate(_check.tuple_of(v, 2, w, "width and height"))),
         "models": lambda v, w: items(member(kinds.Model), 1, 10000)(v, w),
         "placing": lambda v, w: member(kinds.OnSurface, kinds.InVolume, kinds.Poses)(v, w),
         "cameras": lambda v, w: items(member(*_MOVED, kinds.Rig), 1, 1000)(v, w),

@@ -1,10 +1,12 @@
 /* import/pbrt/dict.c: typed access to the parameters of a directive (param.h). */
 #include "import/pbrt/param.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "base/text.h"
 #include "import/pbrt/builder.h"
+#include "velo/setting.h"
 
 static const char *const type_names[VL_PARAM_TYPES] = {"integer", "float",     "bool",    "string", "point2",
                                                        "vector2", "point3",    "vector3", "normal", "spectrum",
@@ -136,11 +138,15 @@ bool vl_dict_integer(vlDict *dict, const char *name, int32_t *value) {
 bool vl_dict_count(vlDict *dict, const char *name, int32_t least, uint32_t *value) {
   vlParam *p = find_counted(dict, name, VL_PARAM_INTEGER, 1);
   if (!p) return false;
-  int32_t v = p->integers.items[0];
-  if (v < least)
-    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s: parameter \"%s\" must be at least %d, it is %d",
-                          dict->what, name, least, v);
-  *value = (uint32_t)v;
+  const vlParameter row = {.type = VL_PARAMETER_COUNT, .low = least, .high = (double)INFINITY};
+  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = p->integers.items[0]};
+  char what[200];
+  char message[VL_GIVEN_MESSAGE];
+  double number;
+  snprintf(what, sizeof what, "%s: parameter \"%s\"", dict->what, name);
+  if (!vl_given_check(&row, what, &given, &number, message))
+    return vl_import_fail(dict->import, VL_ERROR_SCENE, p->source, "%s", message);
+  *value = (uint32_t)number;
   return true;
 }
 

@@ -130,8 +130,10 @@ static void copy_to_second(const vlParameter *p, char *def) {
 
 /* Reports an error at the parameter's source. */
 static bool check(vlDict *dict, const vlParameter *p, const void *def) {
-  char message[200];
-  if (vl_parameter_check(p, def, dict->what, message)) return true;
+  char name[200];
+  char message[VL_GIVEN_MESSAGE];
+  snprintf(name, sizeof name, "%s: parameter \"%s\"", dict->what, vl_parameter_label(p));
+  if (vl_parameter_check(p, def, name, message)) return true;
   const vlParam *param = vl_dict_find(dict, p->name, ~0u);
   if (!param && p->alias) param = vl_dict_find(dict, p->alias, ~0u);
   return vl_import_fail(dict->import, VL_ERROR_SCENE, param ? param->source : dict->source, "%s", message);

@@ -82,7 +82,8 @@ def fork_error() -> ForkError:
 def unknown(thing: str, name: str, names: Sequence[str]) -> UsageError:
     """There is no `thing` of that name: the message has the nearest name."""
     from velo import _velo
-    return UsageError(_velo.unknown_name(thing, name, sorted(set(names))))
+    plain = name.encode(errors="backslashreplace").decode().replace("\0", "?")  # as C can hold it
+    return UsageError(_velo.unknown_name(thing, plain, sorted(set(names))))
 
 
 _MOST_SHOWN = 200  # characters of a value in a message

@@ -415,7 +415,7 @@ static void folding_is_found(void **state) {
 
 static void error_messages(void **state) {
   (void)state;
-  EXPECT_ERROR(d.fx = 0, "fx is 0", NULL);
+  EXPECT_ERROR(d.fx = 0, "fx must be a number above 0; it is 0", NULL);
   EXPECT_ERROR((d.has_matrix = true, d.world_from_camera[0] = NAN), "not finite", NULL);
   EXPECT_ERROR(d.shape[0] = 1, "perspective", "shape[0] is 1");
   EXPECT_ERROR(d.projection = VL_PROJECTION_UNIFIED, "unified", "needs its xi");
@@ -427,7 +427,7 @@ static void error_messages(void **state) {
   EXPECT_ERROR((d.projection = VL_PROJECTION_CUBE, d.fov = 1), "fov has no meaning", "cube");
   EXPECT_ERROR((d.projection = VL_PROJECTION_PANINI, d.fov = 1, d.fov_axis = VL_FOV_DIAGONAL), "diagonal", "Panini");
   EXPECT_ERROR((d.projection = VL_PROJECTION_CYLINDRICAL, d.max_angle = 1), "max_angle", "cylindrical");
-  EXPECT_ERROR((d.projection = VL_PROJECTION_EQUIDISTANT, d.max_angle = 4), "max_angle is 4", NULL);
+  EXPECT_ERROR((d.projection = VL_PROJECTION_EQUIDISTANT, d.max_angle = 4), "max_angle must be", "180 degrees");
   EXPECT_ERROR((d.projection = VL_PROJECTION_SINE, d.max_angle = 2), "does not see", NULL);
   EXPECT_ERROR(d.distortion_count = 4, "4 distortion coefficients", "without");
   EXPECT_ERROR((d.distortion = VL_DISTORTION_OPENCV, d.distortion_count = 6), "6 OpenCV", "4, 5, 8, 12 or 14");

@@ -76,7 +76,7 @@ expect_line no_dialect_words "--to"
 
 write_opencv bad.yaml 0. 0.
 expect_code 3 focal_zero "$VELO" camera info bad.yaml
-expect_line focal_zero_words "fx is 0"
+expect_line focal_zero_words "fx must be a number above 0; it is 0"
 write_opencv bad.yaml 500. 0. 'rvec: [.nan, 0, 0]
 tvec: [0, 0, 0]'
 expect_code 3 pose_nan "$VELO" camera info bad.yaml

@@ -101,7 +101,7 @@ wrong json_cut bad.gltf 'bad.gltf:1:' '{"asset": {}, "nodes": ['
 wrong usd_huge bad.usda 'no finite number' '#usda 1.0\ndef Camera "a" {\n float focalLength = 1e999\n}\n'
 wrong velo_huge bad.json 'too far apart' \
   '{"velo_camera": 1, "width": 4, "height": 3, "eye": [1e308, 0, 0], "lookat": [-1e308, 0, 0]}'
-wrong velo_zero bad.json 'fx is 0' '{"velo_camera": 1, "width": 4, "height": 3, "fx": 0}'
+wrong velo_zero bad.json '"fx" must be a number above 0; it is 0' '{"velo_camera": 1, "width": 4, "height": 3, "fx": 0}'
 wrong bad_image bad.exr 'bad.exr' 'x'
 expect_code 4 missing "$VELO" camera info none.usda
 expect_code 4 missing_image "$VELO" camera info none.exr

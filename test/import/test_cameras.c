@@ -129,7 +129,7 @@ static void warnings_and_errors(void **state) {
       {"\"fisheye\" \"string mapping\" \"equidistance\"", "equidistant"},
       {"\"fish\"", "fish"},
       {"\"cylindrical\" \"float panini\" 1", "panini"},
-      {"\"opencv\" \"float fx\" 0", "fx is 0"},
+      {"\"opencv\" \"float fx\" 0", "\"fx\" must be a number above 0; it is 0"},
   };
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     char text[400];

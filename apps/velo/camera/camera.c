@@ -193,12 +193,12 @@ static const Option convert_options[] = {
      "dialect of OUT; default: .json velo, .yaml opencv, .gltf gltf, .xml mitsuba, .usda usd, .pbrt pbrt, "
      "transforms.json nerf, cameras.txt colmap:",
      0, 0, dialect_choices},
-    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera of IN to use, by name or number from 0, if it has several",
-     0, 0, NULL},
+    {CONVERT_FRAME, 0, "frame", OPTION_TEXT, "NAME",
+     "camera of IN to use, by name or number from 0, if it has several"},
     {CONVERT_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {CONVERT_DROP, 0, "drop", OPTION_TEXTS, "FIELD",
-     "leave out a field that OUT's dialect cannot hold; may be given several times", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "leave out a field that OUT's dialect cannot hold; may be given several times"},
+    {0}};
 
 const Command camera_convert_command = {
     .name = "camera convert",

@@ -212,20 +212,18 @@ static int run_draw(const Command *command, const Arguments *arguments) {
 }
 
 static const Option draw_options[] = {
-    {DRAW_OUT, 'o', "output", OPTION_TEXT, "FILE", "image file to write: .png .jpg .tga", 0, 0, NULL},
+    {DRAW_OUT, 'o', "output", OPTION_TEXT, "FILE", "image file to write: .png .jpg .tga"},
     {DRAW_SIZE, 0, "size", OPTION_SIZE, "WxH", "size of the drawing in pixels; default 960x640", 16, 16384, NULL},
     {DRAW_FROM, 0, "from", OPTION_TEXT, "AZIMUTH,ELEVATION",
      "where the drawing is seen from, in degrees: to the right of the camera's view direction, above the horizon; "
-     "default 130,20",
-     0, 0, NULL},
+     "default 130,20"},
     {DRAW_ZOOM, 0, "zoom", OPTION_NUMBER, "X", "factor on the size of what is drawn; 1: it fills the image", 1e-3, 1e3,
      NULL},
     {DRAW_PARTS, 0, "parts", OPTION_TEXT, "LIST",
      "parts that are drawn, separated by commas: eye, window, grid, volume, near, far, axes, distance, focus, "
-     "projector, film (behind the eye), path; default: all but film",
-     0, 0, NULL},
+     "projector, film (behind the eye), path; default: all but film"},
     {DRAW_POINT, 0, "point", OPTION_TEXTS, "x,y,z",
-     "point whose projector is drawn; may be given several times. Default: two visible points", 0, 0, NULL},
+     "point whose projector is drawn; may be given several times. Default: two visible points"},
     {DRAW_PLANE, 0, "plane", OPTION_NUMBER, "D",
      "distance of the view plane (of fisheyes and panoramas: of a sphere) from the eye; default: the camera's d, if "
      "the "
@@ -237,23 +235,21 @@ static const Option draw_options[] = {
      "largest number of lines between pixels in each direction; 0: none; default 16", 0, 65536, NULL},
     {DRAW_NEAR, 0, "near", OPTION_NUMBER, "D", "near clipping plane; default: the camera's", 1e-30, 1e30, NULL},
     {DRAW_FAR, 0, "far", OPTION_NUMBER, "D", "far clipping plane; default: the camera's", 1e-30, 1e30, NULL},
-    {DRAW_EMPTY, 0, "no-scene", OPTION_FLAG, NULL, "draw on a white sheet, without the scene", 0, 0, NULL},
-    {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL, "leave view plane and film empty, without the camera's image", 0, 0,
-     NULL},
+    {DRAW_EMPTY, 0, "no-scene", OPTION_FLAG, NULL, "draw on a white sheet, without the scene"},
+    {DRAW_BLANK, 0, "no-image", OPTION_FLAG, NULL, "leave view plane and film empty, without the camera's image"},
     {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the scene, which is then denoised; default 32", 2,
      1 << 24, NULL},
-    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the scene in stops; default: metered", 0, 0, NULL},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
+    {RENDER_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV", "exposure of the scene in stops; default: metered"},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
+     "camera to use, by name or number from 0, if the file of --camera has several"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size of the camera in pixels", 1, 65536, NULL},
     {RENDER_TRAJECTORY, 0, "trajectory", OPTION_TEXT, "FILE",
-     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at most 200 of them", 0, 0,
-     NULL},
+     "draw the cameras of this trajectory or rig instead, with the line through their eyes; at most 200 of them"},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+     "folder in which files that the scene names are also looked for; may be given several times"},
     STRICT_OPTIONS_OPTION,
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 static const Section draw_sections[] = {
     {DRAW_OUT, "the drawing"}, {DRAW_PARTS, "what is drawn"}, {RENDER_SPP, "scene and camera"}, {0, NULL}};

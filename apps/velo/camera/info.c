@@ -138,11 +138,10 @@ static int run_info(const Command *command, const Arguments *arguments) {
 }
 
 static const Option info_options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0,
-     0, NULL},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {INFO_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
     {INFO_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command camera_info_command = {
     .name = "camera info",

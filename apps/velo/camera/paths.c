@@ -92,7 +92,7 @@ static const Choice tracers[] = {{"tracers", 0}, {NULL, 0}}, samplers[] = {{"sam
 static const Choice sort_choices[] = {{"contribution", 0}, {"sample", 1}, {NULL, 0}};
 
 static const Option paths_options[] = {
-    {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left", 0, 0, NULL},
+    {PATHS_PIXEL, 0, "pixel", OPTION_TEXT, "x,y", "the pixel; 0,0 is at the top left"},
     {PATHS_SAMPLES, 0, "samples", OPTION_INTEGER, "N", "number of samples per pixel; default 16", 1, 1 << 20, NULL},
     {PATHS_FIRST, 0, "first", OPTION_INTEGER, "I", "index of the first sample; default 0", 0, 1 << 24, NULL},
     {PATHS_SHOW, 0, "show", OPTION_INTEGER, "N", "number of paths that are printed; default 16", 0, 1 << 20, NULL},
@@ -100,16 +100,16 @@ static const Option paths_options[] = {
      "order of the paths: the largest share of the pixel first, or by "
      "sample:",
      0, 0, sort_choices},
-    {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image", 0, 0, NULL},
-    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels", 0, 0, NULL},
-    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera", 0, 0, NULL},
+    {PATHS_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {RENDER_SPP, 0, "spp", OPTION_INTEGER, "N", "samples per pixel of the image"},
+    {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH", "image size in pixels"},
+    {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
-     "camera to use, by name or number from 0, if the file of --camera has several", 0, 0, NULL},
+     "camera to use, by name or number from 0, if the file of --camera has several"},
     {RENDER_TRACER, 0, "tracer", OPTION_KIND, "NAME", "tracer; path and volpath are recorded:", 0, 0, tracers},
-    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path", 0, 0, NULL},
+    {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path"},
     {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
-    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers", 0, 0, NULL},
+    {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers"},
     {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N", "length of the sample sequence", 1, 1 << 24, NULL},
     {RENDER_FILTER, 0, "filter", OPTION_KIND, "NAME", "pixel filter:", 0, 0, filters},
     {RENDER_FILTER_SAMPLES, 0, "filter-samples", OPTION_CHOICE, "NAME",
@@ -121,9 +121,9 @@ static const Option paths_options[] = {
     {RENDER_COLOR, 0, "color", OPTION_CHOICE, "NAME", "representation of colours during light transport:", 0, 0,
      color_choices},
     {RENDER_SEARCH, 0, "search-path", OPTION_SEARCH, "DIR",
-     "folder in which files that the scene names are also looked for; may be given several times", 0, 0, NULL},
+     "folder in which files that the scene names are also looked for; may be given several times"},
     STRICT_OPTIONS_OPTION,
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 static const Section paths_sections[] = {
     {PATHS_PIXEL, "what is printed"}, {RENDER_SPP, "the image, as in `velo render`"}, {0, NULL}};

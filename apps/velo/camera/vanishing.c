@@ -336,31 +336,29 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
 }
 
 static const Option vanishing_options[] = {
-    {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several", 0, 0,
-     NULL},
+    {V_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {V_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
     {V_UP, 0, "up", OPTION_TEXT, "x,y,z",
-     "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0", 0, 0, NULL},
+     "up direction: the horizon is that of the planes perpendicular to it; default 0,1,0"},
     {V_OVERLAY, 0, "overlay", OPTION_TEXT, "IMAGE",
-     "draw vanishing points, lines and horizon over this image; needs -o", 0, 0, NULL},
+     "draw vanishing points, lines and horizon over this image; needs -o"},
     {V_OUT, 'o', "output", OPTION_TEXT, "RESULT",
-     "file to write: the drawing (.png .jpg .tga); with --from: a camera file", 0, 0, NULL},
+     "file to write: the drawing (.png .jpg .tga); with --from: a camera file"},
     {V_LINES, 0, "lines", OPTION_INTEGER, "N",
      "number of planes with lines to each vanishing point, 0 to 360; default 24", 0, 360, NULL},
     {V_GRID, 0, "grid", OPTION_TEXT, "SPACING[,HEIGHT]",
-     "also draw a grid on the ground plane, with this spacing, at this height along the up direction", 0, 0, NULL},
+     "also draw a grid on the ground plane, with this spacing, at this height along the up direction"},
     {V_FROM, 0, "from", OPTION_TEXT, "x1,y1 x2,y2 [x3,y3]",
-     "compute the camera that has these vanishing points, in pixels", 0, 0, NULL},
+     "compute the camera that has these vanishing points, in pixels"},
     {V_PRINCIPAL, 0, "principal", OPTION_TEXT, "cx,cy",
-     "with --from: the camera's principal point; default with two points: the centre of the image", 0, 0, NULL},
+     "with --from: the camera's principal point; default with two points: the centre of the image"},
     {V_SIZE, 0, "size", OPTION_SIZE, "WxH", "image size for --from, or for a FILE without one", 1, 1 << 24, NULL},
     {V_AXES, 0, "axes", OPTION_TEXT, "AXES",
      "with --from: the axes to which the points belong, with - before an axis for its negative end: xz (default of two "
-     "points), xyz (of three), -zx, ...",
-     0, 0, NULL},
+     "points), xyz (of three), -zx, ..."},
     {V_TO, 0, "to", OPTION_CHOICE, "DIALECT", "with --from: dialect of RESULT; default: by its name:", 0, 0,
      dialect_choices},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command camera_vanishing_command = {
     .name = "camera vanishing",

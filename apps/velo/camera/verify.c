@@ -220,18 +220,16 @@ static int run_verify(const Command *command, const Arguments *arguments) {
 
 static const Option verify_options[] = {
     {VERIFY_CAMERA, 0, "camera", OPTION_TEXT, "FILE",
-     "camera file in any dialect of `velo camera convert`, or a scene file", 0, 0, NULL},
-    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several",
-     0, 0, NULL},
+     "camera file in any dialect of `velo camera convert`, or a scene file"},
+    {VERIFY_FRAME, 0, "frame", OPTION_TEXT, "NAME", "camera to use, by name or number from 0, if the file has several"},
     {VERIFY_SIZE, 0, "size", OPTION_SIZE, "WxH", CAMERA_SIZE_HELP, 1, 1 << 24, NULL},
     {VERIFY_AGAINST, 0, "against", OPTION_TEXT, "OTHER",
      "compare the images with the equations of the camera in this file, to find out whether both files describe the "
-     "same camera",
-     0, 0, NULL},
+     "same camera"},
     {VERIFY_AGAINST_FRAME, 0, "against-frame", OPTION_TEXT, "NAME",
-     "camera of OTHER to use, by name or number from 0, if it has several", 0, 0, NULL},
+     "camera of OTHER to use, by name or number from 0, if it has several"},
     {VERIFY_IGNORE_POSE, 0, "ignore-pose", OPTION_FLAG, NULL,
-     "give OTHER's camera the pose of FILE's camera (for files without a pose)", 0, 0, NULL},
+     "give OTHER's camera the pose of FILE's camera (for files without a pose)"},
     {VERIFY_TARGET, 0, "target", OPTION_CHOICE, "KIND",
      "pattern on the board; charuco: a chessboard with markers, which are decoded; default chessboard:", 0, 0,
      target_choices},
@@ -242,9 +240,9 @@ static const Option verify_options[] = {
      "seed of the random numbers; another seed gives other poses and samples; default 1", 0, 4294967295.0, NULL},
     {VERIFY_THRESHOLD, 0, "threshold", OPTION_NUMBER, "PX", "largest error that is accepted, in pixels; default 0.05",
      0, 1e9, NULL},
-    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv to this folder", 0, 0, NULL},
-    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {VERIFY_KEEP, 0, "keep", OPTION_TEXT, "FOLDER", "write the images and corners.csv to this folder"},
+    {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {0}};
 
 const Command camera_verify_command = {
     .name = "camera verify",

@@ -26,6 +26,8 @@ typedef enum OptionKind {
   OPTION_SEARCH   /* likewise: folders, joined by ':' */
 } OptionKind;
 
+/* A row of a table ends with its last member that is not zero. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct Option {
   int id; /* index into Arguments.values */
   char letter;

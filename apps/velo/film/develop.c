@@ -113,15 +113,14 @@ static int run_develop(const Command *command, const Arguments *arguments) {
 
 static const Option develop_options[] = {
     {DEVELOP_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "image file to write; may be given several times. The suffix chooses the format, as for velo render", 0, 0, NULL},
+     "image file to write; may be given several times. The suffix chooses the format, as for velo render"},
     {DEVELOP_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
     {DEVELOP_EXPOSURE, 0, "exposure", OPTION_TEXT, "EV",
      "exposure of .png .jpg .tga: a number multiplies the image by 2^EV; auto chooses it so that the geometric mean of "
-     "the luminance becomes 18 % grey",
-     0, 0, NULL},
-    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "the luminance becomes 18 % grey"},
+    {DEVELOP_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
+    {0}};
 
 const Command film_develop_command = {
     .name = "film develop",

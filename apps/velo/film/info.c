@@ -153,10 +153,9 @@ static int run_info(const Command *command, const Arguments *arguments) {
 
 static const Option info_options[] = {
     {INFO_MISSING, 0, "missing", OPTION_FLAG, NULL,
-     "print, as shell commands, the renders of the missing samples or pixels, and the merge of the results", 0, 0,
-     NULL},
-    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "also read all sums, which detects any damage of the file", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "print, as shell commands, the renders of the missing samples or pixels, and the merge of the results"},
+    {INFO_CHECK, 0, "check", OPTION_FLAG, NULL, "also read all sums, which detects any damage of the file"},
+    {0}};
 
 const Command film_info_command = {
     .name = "film info",

@@ -246,24 +246,23 @@ static int run_check(const Command *command, const Arguments *arguments) {
   (void)command;
   const OptionValue *limit = &arguments->values[CHECK_THRESHOLD];
   double threshold = limit->given ? limit->number : 1e-6;
-  static const Rule rules[RULES] = {
-      {"point", "P = origin + distance * ray", 0, false, 0, 0, 0},
-      {"depth", "Z = depth of P in the camera", 0, false, 0, 0, 0},
-      {"pixel", "project(P) = the pixel's point of the film", 0, false, 0, 0, 0},
-      {"ray", "ray = direction of the camera's ray", 0, false, 0, 0, 0},
-      {"N", "|N| = 1", 0, false, 0, 0, 0},
-      {"Ng", "|Ng| = 1", 0, false, 0, 0, 0},
-      {"nothing", "pixels without a surface hold nothing", 0, false, 0, 0, 0},
-      {"ids", "ids are whole numbers from 1, a shape has one material", 0, false, 0, 0, 0},
-      {"types", "numbers are 32-bit floats, ids 32-bit integers", 0, false, 0, 0, 0},
-      {"finite", "uv, albedo and errors are numbers", 0, false, 0, 0, 0},
-      {"film", "the point of the film is the centre, or inside the pixel filter", 0, false, 0, 0, 0},
-      {"samples", "samples are the header's, of adaptive renders at most", 0, false, 0, 0, 0},
-      {"matte", "Cryptomatte's ids are the manifest's, the larger coverage first", 0, false, 0, 0, 0},
-      {"coverage", "coverages add up to alpha", 0, false, 0, 0, 0},
-      {"flow", "flow leads to project(P) in the other camera", 0, false, 0, 0, 0},
-      {"hidden", "flow leads outside where it says so", 0, false, 0, 0, 0},
-      {"seen", "share of pixels whose flow leads to other depths than it says", 0.01, false, 0, 0, 0}};
+  static const Rule rules[RULES] = {{"point", "P = origin + distance * ray"},
+                                    {"depth", "Z = depth of P in the camera"},
+                                    {"pixel", "project(P) = the pixel's point of the film"},
+                                    {"ray", "ray = direction of the camera's ray"},
+                                    {"N", "|N| = 1"},
+                                    {"Ng", "|Ng| = 1"},
+                                    {"nothing", "pixels without a surface hold nothing"},
+                                    {"ids", "ids are whole numbers from 1, a shape has one material"},
+                                    {"types", "numbers are 32-bit floats, ids 32-bit integers"},
+                                    {"finite", "uv, albedo and errors are numbers"},
+                                    {"film", "the point of the film is the centre, or inside the pixel filter"},
+                                    {"samples", "samples are the header's, of adaptive renders at most"},
+                                    {"matte", "Cryptomatte's ids are the manifest's, the larger coverage first"},
+                                    {"coverage", "coverages add up to alpha"},
+                                    {"flow", "flow leads to project(P) in the other camera"},
+                                    {"hidden", "flow leads outside where it says so"},
+                                    {"seen", "share of pixels whose flow leads to other depths than it says", 0.01}};
   Check check = {.path = arguments->operands[0]}, *c = &check;
   memcpy(c->rules, rules, sizeof rules);
   vlContext *context = NULL;
@@ -289,11 +288,11 @@ static const Option check_options[] = {
     {CHECK_THRESHOLD, 0, "threshold", OPTION_NUMBER, "ERROR", "largest relative error that is accepted; default 1e-6",
      0, 1, NULL},
     {CHECK_FLOW, 0, "flow", OPTION_TEXT, "FILE",
-     "the next image: check that forward.U and forward.V lead to the matching pixels of it", 0, 0, NULL},
+     "the next image: check that forward.U and forward.V lead to the matching pixels of it"},
     {CHECK_FLOW_BEFORE, 0, "flow-before", OPTION_TEXT, "FILE",
-     "the previous image: check that backward.U and backward.V lead to the matching pixels of it", 0, 0, NULL},
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "the previous image: check that backward.U and backward.V lead to the matching pixels of it"},
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {0}};
 
 const Command image_check_command = {
     .name = "image check",

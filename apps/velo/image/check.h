@@ -26,6 +26,8 @@ enum {
   RULE_SEEN,
   RULES
 };
+/* A row of the table of rules ends with its last member that is not zero. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct Rule {
   const char *name, *text;
   double limit; /* errors up to this limit are accepted at any threshold */

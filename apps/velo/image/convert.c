@@ -194,19 +194,17 @@ static int run_convert(const Command *command, const Arguments *arguments) {
 }
 
 static const Option convert_options[] = {
-    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "write only these pixels; x1 and y1 are exclusive", 0, 0,
-     NULL},
+    {CONVERT_CROP, 0, "crop", OPTION_CROP, "x0,y0,x1,y1", "write only these pixels; x1 and y1 are exclusive"},
     {CONVERT_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV", 0,
-     0, NULL},
-    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
-    {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z", 0, 0, NULL},
+    {CONVERT_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV"},
+    {CONVERT_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
+    {CONVERT_CHANNEL, 0, "channel", OPTION_TEXT, "NAME", "write one channel only, such as Z"},
     {CONVERT_SCALE, 0, "scale", OPTION_NUMBER, "FACTOR",
      "with --channel and .png: multiply by FACTOR and round to 16-bit integers; depth in RGB-D data sets has 5000 or "
      "1000 per metre",
      1e-9, 1e9, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command image_convert_command = {
     .name = "image convert",

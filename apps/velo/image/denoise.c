@@ -82,20 +82,19 @@ vlResult denoise_name(vlImage *clean, vlDenoiser denoiser) {
 
 static const Option denoise_options[] = {
     {DENOISE_OUTPUT, 'o', "output", OPTION_TEXTS, "FILE",
-     "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)", 0, 0, NULL},
+     "denoised image to write: .exr .hdr .pfm (linear), .png .jpg .tga (display)"},
     {DENOISE_DENOISER, 0, "denoiser", OPTION_CHOICE, "NAME",
      "velo: the built-in denoiser; oidn: Intel Open Image Denoise, if it is installed:", 0, 0, denoiser_choices},
     {DENOISE_LIBRARY, 0, "denoiser-library", OPTION_TEXT, "FILE",
-     "path of the library of Open Image Denoise; default: the system's", 0, 0, NULL},
+     "path of the library of Open Image Denoise; default: the system's"},
     {DENOISE_VIEW, 0, "view", OPTION_CHOICE, "NAME",
      "view transform from radiance to display values (.png .jpg .tga):", 0, 0, view_choices},
-    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV", 0,
-     0, NULL},
-    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats", 0, 0, NULL},
+    {DENOISE_EXPOSURE, 0, "exposure", OPTION_NUMBER, "EV", "exposure of .png .jpg .tga: multiply the image by 2^EV"},
+    {DENOISE_HALF, 0, "half", OPTION_FLAG, NULL, "write .exr with 16-bit instead of 32-bit floats"},
     {DENOISE_THREADS, 't', "threads", OPTION_INTEGER, "N",
-     "number of worker threads; default: one for each processor. The image does not depend on it", 0, 0, NULL},
-    {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "number of worker threads; default: one for each processor. The image does not depend on it"},
+    {DENOISE_VERBOSE, 'v', "verbose", OPTION_FLAG, NULL, "print the time that denoising took"},
+    {0}};
 
 const Command image_denoise_command = {
     .name = "image denoise",

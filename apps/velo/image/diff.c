@@ -143,14 +143,12 @@ static int run_diff(const Command *command, const Arguments *arguments) {
 }
 
 static const Option diff_options[] = {
-    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write an image of the FLIP differences in false colours", 0, 0,
-     NULL},
+    {DIFF_OUTPUT, 'o', "output", OPTION_TEXT, "FILE", "write an image of the FLIP differences in false colours"},
     {DIFF_THRESHOLD, 0, "threshold", OPTION_TEXTS, "NAME=VALUE",
      "exit with code 1 if this measure is above VALUE (psnr: below VALUE; meanratio: farther than VALUE from 1); may "
-     "be given several times",
-     0, 0, NULL},
-    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+     "be given several times"},
+    {DIFF_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {0}};
 
 const Command image_diff_command = {
     .name = "image diff",

@@ -179,15 +179,14 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
-    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "print every finding; default: the first 10 of each kind", 0, 0, NULL},
-    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read texture images; missing ones are still reported",
-     0, 0, NULL},
+    {CHECK_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
+    {CHECK_ALL, 'a', "all", OPTION_FLAG, NULL, "print every finding; default: the first 10 of each kind"},
+    {CHECK_NO_IMAGES, 0, "no-images", OPTION_FLAG, NULL, "do not read texture images; missing ones are still reported"},
     {CHECK_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "parts of the scene that velo does not understand are notes, not errors", 0, 0, NULL},
+     "parts of the scene that velo does not understand are notes, not errors"},
     SCENE_SEARCH_OPTION(CHECK_SEARCH),
     SCENE_SANDBOX_OPTION(CHECK_SANDBOX),
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command scene_check_command = {
     .name = "scene check",

@@ -25,24 +25,23 @@ enum {
 
 static const Option convert_options[] = {
     {CONVERT_STRICT, 0, "strict", OPTION_FLAG, NULL,
-     "anything that B's format cannot hold is an error, and nothing is written", 0, 0, NULL},
+     "anything that B's format cannot hold is an error, and nothing is written"},
     {CONVERT_COMPLETE, 0, "complete", OPTION_FLAG, NULL,
-     "add the camera and light that A lacks, as velo render does; always done if B is a .pbrt file", 0, 0, NULL},
+     "add the camera and light that A lacks, as velo render does; always done if B is a .pbrt file"},
     {CONVERT_PROVE, 0, "prove", OPTION_FLAG, NULL,
      "render A and B, 256 pixels wide, and print for each material the ratio of its brightness, B divided by A, in "
-     "red, green and blue",
-     0, 0, NULL},
-    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: camera to write, by name or number from 0", 0, 0, NULL},
+     "red, green and blue"},
+    {CONVERT_CAMERA, 0, "camera", OPTION_TEXT, "NAME", "glTF: camera to write, by name or number from 0"},
     {CONVERT_AT, 0, "at", OPTION_TIME, "SECONDS",
      "glTF: time of the animation in seconds; default: the model without animation", 0, 1e9, NULL},
     {CONVERT_ANIMATION, 0, "animation", OPTION_TEXT, "NAME",
-     "glTF: animation to play, by name or number from 0; several separated by commas, or all", 0, 0, NULL},
-    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant to use, by name", 0, 0, NULL},
+     "glTF: animation to play, by name or number from 0; several separated by commas, or all"},
+    {CONVERT_VARIANT, 0, "variant", OPTION_TEXT, "NAME", "glTF: material variant to use, by name"},
     {CONVERT_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "parts of the scene that velo does not understand are warnings, not errors", 0, 0, NULL},
+     "parts of the scene that velo does not understand are warnings, not errors"},
     SCENE_SEARCH_OPTION(CONVERT_SEARCH),
     SCENE_SANDBOX_OPTION(CONVERT_SANDBOX),
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 static void tell(void *user, const char *what, uint64_t count) {
   (void)user;

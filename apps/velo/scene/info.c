@@ -352,12 +352,12 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {
-    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout", 0, 0, NULL},
+    {INFO_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {INFO_PERMISSIVE, 0, "permissive", OPTION_FLAG, NULL,
-     "leave out parts of the scene that velo does not understand, instead of ending with an error", 0, 0, NULL},
+     "leave out parts of the scene that velo does not understand, instead of ending with an error"},
     SCENE_SEARCH_OPTION(INFO_SEARCH),
     SCENE_SANDBOX_OPTION(INFO_SANDBOX),
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command scene_info_command = {
     .name = "scene info",

@@ -182,8 +182,8 @@ static int run(const Command *command, const Arguments *arguments) {
 }
 
 static const Option options[] = {{KINDS_DICTIONARY, 0, "dictionary", OPTION_FLAG, NULL,
-                                  "print the names as a dictionary for a fuzzer, one per line", 0, 0, NULL},
-                                 {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+                                  "print the names as a dictionary for a fuzzer, one per line"},
+                                 {0}};
 
 const Command scene_kinds_command = {
     .name = "scene kinds",

@@ -90,13 +90,12 @@ static int run(const Command *command, const Arguments *arguments) {
 
 static const Option options[] = {
     {UPGRADE_STRICT, 0, "strict", OPTION_FLAG, NULL,
-     "anything without a counterpart in pbrt-v4 is an error, and nothing is written", 0, 0, NULL},
-    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL, "print every change; default: the first 5 with the same text", 0, 0,
-     NULL},
-    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL, "print only what has no counterpart in pbrt-v4", 0, 0, NULL},
+     "anything without a counterpart in pbrt-v4 is an error, and nothing is written"},
+    {UPGRADE_ALL, 'a', "all", OPTION_FLAG, NULL, "print every change; default: the first 5 with the same text"},
+    {UPGRADE_QUIET, 0, "quiet", OPTION_FLAG, NULL, "print only what has no counterpart in pbrt-v4"},
     SCENE_SEARCH_OPTION(UPGRADE_SEARCH),
     SCENE_SANDBOX_OPTION(UPGRADE_SANDBOX),
-    {0, 0, NULL, OPTION_FLAG, NULL, NULL, 0, 0, NULL}};
+    {0}};
 
 const Command scene_upgrade_command = {
     .name = "scene upgrade",

@@ -67,6 +67,15 @@ bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *re
   return true;
 }
 
+bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p) {
+  char name[4096];
+  if (!p || !p->strings) return true;
+  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
+  if (vl_text_is(name, p->text[0])) return true;
+  vl_old_note(s, "filename is \"%s\"", name);
+  return vl_old_edit(file, p->span[0], "\"%s\"", name);
+}
+
 /* ---- Include ----------------------------------------------------------------------------------------------------- */
 
 static const vlOldInclude *find_include(vlUpgrade *u, const char *path) {

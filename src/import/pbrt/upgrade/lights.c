@@ -7,46 +7,28 @@
 #include "import/pbrt/token.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-#define END \
-  { NULL, VL_OLD_KEEP, NULL }
-#define PLACE                    \
-  {"from", VL_OLD_KEEP, NULL}, { \
-    "to", VL_OLD_KEEP, NULL      \
+#define PLACE \
+  {"from"}, { \
+    "to"      \
   }
-#define COMMON                    \
-  {"scale", VL_OLD_KEEP, NULL}, { \
-    "power", VL_OLD_KEEP, NULL    \
+#define COMMON \
+  {"scale"}, { \
+    "power"    \
   }
-#define SAMPLES                     \
-  {"samples", VL_OLD_DROP, NULL}, { \
-    "nsamples", VL_OLD_DROP, NULL   \
+#define SAMPLES               \
+  {"samples", VL_OLD_DROP}, { \
+    "nsamples", VL_OLD_DROP   \
   }
 
-static const vlOldRow point[] = {{"I", VL_OLD_KEEP, NULL}, PLACE, COMMON, END};
-static const vlOldRow spot[] = {{"I", VL_OLD_KEEP, NULL},
-                                {"coneangle", VL_OLD_KEEP, NULL},
-                                {"conedeltaangle", VL_OLD_KEEP, NULL},
-                                PLACE,
-                                COMMON,
-                                END};
-static const vlOldRow goniometric[] = {
-    {"I", VL_OLD_KEEP, NULL}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename", VL_OLD_KEEP, NULL}, COMMON, END};
-static const vlOldRow projection[] = {{"mapname", VL_OLD_RENAME, "filename"},
-                                      {"filename", VL_OLD_KEEP, NULL},
-                                      {"fov", VL_OLD_KEEP, NULL},
-                                      {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"},
-                                      COMMON,
-                                      END};
-static const vlOldRow distant[] = {{"L", VL_OLD_KEEP, NULL}, PLACE, COMMON, {"illuminance", VL_OLD_KEEP, NULL}, END};
-static const vlOldRow infinite[] = {{"L", VL_OLD_KEEP, NULL},
-                                    {"mapname", VL_OLD_RENAME, "filename"},
-                                    {"filename", VL_OLD_KEEP, NULL},
-                                    {"portal", VL_OLD_KEEP, NULL},
-                                    {"illuminance", VL_OLD_KEEP, NULL},
-                                    SAMPLES,
-                                    COMMON,
-                                    END};
-static const vlOldRow area[] = {{"L", VL_OLD_KEEP, NULL}, {"twosided", VL_OLD_KEEP, NULL}, SAMPLES, COMMON, END};
+static const vlOldRow point[] = {{"I"}, PLACE, COMMON, {0}};
+static const vlOldRow spot[] = {{"I"}, {"coneangle"}, {"conedeltaangle"}, PLACE, COMMON, {0}};
+static const vlOldRow goniometric[] = {{"I"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, COMMON, {0}};
+static const vlOldRow projection[] = {{"mapname", VL_OLD_RENAME, "filename"},      {"filename"}, {"fov"},
+                                      {"fov", VL_OLD_DEFAULT, "\"float fov\" 45"}, COMMON,       {0}};
+static const vlOldRow distant[] = {{"L"}, PLACE, COMMON, {"illuminance"}, {0}};
+static const vlOldRow infinite[] = {
+    {"L"}, {"mapname", VL_OLD_RENAME, "filename"}, {"filename"}, {"portal"}, {"illuminance"}, SAMPLES, COMMON, {0}};
+static const vlOldRow area[] = {{"L"}, {"twosided"}, SAMPLES, COMMON, {0}};
 
 /* ---- the factor -------------------------------------------------------------------------------------------------- */
 
@@ -221,14 +203,14 @@ static bool plain_light(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-static const vlOldKind kinds[] = {{"point", "point", point, plain_light, NULL},
-                                  {"spot", "spot", spot, plain_light, NULL},
-                                  {"goniometric", "goniometric", goniometric, plain_light, NULL},
-                                  {"projection", "projection", projection, plain_light, NULL},
-                                  {"distant", "distant", distant, plain_light, NULL},
-                                  {"infinite", "infinite", infinite, plain_light, NULL},
-                                  {"exinfinite", "infinite", infinite, plain_light, NULL},
-                                  {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldKind kinds[] = {{"point", "point", point, plain_light},
+                                  {"spot", "spot", spot, plain_light},
+                                  {"goniometric", "goniometric", goniometric, plain_light},
+                                  {"projection", "projection", projection, plain_light},
+                                  {"distant", "distant", distant, plain_light},
+                                  {"infinite", "infinite", infinite, plain_light},
+                                  {"exinfinite", "infinite", infinite, plain_light},
+                                  {0}};
 
 bool vl_old_light(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);

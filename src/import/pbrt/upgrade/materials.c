@@ -7,88 +7,86 @@
 
 #define BUMP                                    \
   {"bumpmap", VL_OLD_RENAME, "displacement"}, { \
-    "displacement", VL_OLD_KEEP, NULL           \
+    "displacement"                              \
   }
-#define ROUGHNESSES                                                                                         \
-  {"roughness", VL_OLD_KEEP, NULL}, {"uroughness", VL_OLD_KEEP, NULL}, {"vroughness", VL_OLD_KEEP, NULL}, { \
-    "remaproughness", VL_OLD_KEEP, NULL                                                                     \
+#define ROUGHNESSES                                \
+  {"roughness"}, {"uroughness"}, {"vroughness"}, { \
+    "remaproughness"                               \
   }
-#define END \
-  { NULL, VL_OLD_KEEP, NULL }
 static const char whole_coat[] = "the coat reflects what its eta says";
 
-static const vlOldRow matte[] = {{"Kd", VL_OLD_RENAME, "reflectance"}, {"sigma", VL_OLD_KEEP, NULL}, BUMP, END};
+static const vlOldRow matte[] = {{"Kd", VL_OLD_RENAME, "reflectance"}, {"sigma"}, BUMP, {0}};
 static const vlOldRow plastic[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
                                    {"Ks", VL_OLD_LOSE, whole_coat},
                                    {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
                                    ROUGHNESSES,
                                    BUMP,
-                                   END};
+                                   {0}};
 static const vlOldRow substrate[] = {
-    {"Kd", VL_OLD_RENAME, "reflectance"}, {"Ks", VL_OLD_LOSE, whole_coat}, ROUGHNESSES, BUMP, END};
-static const vlOldRow metal[] = {{"eta", VL_OLD_KEEP, NULL}, {"k", VL_OLD_KEEP, NULL}, ROUGHNESSES, BUMP, END};
+    {"Kd", VL_OLD_RENAME, "reflectance"}, {"Ks", VL_OLD_LOSE, whole_coat}, ROUGHNESSES, BUMP, {0}};
+static const vlOldRow metal[] = {{"eta"}, {"k"}, ROUGHNESSES, BUMP, {0}};
 static const vlOldRow mirror[] = {{"Kr", VL_OLD_RENAME, "reflectance"},
                                   {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.9 0.9 0.9 ]"},
                                   BUMP,
-                                  END};
-static const vlOldRow glass[] = {{"index", VL_OLD_RENAME, "eta"}, {"eta", VL_OLD_KEEP, NULL}, ROUGHNESSES, BUMP, END};
+                                  {0}};
+static const vlOldRow glass[] = {{"index", VL_OLD_RENAME, "eta"}, {"eta"}, ROUGHNESSES, BUMP, {0}};
 static const vlOldRow translucent[] = {{"Ks", VL_OLD_LOSE, "only the diffuse part is kept"},
-                                       {"roughness", VL_OLD_DROP, NULL},
-                                       {"remaproughness", VL_OLD_DROP, NULL},
-                                       {"reflect", VL_OLD_DROP, NULL},
-                                       {"transmit", VL_OLD_DROP, NULL},
-                                       {"Kd", VL_OLD_DROP, NULL},
+                                       {"roughness", VL_OLD_DROP},
+                                       {"remaproughness", VL_OLD_DROP},
+                                       {"reflect", VL_OLD_DROP},
+                                       {"transmit", VL_OLD_DROP},
+                                       {"Kd", VL_OLD_DROP},
                                        BUMP,
-                                       END};
-static const vlOldRow hair[] = {
-    {"color", VL_OLD_RENAME, "reflectance"}, {"sigma_a", VL_OLD_KEEP, NULL}, {"eumelanin", VL_OLD_KEEP, NULL},
-    {"pheomelanin", VL_OLD_KEEP, NULL},      {"eta", VL_OLD_KEEP, NULL},     {"beta_m", VL_OLD_KEEP, NULL},
-    {"beta_n", VL_OLD_KEEP, NULL},           {"alpha", VL_OLD_KEEP, NULL},   END};
+                                       {0}};
+static const vlOldRow hair[] = {{"color", VL_OLD_RENAME, "reflectance"},
+                                {"sigma_a"},
+                                {"eumelanin"},
+                                {"pheomelanin"},
+                                {"eta"},
+                                {"beta_m"},
+                                {"beta_n"},
+                                {"alpha"},
+                                {0}};
 static const vlOldRow kdsubsurface[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
                                         {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.5 0.5 0.5 ]"},
-                                        {"mfp", VL_OLD_KEEP, NULL},
+                                        {"mfp"},
                                         {"mfp", VL_OLD_DEFAULT, "\"rgb mfp\" [ 1 1 1 ]"},
-                                        {"Kr", VL_OLD_DROP, NULL},
-                                        {"Kt", VL_OLD_DROP, NULL},
+                                        {"Kr", VL_OLD_DROP},
+                                        {"Kt", VL_OLD_DROP},
                                         {"index", VL_OLD_RENAME, "eta"},
                                         {"eta", VL_OLD_DEFAULT, "\"float eta\" 1.3"},
-                                        {"eta", VL_OLD_KEEP, NULL},
-                                        {"g", VL_OLD_KEEP, NULL},
-                                        {"scale", VL_OLD_KEEP, NULL},
+                                        {"eta"},
+                                        {"g"},
+                                        {"scale"},
                                         ROUGHNESSES,
                                         BUMP,
-                                        END};
-static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP, NULL},
-                                      {"Kt", VL_OLD_DROP, NULL},
+                                        {0}};
+static const vlOldRow subsurface[] = {{"Kr", VL_OLD_DROP},
+                                      {"Kt", VL_OLD_DROP},
                                       {"index", VL_OLD_RENAME, "eta"},
-                                      {"eta", VL_OLD_KEEP, NULL},
-                                      {"name", VL_OLD_KEEP, NULL},
-                                      {"sigma_a", VL_OLD_KEEP, NULL},
-                                      {"sigma_s", VL_OLD_KEEP, NULL},
-                                      {"scale", VL_OLD_KEEP, NULL},
-                                      {"g", VL_OLD_KEEP, NULL},
+                                      {"eta"},
+                                      {"name"},
+                                      {"sigma_a"},
+                                      {"sigma_s"},
+                                      {"scale"},
+                                      {"g"},
                                       ROUGHNESSES,
                                       BUMP,
-                                      END};
+                                      {0}};
 static const vlOldRow uber[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
                                 {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
                                 {"Ks", VL_OLD_LOSE, whole_coat},
                                 {"Kr", VL_OLD_LOSE, "its mirror reflection is that of the coat"},
                                 {"Kt", VL_OLD_LOSE, "nothing is transmitted"},
                                 {"index", VL_OLD_RENAME, "eta"},
-                                {"eta", VL_OLD_KEEP, NULL},
+                                {"eta"},
                                 ROUGHNESSES,
                                 BUMP,
-                                END};
-static const vlOldRow none[] = {{"bumpmap", VL_OLD_DROP, NULL}, END};
-static const vlOldRow fourier[] = {{"bsdffile", VL_OLD_DROP, NULL}, BUMP, END};
-static const vlOldRow disney[] = {{"metallic", VL_OLD_KEEP, NULL},
-                                  {"roughness", VL_OLD_KEEP, NULL},
-                                  {"eta", VL_OLD_KEEP, NULL},
-                                  {"clearcoat", VL_OLD_KEEP, NULL},
-                                  BUMP,
-                                  END};
-static const vlOldRow mix[] = {{"materials", VL_OLD_KEEP, NULL}, {"amount", VL_OLD_KEEP, NULL}, END};
+                                {0}};
+static const vlOldRow none[] = {{"bumpmap", VL_OLD_DROP}, {0}};
+static const vlOldRow fourier[] = {{"bsdffile", VL_OLD_DROP}, BUMP, {0}};
+static const vlOldRow disney[] = {{"metallic"}, {"roughness"}, {"eta"}, {"clearcoat"}, BUMP, {0}};
+static const vlOldRow mix[] = {{"materials"}, {"amount"}, {0}};
 
 /* ---- rules ------------------------------------------------------------------------------------------------------- */
 
@@ -193,26 +191,26 @@ static bool none_rule(vlOldFile *file, vlOldStatement *s) {
 }
 
 static const vlOldKind kinds[] = {
-    {"matte", "diffuse", matte, matte_rule, NULL},
-    {"plastic", "coateddiffuse", plastic, coat_rule, NULL},
-    {"substrate", "coateddiffuse", substrate, substrate_rule, NULL},
-    {"metal", "conductor", metal, metal_rule, NULL},
-    {"mirror", "conductor", mirror, NULL, NULL},
-    {"glass", "dielectric", glass, glass_rule, NULL},
-    {"uber", "coateddiffuse", uber, vl_old_uber, NULL},
-    {"translucent", "diffusetransmission", translucent, vl_old_translucent, NULL},
-    {"mix", "mix", mix, vl_old_mix, NULL},
-    {"hair", "hair", hair, NULL, NULL},
-    {"kdsubsurface", "subsurface", kdsubsurface, kd_rule, NULL},
-    {"subsurface", "subsurface", subsurface, subsurface_rule, NULL},
+    {"matte", "diffuse", matte, matte_rule},
+    {"plastic", "coateddiffuse", plastic, coat_rule},
+    {"substrate", "coateddiffuse", substrate, substrate_rule},
+    {"metal", "conductor", metal, metal_rule},
+    {"mirror", "conductor", mirror},
+    {"glass", "dielectric", glass, glass_rule},
+    {"uber", "coateddiffuse", uber, vl_old_uber},
+    {"translucent", "diffusetransmission", translucent, vl_old_translucent},
+    {"mix", "mix", mix, vl_old_mix},
+    {"hair", "hair", hair},
+    {"kdsubsurface", "subsurface", kdsubsurface, kd_rule},
+    {"subsurface", "subsurface", subsurface, subsurface_rule},
     {"disney", "principled", disney, vl_old_disney,
      "disney has no counterpart in pbrt-v4: velo's own principled is written"},
     {"fourier", "diffuse", fourier, NULL, "fourier has no counterpart: grey diffuse is written"},
     {"measured", "diffuse", none, none_rule, "pbrt-v2's measured has no counterpart: grey diffuse is written"},
     {"shinymetal", "conductor", NULL, none_rule, "pbrt-v2's shinymetal has no counterpart: a conductor is written"},
-    {"none", "interface", none, none_rule, NULL},
-    {"", "interface", none, none_rule, NULL},
-    {NULL, NULL, NULL, NULL, NULL}};
+    {"none", "interface", none, none_rule},
+    {"", "interface", none, none_rule},
+    {0}};
 
 /* Kinds that only pbrt-v4 has stay as they are. */
 static bool is_new(const char *name, vlOldStatement *s) {
@@ -240,7 +238,7 @@ static const vlOldKind *find(vlOldFile *file, vlOldStatement *s, const char *nam
   const vlOldKind *kind = vl_old_kind(kinds, name);
   if (is_new(name, s)) return NULL;
   if (kind) return kind;
-  static const vlOldKind unknown = {"", "diffuse", NULL, none_rule, NULL};
+  static const vlOldKind unknown = {"", "diffuse", NULL, none_rule};
   vl_old_lose(file, s->line, "material \"%s\" is not one of pbrt-v3's: grey diffuse is written", name);
   return &unknown;
 }
@@ -252,7 +250,7 @@ static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kind) {
   static const vlOldRow bare[] = {{"Kd", VL_OLD_RENAME, "reflectance"},
                                   BUMP,
                                   {"reflectance", VL_OLD_DEFAULT, "\"rgb reflectance\" [ 0.25 0.25 0.25 ]"},
-                                  END};
+                                  {0}};
   if (!vl_text_is(new_kind(s, kind), kind->to)) rows = bare;
   return vl_old_rows(file, s, rows, VL_OLD_LOSE);
 }

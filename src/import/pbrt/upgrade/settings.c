@@ -5,28 +5,21 @@
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-#define END \
-  { NULL, VL_OLD_KEEP, NULL }
-#define KEEP(name) \
-  { name, VL_OLD_KEEP, NULL }
-#define DROP(name) \
-  { name, VL_OLD_DROP, NULL }
 #define BOUNDS \
   { "pixelbounds", VL_OLD_LOSE, "give the film's \"pixelbounds\"" }
 
 /* ---- camera ------------------------------------------------------------------------------------------------------ */
 
-#define SHUTTER KEEP("shutteropen"), KEEP("shutterclose"), KEEP("frameaspectratio"), KEEP("screenwindow")
-static const vlOldRow perspective[] = {KEEP("fov"), KEEP("lensradius"), KEEP("focaldistance"), SHUTTER, END};
+#define SHUTTER                                              \
+  {"shutteropen"}, {"shutterclose"}, {"frameaspectratio"}, { \
+    "screenwindow"                                           \
+  }
+static const vlOldRow perspective[] = {{"fov"}, {"lensradius"}, {"focaldistance"}, SHUTTER, {0}};
 static const vlOldRow environment[] = {
-    SHUTTER, {"mapping", VL_OLD_DEFAULT, "\"string mapping\" \"equirectangular\""}, DROP("fov"), END};
-static const vlOldRow realistic[] = {KEEP("lensfile"),
-                                     KEEP("aperturediameter"),
-                                     KEEP("focusdistance"),
-                                     KEEP("aperture"),
-                                     DROP("simpleweighting"),
-                                     SHUTTER,
-                                     END};
+    SHUTTER, {"mapping", VL_OLD_DEFAULT, "\"string mapping\" \"equirectangular\""}, {"fov", VL_OLD_DROP}, {0}};
+static const vlOldRow realistic[] = {
+    {"lensfile"}, {"aperturediameter"}, {"focusdistance"}, {"aperture"}, {"simpleweighting", VL_OLD_DROP}, SHUTTER,
+    {0}};
 
 static bool half_fov(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *p = vl_old_find(s, "halffov");
@@ -50,11 +43,11 @@ static bool lens_file(vlOldFile *file, vlOldStatement *s) {
   return vl_text_is(name, p->text[0]) || vl_old_edit(file, p->span[0], "\"%s\"", name);
 }
 
-static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, half_fov, NULL},
-                                    {"orthographic", "orthographic", perspective, NULL, NULL},
-                                    {"environment", "spherical", environment, NULL, NULL},
-                                    {"realistic", "realistic", realistic, lens_file, NULL},
-                                    {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldKind cameras[] = {{"perspective", "perspective", perspective, half_fov},
+                                    {"orthographic", "orthographic", perspective},
+                                    {"environment", "spherical", environment},
+                                    {"realistic", "realistic", realistic, lens_file},
+                                    {0}};
 
 /* Replaces kind and parameters by the table. Unknown kinds become `otherwise`. */
 static bool rewrite(vlOldFile *file, vlOldStatement *s, const vlOldKind *kinds, const char *otherwise) {
@@ -78,17 +71,17 @@ bool vl_old_camera(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- film -------------------------------------------------------------------------------------------------------- */
 
-static const vlOldRow film[] = {KEEP("xresolution"),
-                                KEEP("yresolution"),
+static const vlOldRow film[] = {{"xresolution"},
+                                {"yresolution"},
                                 {"xresolution", VL_OLD_DEFAULT, "\"integer xresolution\" 640"},
                                 {"yresolution", VL_OLD_DEFAULT, "\"integer yresolution\" 480"},
-                                KEEP("cropwindow"),
-                                KEEP("diagonal"),
-                                KEEP("filename"),
+                                {"cropwindow"},
+                                {"diagonal"},
+                                {"filename"},
                                 {"maxsampleluminance", VL_OLD_RENAME, "maxcomponentvalue"},
-                                DROP("display"),
-                                END};
-static const vlOldKind films[] = {{"image", "rgb", film, NULL, NULL}, {NULL, NULL, NULL, NULL, NULL}};
+                                {"display", VL_OLD_DROP},
+                                {0}};
+static const vlOldKind films[] = {{"image", "rgb", film}, {0}};
 
 bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
   static const char *const news[] = {"rgb", "gbuffer", "spectral"};
@@ -106,40 +99,51 @@ bool vl_old_film(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- sampler, filter, accelerator -------------------------------------------------------------------------------- */
 
-static const vlOldRow sampler[] = {KEEP("pixelsamples"), KEEP("xsamples"),          KEEP("ysamples"), KEEP("jitter"),
-                                   DROP("dimensions"),   DROP("samplepixelcenter"), KEEP("seed"),     END};
-static const vlOldRow adaptive[] = {
-    {"maxsamples", VL_OLD_RENAME, "pixelsamples"}, DROP("minsamples"), DROP("method"), KEEP("pixelsamples"), END};
-static const vlOldKind samplers[] = {{"halton", "halton", sampler, NULL, NULL},
-                                     {"sobol", "sobol", sampler, NULL, NULL},
-                                     {"stratified", "stratified", sampler, NULL, NULL},
-                                     {"random", "independent", sampler, NULL, NULL},
-                                     {"lowdiscrepancy", "paddedsobol", sampler, NULL, NULL},
-                                     {"02sequence", "paddedsobol", sampler, NULL, NULL},
-                                     {"zerotwosequence", "paddedsobol", sampler, NULL, NULL},
-                                     {"maxmindist", "pmj02bn", sampler, NULL, NULL},
-                                     {"bestcandidate", "sobol", sampler, NULL, NULL},
-                                     {"adaptive", "sobol", adaptive, NULL, NULL},
-                                     {"independent", "independent", sampler, NULL, NULL},
-                                     {"zsobol", "zsobol", sampler, NULL, NULL},
-                                     {"paddedsobol", "paddedsobol", sampler, NULL, NULL},
-                                     {"pmj02bn", "pmj02bn", sampler, NULL, NULL},
-                                     {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldRow sampler[] = {{"pixelsamples"},
+                                   {"xsamples"},
+                                   {"ysamples"},
+                                   {"jitter"},
+                                   {"dimensions", VL_OLD_DROP},
+                                   {"samplepixelcenter", VL_OLD_DROP},
+                                   {"seed"},
+                                   {0}};
+static const vlOldRow adaptive[] = {{"maxsamples", VL_OLD_RENAME, "pixelsamples"},
+                                    {"minsamples", VL_OLD_DROP},
+                                    {"method", VL_OLD_DROP},
+                                    {"pixelsamples"},
+                                    {0}};
+static const vlOldKind samplers[] = {{"halton", "halton", sampler},
+                                     {"sobol", "sobol", sampler},
+                                     {"stratified", "stratified", sampler},
+                                     {"random", "independent", sampler},
+                                     {"lowdiscrepancy", "paddedsobol", sampler},
+                                     {"02sequence", "paddedsobol", sampler},
+                                     {"zerotwosequence", "paddedsobol", sampler},
+                                     {"maxmindist", "pmj02bn", sampler},
+                                     {"bestcandidate", "sobol", sampler},
+                                     {"adaptive", "sobol", adaptive},
+                                     {"independent", "independent", sampler},
+                                     {"zsobol", "zsobol", sampler},
+                                     {"paddedsobol", "paddedsobol", sampler},
+                                     {"pmj02bn", "pmj02bn", sampler},
+                                     {0}};
 
 bool vl_old_sampler(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, samplers, "zsobol");
 }
 
-#define RADIUS \
-  {"xwidth", VL_OLD_RENAME, "xradius"}, {"ywidth", VL_OLD_RENAME, "yradius"}, KEEP("xradius"), KEEP("yradius")
-static const vlOldRow plain_filter[] = {RADIUS, END};
+#define RADIUS                                                                               \
+  {"xwidth", VL_OLD_RENAME, "xradius"}, {"ywidth", VL_OLD_RENAME, "yradius"}, {"xradius"}, { \
+    "yradius"                                                                                \
+  }
+static const vlOldRow plain_filter[] = {RADIUS, {0}};
 static const vlOldRow gaussian[] = {RADIUS,
                                     {"xradius", VL_OLD_DEFAULT, "\"float xradius\" 2"},
                                     {"yradius", VL_OLD_DEFAULT, "\"float yradius\" 2"},
-                                    KEEP("sigma"),
-                                    END};
-static const vlOldRow mitchell[] = {RADIUS, KEEP("B"), KEEP("C"), END};
-static const vlOldRow sinc[] = {RADIUS, KEEP("tau"), END};
+                                    {"sigma"},
+                                    {0}};
+static const vlOldRow mitchell[] = {RADIUS, {"B"}, {"C"}, {0}};
+static const vlOldRow sinc[] = {RADIUS, {"tau"}, {0}};
 
 /* exp(-alpha x^2) is a Gaussian of the variance 1 / (2 alpha). */
 static bool gaussian_rule(vlOldFile *file, vlOldStatement *s) {
@@ -152,25 +156,22 @@ static bool gaussian_rule(vlOldFile *file, vlOldStatement *s) {
   return true;
 }
 
-static const vlOldKind filters[] = {{"box", "box", plain_filter, NULL, NULL},
-                                    {"triangle", "triangle", plain_filter, NULL, NULL},
-                                    {"gaussian", "gaussian", gaussian, gaussian_rule, NULL},
-                                    {"mitchell", "mitchell", mitchell, NULL, NULL},
-                                    {"sinc", "sinc", sinc, NULL, NULL},
-                                    {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldKind filters[] = {{"box", "box", plain_filter},
+                                    {"triangle", "triangle", plain_filter},
+                                    {"gaussian", "gaussian", gaussian, gaussian_rule},
+                                    {"mitchell", "mitchell", mitchell},
+                                    {"sinc", "sinc", sinc},
+                                    {0}};
 
 bool vl_old_filter(vlOldFile *file, vlOldStatement *s) {
   file->u->filter_given = true;
   return rewrite(file, s, filters, "gaussian");
 }
 
-static const vlOldRow bvh[] = {KEEP("maxnodeprims"), KEEP("splitmethod"), END};
-static const vlOldRow kdtree[] = {KEEP("intersectcost"), KEEP("traversalcost"), KEEP("emptybonus"),
-                                  KEEP("maxprims"),      KEEP("maxdepth"),      END};
-static const vlOldKind accelerators[] = {{"bvh", "bvh", bvh, NULL, NULL},
-                                         {"kdtree", "kdtree", kdtree, NULL, NULL},
-                                         {"none", "bvh", NULL, NULL, NULL},
-                                         {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldRow bvh[] = {{"maxnodeprims"}, {"splitmethod"}, {0}};
+static const vlOldRow kdtree[] = {{"intersectcost"}, {"traversalcost"}, {"emptybonus"},
+                                  {"maxprims"},      {"maxdepth"},      {0}};
+static const vlOldKind accelerators[] = {{"bvh", "bvh", bvh}, {"kdtree", "kdtree", kdtree}, {"none", "bvh"}, {0}};
 
 bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
   return rewrite(file, s, accelerators, "bvh");
@@ -178,27 +179,25 @@ bool vl_old_accelerator(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- integrator -------------------------------------------------------------------------------------------------- */
 
-#define LIGHTS {"lightsamplestrategy", VL_OLD_RENAME, "lightsampler"}, KEEP("lightsampler")
-static const vlOldRow path[] = {KEEP("maxdepth"), DROP("rrthreshold"), LIGHTS, BOUNDS, KEEP("regularize"), END};
-static const vlOldRow bdpt[] = {
-    KEEP("maxdepth"), LIGHTS, BOUNDS, KEEP("visualizestrategies"), KEEP("visualizeweights"), KEEP("regularize"), END};
-static const vlOldRow mlt[] = {KEEP("maxdepth"),
-                               KEEP("bootstrapsamples"),
-                               KEEP("chains"),
-                               KEEP("mutationsperpixel"),
-                               KEEP("largestepprobability"),
-                               KEEP("sigma"),
-                               KEEP("regularize"),
-                               END};
-static const vlOldRow sppm[] = {KEEP("maxdepth"),
+#define LIGHTS                                              \
+  {"lightsamplestrategy", VL_OLD_RENAME, "lightsampler"}, { \
+    "lightsampler"                                          \
+  }
+static const vlOldRow path[] = {{"maxdepth"}, {"rrthreshold", VL_OLD_DROP}, LIGHTS, BOUNDS, {"regularize"}, {0}};
+static const vlOldRow bdpt[] = {{"maxdepth"},         LIGHTS,         BOUNDS, {"visualizestrategies"},
+                                {"visualizeweights"}, {"regularize"}, {0}};
+static const vlOldRow mlt[] = {
+    {"maxdepth"}, {"bootstrapsamples"}, {"chains"}, {"mutationsperpixel"}, {"largestepprobability"},
+    {"sigma"},    {"regularize"},       {0}};
+static const vlOldRow sppm[] = {{"maxdepth"},
                                 {"numiterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
                                 {"iterations", VL_OLD_LOSE, "give the sampler's \"pixelsamples\""},
-                                KEEP("photonsperiteration"),
-                                DROP("imagewritefrequency"),
-                                KEEP("radius"),
-                                END};
-static const vlOldRow ao[] = {KEEP("cossample"), DROP("nsamples"), BOUNDS, KEEP("maxdistance"), END};
-static const vlOldRow direct[] = {KEEP("maxdepth"), DROP("strategy"), BOUNDS, END};
+                                {"photonsperiteration"},
+                                {"imagewritefrequency", VL_OLD_DROP},
+                                {"radius"},
+                                {0}};
+static const vlOldRow ao[] = {{"cossample"}, {"nsamples", VL_OLD_DROP}, BOUNDS, {"maxdistance"}, {0}};
+static const vlOldRow direct[] = {{"maxdepth"}, {"strategy", VL_OLD_DROP}, BOUNDS, {0}};
 
 /* pbrt-v3's spatial sampler is nearest to that of the light tree. */
 static bool light_sampler(vlOldFile *file, vlOldStatement *s) {
@@ -211,17 +210,17 @@ static bool light_sampler(vlOldFile *file, vlOldStatement *s) {
 static const char whole_path[] =
     "integrator of direct light has no counterpart: \"path\" is written, which adds "
     "indirect light";
-static const vlOldKind integrators[] = {{"path", "path", path, light_sampler, NULL},
-                                        {"volpath", "volpath", path, light_sampler, NULL},
-                                        {"bdpt", "bdpt", bdpt, light_sampler, NULL},
-                                        {"mlt", "mlt", mlt, NULL, NULL},
-                                        {"sppm", "sppm", sppm, NULL, NULL},
-                                        {"photonmap", "sppm", sppm, NULL, NULL},
+static const vlOldKind integrators[] = {{"path", "path", path, light_sampler},
+                                        {"volpath", "volpath", path, light_sampler},
+                                        {"bdpt", "bdpt", bdpt, light_sampler},
+                                        {"mlt", "mlt", mlt},
+                                        {"sppm", "sppm", sppm},
+                                        {"photonmap", "sppm", sppm},
                                         {"directlighting", "path", direct, NULL, whole_path},
                                         {"whitted", "path", direct, NULL, whole_path},
-                                        {"ao", "ambientocclusion", ao, NULL, NULL},
-                                        {"ambientocclusion", "ambientocclusion", ao, NULL, NULL},
-                                        {NULL, NULL, NULL, NULL, NULL}};
+                                        {"ao", "ambientocclusion", ao},
+                                        {"ambientocclusion", "ambientocclusion", ao},
+                                        {0}};
 
 bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   bool older = vl_text_is(s->word->name, "SurfaceIntegrator");
@@ -233,7 +232,7 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
   if (path_tracer && file->u->subsurface) {
     vlOldKind through = kind ? *kind : integrators[0];
     through.to = "volpath";
-    vlOldKind table[2] = {through, {NULL, NULL, NULL, NULL, NULL}};
+    vlOldKind table[2] = {through, {0}};
     return rewrite(file, s, table, "volpath");
   }
   file->u->plain_path = path_tracer;
@@ -242,13 +241,14 @@ bool vl_old_integrator(vlOldFile *file, vlOldStatement *s) {
 
 /* ---- media ------------------------------------------------------------------------------------------------------- */
 
-#define SUBSTANCE KEEP("preset"), KEEP("sigma_a"), KEEP("sigma_s"), KEEP("g"), KEEP("scale")
-static const vlOldRow homogeneous[] = {SUBSTANCE, KEEP("Le"), END};
-static const vlOldRow grid[] = {SUBSTANCE,  KEEP("density"), KEEP("nx"), KEEP("ny"),
-                                KEEP("nz"), KEEP("p0"),      KEEP("p1"), END};
-static const vlOldKind media[] = {{"homogeneous", "homogeneous", homogeneous, NULL, NULL},
-                                  {"heterogeneous", "uniformgrid", grid, NULL, NULL},
-                                  {NULL, NULL, NULL, NULL, NULL}};
+#define SUBSTANCE                                \
+  {"preset"}, {"sigma_a"}, {"sigma_s"}, {"g"}, { \
+    "scale"                                      \
+  }
+static const vlOldRow homogeneous[] = {SUBSTANCE, {"Le"}, {0}};
+static const vlOldRow grid[] = {SUBSTANCE, {"density"}, {"nx"}, {"ny"}, {"nz"}, {"p0"}, {"p1"}, {0}};
+static const vlOldKind media[] = {
+    {"homogeneous", "homogeneous", homogeneous}, {"heterogeneous", "uniformgrid", grid}, {0}};
 
 bool vl_old_medium(vlOldFile *file, vlOldStatement *s) {
   vlOldParam *type = vl_old_find(s, "type");

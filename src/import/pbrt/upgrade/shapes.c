@@ -1,36 +1,21 @@
 /* import/pbrt/upgrade/shapes.c: Shape. */
-
 #include "base/text.h"
 #include "import/pbrt/upgrade/upgrade.h"
 
-#define END \
-  { NULL, VL_OLD_KEEP, NULL }
-#define ALPHA                                                                                        \
-  {"alpha", VL_OLD_KEEP, NULL}, {"shadowalpha", VL_OLD_LOSE, "\"alpha\" is that of shadows, too"}, { \
-    "discarddegenerateUVs", VL_OLD_DROP, NULL                                                        \
+#define ALPHA                                                                     \
+  {"alpha"}, {"shadowalpha", VL_OLD_LOSE, "\"alpha\" is that of shadows, too"}, { \
+    "discarddegenerateUVs", VL_OLD_DROP                                           \
   }
-#define KEEP(name) \
-  { name, VL_OLD_KEEP, NULL }
 
-static const vlOldRow sphere[] = {KEEP("radius"), KEEP("zmin"), KEEP("zmax"), KEEP("phimax"), ALPHA, END};
-static const vlOldRow disk[] = {KEEP("radius"), KEEP("height"), KEEP("innerradius"), KEEP("phimax"), ALPHA, END};
-static const vlOldRow mesh[] = {
-    KEEP("P"),       KEEP("N"),           KEEP("S"), KEEP("uv"), {"st", VL_OLD_RENAME, "uv"},
-    KEEP("indices"), KEEP("faceIndices"), ALPHA,     END};
-static const vlOldRow ply[] = {KEEP("filename"), ALPHA, END};
-static const vlOldRow loop[] = {
-    KEEP("P"), KEEP("indices"), {"nlevels", VL_OLD_RENAME, "levels"}, KEEP("levels"), KEEP("scheme"), ALPHA, END};
-static const vlOldRow curve[] = {KEEP("P"),
-                                 KEEP("N"),
-                                 KEEP("type"),
-                                 KEEP("basis"),
-                                 KEEP("degree"),
-                                 KEEP("width"),
-                                 KEEP("width0"),
-                                 KEEP("width1"),
-                                 KEEP("splitdepth"),
-                                 ALPHA,
-                                 END};
+static const vlOldRow sphere[] = {{"radius"}, {"zmin"}, {"zmax"}, {"phimax"}, ALPHA, {0}};
+static const vlOldRow disk[] = {{"radius"}, {"height"}, {"innerradius"}, {"phimax"}, ALPHA, {0}};
+static const vlOldRow mesh[] = {{"P"},       {"N"},           {"S"}, {"uv"}, {"st", VL_OLD_RENAME, "uv"},
+                                {"indices"}, {"faceIndices"}, ALPHA, {0}};
+static const vlOldRow ply[] = {{"filename"}, ALPHA, {0}};
+static const vlOldRow loop[] = {{"P"}, {"indices"}, {"nlevels", VL_OLD_RENAME, "levels"}, {"levels"}, {"scheme"},
+                                ALPHA, {0}};
+static const vlOldRow curve[] = {{"P"},      {"N"},      {"type"},       {"basis"}, {"degree"}, {"width"},
+                                 {"width0"}, {"width1"}, {"splitdepth"}, ALPHA,     {0}};
 
 /* uvs were lists of numbers. */
 static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
@@ -44,28 +29,22 @@ static bool mesh_rule(vlOldFile *file, vlOldStatement *s) {
 }
 
 static bool ply_rule(vlOldFile *file, vlOldStatement *s) {
-  vlOldParam *p = vl_old_find(s, "filename");
-  char name[4096];
-  if (!p || !p->strings) return true;
-  if (!vl_old_file_name(file, s->line, p->text[0], name, sizeof name)) return false;
-  if (vl_text_is(name, p->text[0])) return true;
-  vl_old_note(s, "filename is \"%s\"", name);
-  return vl_old_edit(file, p->span[0], "\"%s\"", name);
+  return vl_old_write_file_name(file, s, vl_old_find(s, "filename"));
 }
 
-static const vlOldKind kinds[] = {{"sphere", "sphere", sphere, NULL, NULL},
-                                  {"cylinder", "cylinder", sphere, NULL, NULL},
-                                  {"disk", "disk", disk, NULL, NULL},
-                                  {"trianglemesh", "trianglemesh", mesh, mesh_rule, NULL},
-                                  {"plymesh", "plymesh", ply, ply_rule, NULL},
-                                  {"loopsubdiv", "loopsubdiv", loop, NULL, NULL},
-                                  {"curve", "curve", curve, NULL, NULL},
-                                  {"cone", "trianglemesh", NULL, vl_old_mesh_of_shape, NULL},
-                                  {"paraboloid", "trianglemesh", NULL, vl_old_mesh_of_shape, NULL},
-                                  {"hyperboloid", "trianglemesh", NULL, vl_old_mesh_of_shape, NULL},
-                                  {"heightfield", "trianglemesh", NULL, vl_old_mesh_of_shape, NULL},
-                                  {"bilinearmesh", "bilinearmesh", NULL, NULL, NULL},
-                                  {NULL, NULL, NULL, NULL, NULL}};
+static const vlOldKind kinds[] = {{"sphere", "sphere", sphere},
+                                  {"cylinder", "cylinder", sphere},
+                                  {"disk", "disk", disk},
+                                  {"trianglemesh", "trianglemesh", mesh, mesh_rule},
+                                  {"plymesh", "plymesh", ply, ply_rule},
+                                  {"loopsubdiv", "loopsubdiv", loop},
+                                  {"curve", "curve", curve},
+                                  {"cone", "trianglemesh", NULL, vl_old_mesh_of_shape},
+                                  {"paraboloid", "trianglemesh", NULL, vl_old_mesh_of_shape},
+                                  {"hyperboloid", "trianglemesh", NULL, vl_old_mesh_of_shape},
+                                  {"heightfield", "trianglemesh", NULL, vl_old_mesh_of_shape},
+                                  {"bilinearmesh", "bilinearmesh"},
+                                  {0}};
 
 bool vl_old_shape(vlOldFile *file, vlOldStatement *s) {
   const vlOldKind *kind = vl_old_kind(kinds, s->name[0]);

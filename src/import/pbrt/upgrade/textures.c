@@ -16,49 +16,23 @@ static bool is_noise(vlUpgrade *u, const char *name) {
   return t && t->grey;
 }
 
-#define MAPPING                                                                                  \
-  {"mapping", VL_OLD_KEEP, NULL}, {"uscale", VL_OLD_KEEP, NULL}, {"vscale", VL_OLD_KEEP, NULL},  \
-      {"udelta", VL_OLD_KEEP, NULL}, {"vdelta", VL_OLD_KEEP, NULL}, {"v1", VL_OLD_KEEP, NULL}, { \
-    "v2", VL_OLD_KEEP, NULL                                                                      \
+#define MAPPING                                                          \
+  {"mapping"}, {"uscale"}, {"vscale"}, {"udelta"}, {"vdelta"}, {"v1"}, { \
+    "v2"                                                                 \
   }
-#define END \
-  { NULL, VL_OLD_KEEP, NULL }
 
-static const vlOldRow constant[] = {{"value", VL_OLD_KEEP, NULL}, END};
-static const vlOldRow scale[] = {{"tex", VL_OLD_KEEP, NULL}, {"scale", VL_OLD_KEEP, NULL}, END};
-static const vlOldRow mix[] = {
-    {"tex1", VL_OLD_KEEP, NULL}, {"tex2", VL_OLD_KEEP, NULL}, {"amount", VL_OLD_KEEP, NULL}, END};
-static const vlOldRow bilerp[] = {{"v00", VL_OLD_KEEP, NULL},
-                                  {"v01", VL_OLD_KEEP, NULL},
-                                  {"v10", VL_OLD_KEEP, NULL},
-                                  {"v11", VL_OLD_KEEP, NULL},
-                                  MAPPING,
-                                  END};
-static const vlOldRow imagemap[] = {{"filename", VL_OLD_KEEP, NULL},
-                                    {"wrap", VL_OLD_KEEP, NULL},
-                                    {"maxanisotropy", VL_OLD_KEEP, NULL},
-                                    {"scale", VL_OLD_KEEP, NULL},
-                                    {"invert", VL_OLD_KEEP, NULL},
-                                    {"encoding", VL_OLD_KEEP, NULL},
-                                    {"filter", VL_OLD_KEEP, NULL},
-                                    MAPPING,
-                                    END};
-static const vlOldRow uv[] = {MAPPING, END};
-static const vlOldRow checkerboard[] = {{"dimension", VL_OLD_KEEP, NULL},
-                                        {"tex1", VL_OLD_KEEP, NULL},
-                                        {"tex2", VL_OLD_KEEP, NULL},
-                                        {"aamode", VL_OLD_DROP, NULL},
-                                        MAPPING,
-                                        END};
-static const vlOldRow dots[] = {{"inside", VL_OLD_KEEP, NULL}, {"outside", VL_OLD_KEEP, NULL}, MAPPING, END};
-static const vlOldRow noise[] = {{"octaves", VL_OLD_KEEP, NULL}, {"roughness", VL_OLD_KEEP, NULL}, END};
-static const vlOldRow marble[] = {{"octaves", VL_OLD_KEEP, NULL},
-                                  {"roughness", VL_OLD_KEEP, NULL},
-                                  {"scale", VL_OLD_KEEP, NULL},
-                                  {"variation", VL_OLD_KEEP, NULL},
-                                  END};
-static const vlOldRow ptex[] = {
-    {"filename", VL_OLD_KEEP, NULL}, {"encoding", VL_OLD_KEEP, NULL}, {"scale", VL_OLD_KEEP, NULL}, END};
+static const vlOldRow constant[] = {{"value"}, {0}};
+static const vlOldRow scale[] = {{"tex"}, {"scale"}, {0}};
+static const vlOldRow mix[] = {{"tex1"}, {"tex2"}, {"amount"}, {0}};
+static const vlOldRow bilerp[] = {{"v00"}, {"v01"}, {"v10"}, {"v11"}, MAPPING, {0}};
+static const vlOldRow imagemap[] = {{"filename"}, {"wrap"},   {"maxanisotropy"}, {"scale"}, {"invert"},
+                                    {"encoding"}, {"filter"}, MAPPING,           {0}};
+static const vlOldRow uv[] = {MAPPING, {0}};
+static const vlOldRow checkerboard[] = {{"dimension"}, {"tex1"}, {"tex2"}, {"aamode", VL_OLD_DROP}, MAPPING, {0}};
+static const vlOldRow dots[] = {{"inside"}, {"outside"}, MAPPING, {0}};
+static const vlOldRow noise[] = {{"octaves"}, {"roughness"}, {0}};
+static const vlOldRow marble[] = {{"octaves"}, {"roughness"}, {"scale"}, {"variation"}, {0}};
+static const vlOldRow ptex[] = {{"filename"}, {"encoding"}, {"scale"}, {0}};
 
 static bool is_spectrum(const vlOldStatement *s) {
   return !vl_text_is(s->name[1], "float");
@@ -150,12 +124,7 @@ static bool image_rule(vlOldFile *file, vlOldStatement *s) {
               : vl_old_add(file, s, "\"string encoding\" \"gamma %s\"", vl_old_text(gamma->number[0], text))))
       return false;
   }
-  char path[4096];
-  if (!name || !name->strings) return true;
-  if (!vl_old_file_name(file, s->line, name->text[0], path, sizeof path)) return false;
-  if (vl_text_is(path, name->text[0])) return true;
-  vl_old_note(s, "filename is \"%s\"", path);
-  return vl_old_edit(file, name->span[0], "\"%s\"", path);
+  return vl_old_write_file_name(file, s, name);
 }
 
 /* Red is u, green v: the corners of a bilinear interpolation. */
@@ -197,20 +166,20 @@ static bool marble_rule(vlOldFile *file, vlOldStatement *s) {
 
 /* The share of a mix is a number in both; as a texture it is a float texture in both. */
 static const vlOldKind kinds[] = {
-    {"constant", "constant", constant, NULL, NULL},
-    {"scale", "scale", scale, scale_rule, NULL},
-    {"mix", "mix", mix, NULL, NULL},
-    {"bilerp", "bilerp", bilerp, NULL, NULL},
-    {"imagemap", "imagemap", imagemap, image_rule, NULL},
-    {"uv", "bilerp", uv, uv_rule, NULL},
-    {"checkerboard", "checkerboard", checkerboard, NULL, NULL},
-    {"dots", "dots", dots, NULL, NULL},
-    {"fbm", "fbm", noise, noise_rule, NULL},
-    {"wrinkled", "wrinkled", noise, noise_rule, NULL},
-    {"windy", "windy", NULL, noise_rule, NULL},
-    {"marble", "marble", marble, marble_rule, NULL},
+    {"constant", "constant", constant},
+    {"scale", "scale", scale, scale_rule},
+    {"mix", "mix", mix},
+    {"bilerp", "bilerp", bilerp},
+    {"imagemap", "imagemap", imagemap, image_rule},
+    {"uv", "bilerp", uv, uv_rule},
+    {"checkerboard", "checkerboard", checkerboard},
+    {"dots", "dots", dots},
+    {"fbm", "fbm", noise, noise_rule},
+    {"wrinkled", "wrinkled", noise, noise_rule},
+    {"windy", "windy", NULL, noise_rule},
+    {"marble", "marble", marble, marble_rule},
     {"ptex", "ptex", ptex, image_rule, "velo does not read Ptex files: bake it into an image"},
-    {NULL, NULL, NULL, NULL, NULL}};
+    {0}};
 
 /* ---- float copies ------------------------------------------------------------------------------------------------ */
 

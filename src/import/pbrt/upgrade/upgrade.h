@@ -200,7 +200,7 @@ double vl_old_number(vlOldStatement *s, const char *name, double otherwise);
 const char *vl_old_text(double value, char text[32]);
 
 typedef enum vlOldAction {
-  VL_OLD_KEEP,
+  VL_OLD_KEEP, /* of a row that gives a name only */
   VL_OLD_RENAME,
   VL_OLD_DROP,   /* has no meaning in pbrt-v4 */
   VL_OLD_LOSE,   /* has one that pbrt-v4 does not have */
@@ -215,7 +215,8 @@ typedef struct vlOldRow {
  * with parameters that no row names. */
 bool vl_old_rows(vlOldFile *file, vlOldStatement *s, const vlOldRow *rows, vlOldAction others);
 
-/* A kind of one directive. */
+/* A kind of one directive. A row of a table ends with its last member that is not null. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 typedef struct vlOldKind {
   const char *from, *to;
   const vlOldRow *rows;
@@ -253,6 +254,8 @@ vlOldRule vl_old_mesh_of_shape;
 
 /* What the new scene says for a file that the old one names. False after an error. */
 bool vl_old_file_name(vlOldFile *file, uint32_t line, const char *name, char *result, size_t size);
+/* The same for the file that a parameter names (null: none), and says so. */
+bool vl_old_write_file_name(vlOldFile *file, vlOldStatement *s, const vlOldParam *p);
 /* Includes: upgrades the file and names the new one. */
 vlOldRule vl_old_include;
 /* Upgrades one file. *changed: its text differs; *text is the new one, freed by the caller. */

@@ -28,9 +28,33 @@ static void follow_bumps(const world *w, const vlMaterialDef *m, shade_record *a
   at->shading_normal = face_forward(normalize(n), at->shading_normal);
 }
 
+/* The tangents of a mesh's vertices, where it has them, take the place of dp/du. */
+static void follow_tangents(shade_record *at) {
+  const vlShapeDef *def = at->where->def;
+  double weights[3] = {1 - at->a - at->b, at->a, at->b};
+  vector sum = make_vector(0, 0, 0);
+  for (uint32_t k = 0; k < 3; k++) {
+    const float *own = def->tangents + 3 * (size_t)def->indices[3 * (size_t)at->what->face + k];
+    sum = add(sum, scale(weights[k], from_floats(own)));
+  }
+  at->tangent = transform_vector(&at->where->world_from_shape, sum);
+}
+
+/* The principled material's own map is a texture. Its y grows along the sign of the vertices times n x t. */
+static void bend_principled(const world *w, const vlPrincipledDef *d, shade_record *at) {
+  const vlShapeDef *def = at->where->def;
+  vlSpectrumInput map = {.texture = d->normal};
+  spectrum t = spectrum_at(w, &map, VL_PARAMETER_UNBOUNDED, at, &(wavelengths){.rgb = true});
+  double factor = (double)d->normal_scale, sign = (double)def->tangent_signs[def->indices[3 * (size_t)at->what->face]];
+  vector n = make_vector(factor * (2 * t.c[0] - 1), sign * factor * (2 * t.c[1] - 1), 2 * t.c[2] - 1);
+  at->shading_normal = normalize(from_local(make_frame(at->shading_normal, at->tangent), n));
+}
+
 /* A texel of a normal map has a normal's coordinates, from -1 to 1, in the frame of the tangent and the normal. */
 void bend_normal(const world *w, const vlMaterialDef *m, shade_record *at) {
+  if (at->where->def->tangents) follow_tangents(at);
   if (m->displacement.texture.index) follow_bumps(w, m, at);
+  if (m->kind == VL_MATERIAL_PRINCIPLED && m->principled.normal.index) bend_principled(w, &m->principled, at);
   if (!m->normal_map) return;
   uint32_t i = 0;
   while (vl_scene_material(w->scene, (vlMaterialId){i + 1}) != m) i++;

@@ -2,7 +2,6 @@
  * turns to face each ray: the ray meets it where, in the plane across the ray, the foot of the perpendicular to the
  * curve lies within half of the width. All of this happens in the space of the shape. */
 #include "more.h"
-#include "program/program.h"
 
 enum { DEGREE = 5 };
 
@@ -152,14 +151,4 @@ void curve_surface(const world *w, const primitive *p, double u, double v, shade
   record->u = u;
   record->v = v;
   record->area_density = 0; /* curves do not emit */
-}
-
-/* The control points' box, and half of the width around it. */
-void bound_curve(const world *w, primitive *p) {
-  curve c = curve_of(w, p);
-  double reach = fmax(c.width[0], c.width[1]) / 2;
-  for (int k = 0; k < 32; k++) {
-    vector corner = make_vector(k & 1 ? reach : -reach, k & 2 ? reach : -reach, k & 4 ? reach : -reach);
-    include_point(p, transform_point(&w->placements[p->placement].world_from_shape, add(c.p[k / 8], corner)));
-  }
 }

@@ -5,12 +5,6 @@
 static const vlSpectrum eumelanin = {.kind = VL_SPECTRUM_RGB, .scale = 1, .rgb = {0.419f, 0.697f, 1.37f}};
 static const vlSpectrum pheomelanin = {.kind = VL_SPECTRUM_RGB, .scale = 1, .rgb = {0.187f, 0.4f, 1.05f}};
 
-static spectrum pigment(const world *w, vlFloatInput amount, const vlSpectrum *one, const shade_record *at,
-                        const wavelengths *lambda) {
-  spectrum absorption = color_at(find_color(one, VL_PARAMETER_UNBOUNDED), lambda);
-  return scaled(fmax(0, number_at(w, amount, at)), absorption);
-}
-
 /* The coefficient that gives many hairs together a colour (Chiang et al. 2016, eq. 9). */
 static spectrum absorption_of_hair_color(spectrum looks, double beta_n) {
   double n = beta_n;
@@ -24,8 +18,10 @@ static spectrum hair_absorption(const world *w, const vlMaterialDef *m, const sh
   const vlHairDef *hair = &m->hair;
   if (hair->color == VL_HAIR_SIGMA_A) return spectrum_at(w, &hair->sigma_a, VL_PARAMETER_UNBOUNDED, at, lambda);
   if (hair->color == VL_HAIR_REFLECTANCE) return absorption_of_hair_color(reflectance_at(w, m, at, lambda), beta_n);
-  return plus(pigment(w, hair->eumelanin, &eumelanin, at, lambda),
-              pigment(w, hair->pheomelanin, &pheomelanin, at, lambda));
+  spectrum brown = color_at(find_color(&eumelanin, VL_PARAMETER_UNBOUNDED), lambda);
+  spectrum red = color_at(find_color(&pheomelanin, VL_PARAMETER_UNBOUNDED), lambda);
+  return plus(scaled(fmax(0, number_at(w, hair->eumelanin, at)), brown),
+              scaled(fmax(0, number_at(w, hair->pheomelanin, at)), red));
 }
 
 static void make_hair(const world *w, const vlMaterialDef *m, const shade_record *at, const wavelengths *lambda,
@@ -60,18 +56,15 @@ static void make_coated(const world *w, const vlMaterialDef *m, const shade_reco
   b->k = scaled(1 / b->ior, b->k);
 }
 
-static spectrum scaled_share(double scale, spectrum share) {
-  for (int i = 0; i < CHANNELS; i++) share.c[i] = clamp(scale * share.c[i], 0, 1);
-  return share;
-}
-
 static void make_diffuse_transmission(const world *w, const vlMaterialDef *m, const shade_record *at,
                                       const wavelengths *lambda, bsdf *b) {
   b->more.kind = MORE_TRANSLUCENT;
   spectrum r = spectrum_at(w, &m->reflectance, VL_PARAMETER_ALBEDO, at, lambda);
   spectrum t = spectrum_at(w, &m->transmittance, VL_PARAMETER_ALBEDO, at, lambda);
-  b->reflectance = scaled_share((double)m->scale, r);
-  b->more.transmittance = scaled_share((double)m->scale, t);
+  for (int i = 0; i < CHANNELS; i++) {
+    b->reflectance.c[i] = clamp((double)m->scale * r.c[i], 0, 1);
+    b->more.transmittance.c[i] = clamp((double)m->scale * t.c[i], 0, 1);
+  }
 }
 
 static void make_thin_glass(const vlMaterialDef *m, wavelengths *lambda, bsdf *b) {

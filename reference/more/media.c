@@ -80,12 +80,11 @@ static double majorant(const vlMediumDef *m, const wavelengths *lambda) {
 
 /* The ray in the box's own coordinates, and the part of it that is inside. */
 static ray in_box(const vlMediumDef *m, ray r, double distance) {
-  matrix world_from_medium = load_matrix(m->world_from_medium), medium_from_world = invert(&world_from_medium);
   vector size = subtract(from_floats(m->high), from_floats(m->low));
-  vector o = subtract(transform_point(&medium_from_world, r.origin), from_floats(m->low));
-  vector d = transform_vector(&medium_from_world, r.direction);
-  ray q = {make_vector(o.x / size.x, o.y / size.y, o.z / size.z), make_vector(d.x / size.x, d.y / size.y, d.z / size.z),
-           0, distance, 0};
+  matrix medium_from_box = {{size.x, 0, 0}, {0, size.y, 0}, {0, 0, size.z}, from_floats(m->low)};
+  matrix world_from_box = multiply(load_matrix(m->world_from_medium), medium_from_box);
+  matrix box_from_world = invert(&world_from_box);
+  ray q = {transform_point(&box_from_world, r.origin), transform_vector(&box_from_world, r.direction), 0, distance, 0};
   double from[3] = {q.origin.x, q.origin.y, q.origin.z}, way[3] = {q.direction.x, q.direction.y, q.direction.z};
   for (int i = 0; i < 3; i++) {
     q.t_min = fmax(q.t_min, fmin(-from[i] / way[i], (1 - from[i]) / way[i]));

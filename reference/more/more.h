@@ -20,7 +20,6 @@ spectrum coefficient(const vlMediumDef *m, const vlSpectrum *sigma, const wavele
 uint32_t more_corners(const vlShapeDef *def);
 bool meet_more(const world *w, const primitive *p, ray r, meeting *m);
 void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record);
-void bound_more(const world *w, primitive *p);
 
 /* The point at the share t of the way from a to b. */
 static inline vector mix(vector a, vector b, double t) {
@@ -30,7 +29,6 @@ static inline vector mix(vector a, vector b, double t) {
 /* more/curve.c */
 bool meet_curve(const world *w, const primitive *p, ray r, meeting *m);
 void curve_surface(const world *w, const primitive *p, double u, double v, shade_record *record);
-void bound_curve(const world *w, primitive *p);
 
 /* more/materials.c: a material becomes a BSDF of kind BSDF_MORE; directions are local. Sampling chooses wi, and the
  * weight of a specular one; of others the core asks for value and density. */

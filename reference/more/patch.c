@@ -1,7 +1,6 @@
 /* more/patch.c: bilinear patches, p(u, v) between four corners p00, p10, p01, p11 (pbrt book 6.6); and the choice
  * between patches and curves. */
 #include "more.h"
-#include "program/program.h"
 
 /* The roots of a u^2 + b u + c in [0, 1], without cancellation. */
 static int roots_in_unit_interval(double a, double b, double c, double u[2]) {
@@ -43,41 +42,42 @@ static bool meet_patch(const primitive *p, ray r, meeting *m) {
   return found;
 }
 
+/* What lies at (u, v) between four corners, and how it changes along u and along v. */
+static void between_corners(const vector corner[4], double u, double v, vector *at, vector *along_u, vector *along_v) {
+  vector left = mix(corner[0], corner[2], v), right = mix(corner[1], corner[3], v);
+  *at = mix(left, right, u);
+  *along_u = subtract(right, left);
+  *along_v = subtract(mix(corner[2], corner[3], u), mix(corner[0], corner[1], u));
+}
+
 /* Texture coordinates: (u, v) itself, or the corners' coordinates blended. The tangent points along the first one. */
-static void patch_coordinates(const vlShapeDef *def, const uint32_t *face, const double *weights, double u, double v,
-                              vector dpdu, vector dpdv, shade_record *record) {
+static void patch_coordinates(const vlShapeDef *def, const uint32_t *face, double u, double v, vector dpdu, vector dpdv,
+                              shade_record *record) {
   record->u = u;
   record->v = v;
   record->tangent = dpdu;
   if (!def->uvs) return;
-  double uv[4][2], du[2], dv[2];
+  vector corner[4], uv, du, dv;
   for (int k = 0; k < 4; k++) {
-    for (int i = 0; i < 2; i++) uv[k][i] = (double)def->uvs[2 * (size_t)face[k] + (size_t)i];
+    const float *own = def->uvs + 2 * (size_t)face[k];
+    corner[k] = make_vector((double)own[0], (double)own[1], 0);
   }
-  for (int i = 0; i < 2; i++) {
-    du[i] = (1 - v) * (uv[1][i] - uv[0][i]) + v * (uv[3][i] - uv[2][i]);
-    dv[i] = (1 - u) * (uv[2][i] - uv[0][i]) + u * (uv[3][i] - uv[1][i]);
-  }
-  record->u = record->v = 0;
-  for (int k = 0; k < 4; k++) {
-    record->u += weights[k] * uv[k][0];
-    record->v += weights[k] * uv[k][1];
-  }
-  double d = du[0] * dv[1] - du[1] * dv[0];
-  if (fabs(d) > 1e-12) record->tangent = scale(1 / d, subtract(scale(dv[1], dpdu), scale(du[1], dpdv)));
+  between_corners(corner, u, v, &uv, &du, &dv);
+  record->u = uv.x;
+  record->v = uv.y;
+  double d = du.x * dv.y - du.y * dv.x;
+  if (fabs(d) > 1e-12) record->tangent = scale(1 / d, subtract(scale(dv.y, dpdu), scale(du.y, dpdv)));
 }
 
 static void patch_surface(const world *w, const primitive *p, double u, double v, shade_record *record) {
   const placement *where = &w->placements[p->placement];
   const uint32_t *face = where->def->indices + 4 * (size_t)p->face;
   double weights[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
-  vector left = mix(p->corner[0], p->corner[2], v), right = mix(p->corner[1], p->corner[3], v);
-  vector low = mix(p->corner[0], p->corner[1], u), high = mix(p->corner[2], p->corner[3], u);
-  vector dpdu = subtract(right, left), dpdv = subtract(high, low);
+  vector dpdu, dpdv;
+  between_corners(p->corner, u, v, &record->point, &dpdu, &dpdv);
   vector by_edges = cross(dpdu, dpdv);
-  record->point = mix(left, right, u);
   mesh_normals(where, face, weights, 4, by_edges, record);
-  patch_coordinates(where->def, face, weights, u, v, dpdu, dpdv, record);
+  patch_coordinates(where->def, face, u, v, dpdu, dpdv, record);
   double area = length(by_edges);
   record->area_density = area > 0 ? 1 / area : 0;
 }
@@ -97,9 +97,4 @@ bool meet_more(const world *w, const primitive *p, ray r, meeting *m) {
 void more_surface(const world *w, const primitive *p, double a, double b, shade_record *record) {
   if (is_curve(w, p)) curve_surface(w, p, a, b, record);
   if (!is_curve(w, p)) patch_surface(w, p, a, b, record);
-}
-
-void bound_more(const world *w, primitive *p) {
-  if (is_curve(w, p)) bound_curve(w, p);
-  for (int k = 0; k < 4; k++) include_point(p, p->corner[k]);
 }

@@ -10,8 +10,6 @@ struct node {
 
 enum { LEAF = 4, DEPTH = 64 };
 
-/* ---- building ---------------------------------------------------------------------------------------------------- */
-
 static vector least(vector a, vector b) {
   return make_vector(fmin(a.x, b.x), fmin(a.y, b.y), fmin(a.z, b.z));
 }
@@ -19,9 +17,21 @@ static vector greatest(vector a, vector b) {
   return make_vector(fmax(a.x, b.x), fmax(a.y, b.y), fmax(a.z, b.z));
 }
 
-void include_point(primitive *p, vector point) {
+static void include_point(primitive *p, vector point) {
   p->low = least(p->low, point);
   p->high = greatest(p->high, point);
+}
+
+static void widen(primitive *p, double by) {
+  p->low = subtract(p->low, make_vector(by, by, by));
+  p->high = add(p->high, make_vector(by, by, by));
+}
+
+/* Half of a curve's width, as long as any direction of the shape can become in the world. */
+static double reach_of_curve(const placement *where, uint32_t face) {
+  const float *width = where->def->widths + 2 * (size_t)face;
+  const matrix *m = &where->world_from_shape;
+  return (double)fmaxf(width[0], width[1]) / 2 * (length(m->x) + length(m->y) + length(m->z));
 }
 
 /* The box of what moves: around the corners of its box at many times, and half a step more for what is between. */
@@ -41,9 +51,7 @@ static void bound_motion(const motion *moves, primitive *p) {
       before = now;
     }
   }
-  vector more = make_vector(longest / 2, longest / 2, longest / 2);
-  p->low = subtract(p->low, more);
-  p->high = add(p->high, more);
+  widen(p, longest / 2);
 }
 
 /* The box around the corners; of a quadric those of a cube around the whole of it, taken to the world. */
@@ -58,8 +66,9 @@ static void bound_primitive(const world *w, primitive *p) {
     vector corner = make_vector(k & 1 ? size : -size, k & 2 ? size : -size, k & 4 ? size : -size);
     include_point(p, transform_point(&where->world_from_shape, corner));
   }
-  for (int k = 0; k < 3 && def->kind == VL_SHAPE_TRIANGLES; k++) include_point(p, p->corner[k]);
-  if (def->kind != VL_SHAPE_TRIANGLES && !is_quadric(def->kind)) bound_more(w, p);
+  uint32_t corners = def->kind == VL_SHAPE_TRIANGLES ? 3 : more_corners(def);
+  for (uint32_t k = 0; k < corners; k++) include_point(p, p->corner[k]);
+  if (def->kind == VL_SHAPE_CURVES) widen(p, reach_of_curve(where, p->face));
   if (where->moves) bound_motion(where->moves, p);
 }
 
@@ -102,8 +111,6 @@ void make_accelerator(world *w) {
   build(w, 0, 0, w->primitive_count, 0);
   w->radius = length(subtract(w->nodes[0].high, w->nodes[0].low)) / 2;
 }
-
-/* ---- rays -------------------------------------------------------------------------------------------------------- */
 
 /* The ray is inside the box where it is between all three pairs of planes. A little slack covers rounding. */
 static bool meets_box(const node *n, const ray *r) {

@@ -2,11 +2,14 @@
 #include "program.h"
 #include "refuse.h"
 
-static bool check_shape(const vlShapeDef *def, vlError *error) {
+static bool check_shape(const vlScene *scene, const vlShapeDef *def, vlError *error) {
   if (def->centers) return refuse(error, def->source, "many spheres as one shape");
   if (def->positions_close) return refuse(error, def->source, "a moving mesh");
   if (def->displacement.texture.index) return refuse(error, def->source, "a displaced mesh");
-  if (def->tangents) return refuse(error, def->source, "a mesh with tangents");
+  if (def->tangents && def->group.index) return refuse(error, def->source, "a mesh with tangents in a group");
+  const vlMaterialDef *m = vl_scene_material(scene, def->material);
+  if (m && m->kind == VL_MATERIAL_PRINCIPLED && m->principled.normal.index && !def->tangent_signs)
+    return refuse(error, def->source, "a principled material's normal map over a mesh without tangents");
   if (def->one_sided) return refuse(error, def->source, "a mesh with one side");
   return true;
 }
@@ -15,9 +18,11 @@ static bool check_principled(const vlMaterialDef *def, vlError *error) {
   const vlPrincipledDef *d = &def->principled;
   bool clear = d->transmission.texture.index || d->transmission.value > 0;
   if (d->iridescence.texture.index || d->iridescence.value > 0) return refuse(error, def->source, "a thin film");
-  if (d->normal.index || d->clearcoat_normal.index || d->anisotropy_rotation.texture.index ||
-      d->anisotropy_rotation.value != 0)
-    return refuse(error, def->source, "a principled material's own normals or tangents");
+  if (d->anisotropy_rotation.texture.index || d->anisotropy_rotation.value != 0)
+    return refuse(error, def->source, "a turned anisotropy");
+  bool coat = d->clearcoat.texture.index || d->clearcoat.value > 0;
+  if (coat && (d->normal.index || d->clearcoat_normal.index))
+    return refuse(error, def->source, "a clear coat with another normal than what is under it");
   return !clear || d->thin_walled || refuse(error, def->source, "a principled solid that transmits light");
 }
 
@@ -99,7 +104,7 @@ bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlE
   const vlShapeDef *shape;
   for (uint32_t i = 1; (shape = vl_scene_shape(scene, (vlShapeId){i})); i++) {
     const vlEmissionDef *emission = vl_scene_emission(scene, shape->emission);
-    if (!check_shape(shape, error) || (emission && !check_emission(emission, shape, error))) return false;
+    if (!check_shape(scene, shape, error) || (emission && !check_emission(emission, shape, error))) return false;
   }
   const vlTextureDef *texture;
   for (uint32_t i = 1; (texture = vl_scene_texture(scene, (vlTextureId){i})); i++) {

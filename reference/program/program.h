@@ -7,6 +7,5 @@
  * thing that it does not have. */
 bool check_scene(vlContext *context, vlScene *scene, const vlCamera *camera, vlError *error);
 
-/* accelerator.c: makes the tree of boxes; makes a box contain a point. */
+/* accelerator.c: makes the tree of boxes. */
 void make_accelerator(world *w);
-void include_point(primitive *p, vector point);

@@ -1,7 +1,10 @@
 #!/usr/bin/python3
 """The reference renderer against velo, and against closed forms: two programs that share only the description of the scene.
 Images are compared by z of the whole image and of blocks of 8 x 8 pixels, from the standard errors of both."""
+import base64
+import json
 import os
+import struct
 import subprocess
 import sys
 
@@ -130,6 +133,41 @@ def principled_sheets_agree_with_velo():
     for color in ("rgb", "spectral"):
         z = worst_z(render_velo(path, "velo_sheet.exr", 2048, "--color", color), render(path, "sheet.exr", 1024, "--color", color))
         assert z < 4.5, "%s: z = %.1f" % (color, z)
+
+
+def write_gltf(path, texture):
+    """Two boards with a normal map; texture coordinates of the second one are mirrored."""
+    positions = [(-1.1, -.5, 0), (-.1, -.5, 0), (-.1, .5, .2), (-1.1, .5, 0), (.1, -.5, 0), (1.1, -.5, 0), (1.1, .5, .2), (.1, .5, 0)]
+    uvs = [(0, 1), (.4, 1), (.4, .6), (0, .6), (.4, 1), (0, 1), (0, .6), (.4, .6)]
+    data = b"".join(struct.pack("<3f", *p) for p in positions) + struct.pack("<3f", 0, 0, 1) * 8
+    data += b"".join(struct.pack("<2f", *p) for p in uvs) + struct.pack("<12H", 0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7)
+    views = [{"buffer": 0, "byteOffset": o, "byteLength": n} for o, n in ((0, 96), (96, 96), (192, 64), (256, 24))]
+    kinds = [("VEC3", 8, 5126), ("VEC3", 8, 5126), ("VEC2", 8, 5126), ("SCALAR", 12, 5123)]
+    file = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 400, "color": [1, .9, .7]}]}},
+        "nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 3]},
+                  {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [.8, 1.5, 1.2]}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": .6, "aspectRatio": 1.333, "znear": .1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [.8, .5, .3, 1], "metallicFactor": .3, "roughnessFactor": .5},
+                       "normalTexture": {"index": 0, "scale": .8}, "doubleSided": True}],
+        "textures": [{"source": 0}], "images": [{"uri": texture}],
+        "accessors": [{"bufferView": i, "componentType": c, "count": n, "type": t, **({"min": [-1.1, -.5, 0], "max": [1.1, .5, .2]} if i == 0 else {})} for i, (t, n, c) in enumerate(kinds)],
+        "bufferViews": views, "buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}],
+    }
+    with open(path, "w", encoding="utf-8") as out:
+        out.write(json.dumps(file))
+
+
+@case
+def a_normal_map_of_a_gltf_file_agrees_with_velo():
+    path = os.path.join(WORK, "normals.gltf")
+    write_gltf(path, os.path.relpath(os.path.join(SOURCE, "scenes/features/textures/bricks_normal.png"), WORK))
+    size = ("--resolution", "32x24")
+    z = worst_z(render_velo(path, "velo_normals.exr", 1024, *size), render(path, "normals.exr", 512, *size))
+    assert z < 4.5, "z = %.1f" % z
 
 
 @case

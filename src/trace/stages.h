@@ -1,7 +1,9 @@
-/* trace/stages.h: the stages of a bounce and the arrays that they exchange; private to the hot files of trace.
+/* trace/stages.h: the stages of a bounce and the arrays that they exchange; private to the hot files of trace. A stage
+ * is a function: what it reads is const, what it writes is not.
  *
- *   vlPaths (rays) -> ids -> sorted by material -> vlSurface -> vlShade (frame, wo, BSDF parameters)
- *          -> light samples -> shadow rays -> radiance;  BSDF samples -> vlPaths of the next bounce
+ *   vlPaths (rays) -> vlHits -> vlVertices: sorted by material, with vlSurface and vlShade (frame, wo, BSDF parameters)
+ *   vlVertices -> vlLightSamples -> vlBsdfValues -> vlShadowRays -> radiance
+ *   vlVertices -> vlBsdfSamples -> vlPaths of the next bounce
  *
  * Every array has VL_ROW_SIZE elements. Elements from n on hold old data, which is safe to read: numbers are finite,
  * and indices are valid. */
@@ -88,7 +90,6 @@ typedef struct vlShade {
   VL_ROW float tx[VL_ROW_SIZE], ty[VL_ROW_SIZE], tz[VL_ROW_SIZE]; /* frame: tangent; bitangent = n x t */
   VL_ROW float bx[VL_ROW_SIZE], by[VL_ROW_SIZE], bz[VL_ROW_SIZE];
   VL_ROW float wo[3][VL_ROW_SIZE]; /* local */
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local; first the light sample's direction, later the BSDF sample's */
   VL_ROW float reflectance[4][VL_ROW_SIZE], eta[4][VL_ROW_SIZE], k[4][VL_ROW_SIZE];
   /* Only set if vlWorld.by_channel. tint_rgb: factor of each channel of linear sRGB on light that crosses the surface
    * (the fourth row is not used). tint: the factor at the path's wavelengths, after all that the path has crossed. */
@@ -98,10 +99,33 @@ typedef struct vlShade {
   VL_ROW float own[VL_BSDF_ROWS][VL_ROW_SIZE]; /* rows that depend on the kind; trace/bsdf/bsdf.h names them */
   VL_ROW uint32_t seed[VL_ROW_SIZE];
   const vlMeasured *measured[VL_ROW_SIZE];
-  VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
-  VL_ROW uint32_t flags[VL_ROW_SIZE];
-  VL_ROW float u0[VL_ROW_SIZE], u1[VL_ROW_SIZE], u2[VL_ROW_SIZE];
 } vlShade;
+
+/* The paths of a bounce that have hit surfaces, sorted by material. */
+typedef struct vlVertices {
+  vlPaths paths; /* the rays that have arrived */
+  vlHits hits;
+  vlSurface surface;
+  vlShade shade;
+} vlVertices;
+
+/* The BSDFs for given directions; trace/bsdf/bsdf.h says what value and pdf are. */
+typedef struct vlBsdfValues {
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local */
+  VL_ROW float value[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
+} vlBsdfValues;
+
+/* Directions that the BSDFs have sampled. */
+typedef struct vlBsdfSamples {
+  VL_ROW float wi[3][VL_ROW_SIZE]; /* local */
+  VL_ROW float weight[4][VL_ROW_SIZE], pdf[VL_ROW_SIZE], eta_scale[VL_ROW_SIZE];
+  VL_ROW uint32_t flags[VL_ROW_SIZE];
+} vlBsdfSamples;
+
+/* Random numbers of a stage, by lane. */
+typedef struct vlNumbers {
+  VL_ROW float u0[VL_ROW_SIZE], u1[VL_ROW_SIZE], u2[VL_ROW_SIZE];
+} vlNumbers;
 
 typedef struct vlLightSamples {
   VL_ROW uint32_t light[VL_ROW_SIZE]; /* index of the chosen light; VL_INNER: not chosen yet */
@@ -148,7 +172,7 @@ typedef struct vlVolumeRows {
 
 typedef struct vlVolumeScratch {
   vlPaths scattered;    /* paths that scatter in media */
-  vlVolumeRows a, b, c; /* data of the paths vlTraceScratch.a, vlTraceScratch.b and `scattered` */
+  vlVolumeRows a, b, c; /* data of vlTraceScratch.rays, of its vertices and of `scattered` */
   VL_ROW uint8_t event[VL_ROW_SIZE];
   VL_ROW float t[VL_ROW_SIZE];        /* distance along the ray at which a medium scatters */
   VL_ROW float odds[VL_ROW_SIZE];     /* by lane: vlFlight.odds of the path's last flight */
@@ -184,16 +208,25 @@ typedef struct vlSubsurfaceScratch {
 /* vl_trace_scratch_size says how large it is for a world, and vl_trace_scratch_begin sets the pointers to what the
  * world needs of the rest. */
 struct vlTraceScratch {
-  vlPaths a, b;
-  vlHits hits_a, hits_b;
-  vlSurface surface;
-  vlCorners corners;
-  vlShade shade;
+  /* From one bounce to the next. */
+  vlPaths rays;
+  vlHits hits;
+  /* Within a bounce. */
+  vlVertices at;
   vlLightSamples light;
+  union {                  /* one after the other */
+    vlBsdfValues values;   /* for light samples */
+    vlBsdfSamples samples; /* for the next rays */
+  };
   vlShadowRays shadow;
-  vlOccluders occluders;                                     /* of the shadow rays so far */
-  VL_ROW float textures[VL_TEXTURE_ROWS][VL_MATERIAL_LANES]; /* stack of rows for nested textures */
   VL_ROW uint32_t order[VL_ROW_SIZE];
+  /* Within a stage. */
+  vlNumbers numbers;
+  vlCorners corners;                                         /* while vertices are shaded */
+  VL_ROW float textures[VL_TEXTURE_ROWS][VL_MATERIAL_LANES]; /* stack of rows for nested textures */
+  /* From batch to batch. */
+  vlOccluders occluders; /* of the shadow rays so far */
+  /* As long as a path. */
   /* By lane of the batch, only if vlWorld.by_channel: transmittance of the path so far through all that attenuates by
    * channel, for each channel of linear sRGB. vl_channels_at gives the transmittance at a wavelength from these three;
    * beta includes it. */
@@ -204,8 +237,7 @@ struct vlTraceScratch {
   vlSubsurfaceScratch *subsurface;       /* null: the world has no subsurface materials */
 };
 
-/* A batch in progress. The paths and hits of a bounce arrive in s->a and s->hits_a, are sorted into s->b and
- * s->hits_b, and continue in s->a. */
+/* A batch in progress. A bounce takes its rays from s->rays, and leaves there the rays of the next. */
 typedef struct vlTracing {
   const vlWorld *world;
   const vlTraceDef *def;
@@ -218,32 +250,36 @@ typedef struct vlTracing {
 
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
-/* Finds the closest hits of the n rays of a, and writes ids and materials to hits_a. Rays pass through interfaces; for
- * a mixed material, one of its materials is chosen. camera: the rays are camera rays and have the batch's t_min and
+/* Finds the closest hits of n rays: ids and materials. Rays pass through interfaces, whose emission is added; for a
+ * mixed material, one of its materials is chosen. camera: the rays are camera rays and have the batch's t_min and
  * t_max. */
-void vl_stage_hits(vlTracing *t, uint32_t n, bool camera);
-/* Finds the closest hits of the n rays of a, and writes only ids to hits_a. camera: the rays have the batch's t_min
- * and t_max. */
-void vl_closest_hits(vlTracing *t, uint32_t n, bool camera);
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *rays, vlHits *hits);
+/* Finds the closest hits of n rays, and writes only ids. camera: the rays have the batch's t_min and t_max. */
+void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *rays, vlHits *hits);
 /* Traces lane i's ray again from t_min on, and writes the hit to h. t_max: the batch's row, or null for no limit. The
  * ray is counted. */
 void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, float t_min, const float *t_max);
 /* Returns the material of a hit. For a mixed material, chooses one of its materials. */
 uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i);
-/* Adds the radiance of the lights that the rays of a hit: infinite lights and emissive surfaces. */
-void vl_stage_emission(vlTracing *t, uint32_t n);
+/* Adds the radiance of the lights that the n rays hit: infinite lights and emissive surfaces. */
+void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits);
 /* Sets the batch's alpha from its camera rays' hits. */
-void vl_stage_alpha(vlTracing *t);
-/* Copies the paths of a with a hit to b, sorted by material. Returns their number. */
-uint32_t vl_stage_sort(vlTracing *t, uint32_t n);
-/* Computes surfaces, materials and shading frames of the n sorted hits. */
-void vl_stage_shade(vlTracing *t, uint32_t n);
+void vl_stage_alpha(const vlTracing *t, const vlHits *hits);
+/* Copies the rays with a hit to vertices, sorted by material. Returns their number. order: by vertex, its ray. */
+uint32_t vl_stage_sort(const vlWorld *world, uint32_t n, const vlPaths *rays, const vlHits *hits, uint32_t *order,
+                       vlVertices *at);
+/* Computes surfaces, materials and shading frames of n vertices that are sorted. Dispersive materials leave their paths
+ * only one wavelength. */
+void vl_stage_shade(const vlTracing *t, uint32_t n, vlVertices *at);
 /* Copies path order[k] of a to path k of b. */
 void vl_permute_paths(const vlPaths *a, vlPaths *b, const uint32_t *order, uint32_t n);
+/* The rays that go on: of the rays of `to`, ray i from path i of p, keeps those in `order`, which rises, and completes
+ * them by what remains the same along a path. */
+void vl_gather_rays(const vlPaths *p, const uint32_t *order, uint32_t n, vlPaths *to);
 /* Regularisation, where the world's definition enables it: makes lobes rougher for those of the n shaded lanes whose
  * paths have been scattered by a non-specular lobe (regularize.hot.c), and records such scattering by lane of the
  * batch. */
-void vl_stage_regularize(vlTracing *t, uint32_t n);
+void vl_stage_regularize(const vlTracing *t, uint32_t n, vlVertices *at);
 static inline void vl_note_scattered(const vlTracing *t, uint32_t lane) {
   if (t->world->def.regularize) t->s->scattered[lane] = 1;
 }
@@ -252,23 +288,32 @@ static inline void vl_passed_start(const vlTracing *t, uint32_t n) {
   for (int c = 0; t->world->by_channel && c < 3; c++)
     for (uint32_t i = 0; i < n; i++) t->s->passed[c][i] = 1.0f;
 }
-/* vlTraceScratch.passed of surface lane i's path if it goes on in direction wi; wi_z is wi's cosine to the normal. Only
+/* vlTraceScratch.passed of the path of vertex i if it goes on in direction wi; wi_z is wi's cosine to the normal. Only
  * for worlds with vlWorld.by_channel. */
-static inline void vl_passed_on(const vlTraceScratch *s, uint32_t i, float wi_z, float passed[3]) {
-  bool crosses = (s->shade.wo[2][i] < 0.0f) != (wi_z < 0.0f);
-  for (int c = 0; c < 3; c++) passed[c] = s->passed[c][s->b.lane[i]] * (crosses ? s->shade.tint_rgb[c][i] : 1.0f);
+static inline void vl_passed_on(const vlTracing *t, const vlVertices *at, uint32_t i, float wi_z, float passed[3]) {
+  bool crosses = (at->shade.wo[2][i] < 0.0f) != (wi_z < 0.0f);
+  for (int c = 0; c < 3; c++)
+    passed[c] = t->s->passed[c][at->paths.lane[i]] * (crosses ? at->shade.tint_rgb[c][i] : 1.0f);
 }
-/* The path of surface lane i goes on in direction shade.wi. */
-static inline void vl_passed_go_on(const vlTracing *t, uint32_t i) {
+/* The path of vertex i goes on in a direction with this cosine to the normal. */
+static inline void vl_passed_go_on(const vlTracing *t, const vlVertices *at, uint32_t i, float wi_z) {
   float passed[3];
   if (!t->world->by_channel) return;
-  vl_passed_on(t->s, i, t->s->shade.wi[2][i], passed);
-  for (int c = 0; c < 3; c++) t->s->passed[c][t->s->b.lane[i]] = passed[c];
+  vl_passed_on(t, at, i, wi_z, passed);
+  for (int c = 0; c < 3; c++) t->s->passed[c][at->paths.lane[i]] = passed[c];
 }
-/* Evaluates the BSDFs of the n shaded lanes for the directions of their light samples, to shade.value and shade.pdf. */
-void vl_stage_light_bsdf(vlTracing *t, uint32_t n);
-/* Takes one light sample for each of n paths on s->surface, with the random numbers of `dimension`. */
-void vl_stage_light_samples(vlTracing *t, uint32_t n, const vlPaths *p, uint32_t dimension);
+/* The directions w (world space) of n vertices in their local frames. */
+void vl_stage_local(uint32_t n, const vlVertices *at, const float *wx, const float *wy, const float *wz,
+                    float wi[3][VL_ROW_SIZE]);
+/* Evaluates the BSDFs of n vertices for wo (local) and to->wi. */
+void vl_stage_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at, const float wo[3][VL_ROW_SIZE],
+                   vlBsdfValues *to);
+/* The same for the vertices' wo and the directions of their light samples. */
+void vl_stage_light_bsdf(const vlTracing *t, uint32_t n, const vlVertices *at, const vlLightSamples *light,
+                         vlBsdfValues *to);
+/* Takes one light sample for each of n paths on their surfaces, with the random numbers of `dimension`. */
+void vl_stage_light_samples(const vlTracing *t, uint32_t n, const vlPaths *p, const vlSurface *surface,
+                            uint32_t dimension, vlLightSamples *light);
 /* Russian roulette: the probability that a path goes on after bounce `depth` (from 1). carried: its largest throughput
  * times its eta scale (pbrt book 14.2.3). The efficiency 1 / (variance * time) is greatest where the probability is
  * proportional to the throughput (Bolin and Meyer 1997). The factor depends on the scene: it grows with the light that
@@ -280,13 +325,16 @@ static inline float vl_roulette_survival(float carried, uint32_t depth) {
   float survive = factor * carried;
   return depth > bounces_without && survive < 1.0f ? survive : 1.0f;
 }
-/* Samples the BSDFs of the n lanes of b and writes the continuing paths into a: path k was lane s->order[k]. Returns
+/* Finds which of the shadow rays of the paths p are occluded. */
+void vl_stage_occluded(vlTracing *t, uint32_t count, const vlPaths *p, vlShadowRays *shadow);
+/* Samples the BSDFs of n vertices, and writes the rays that go on to `next`: ray k leaves vertex order[k]. Returns
  * their number. depth: the number of this bounce, from 1. */
-uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
+uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension, const vlVertices *at,
+                          vlBsdfSamples *samples, uint32_t *order, vlPaths *next);
 void vl_path_tracer(vlTracing *t);
 void vl_volume_tracer(
     vlTracing *t); /* in volume.hot.c: path tracer with participating media and subsurface materials */
-/* Subsurface scattering for the n paths of a; path k was just sampled at lane s->order[k] of the surfaces. A path that
+/* Subsurface scattering for the n rays; ray k was just sampled at vertex s->order[k]. A path that
  * entered a subsurface material is moved to an exit point, where lights are sampled, or ends. Returns the number of
  * all paths that go on. */
 uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth);
@@ -308,9 +356,10 @@ void vl_stage_crossings(const vlWorld *world, uint32_t n, const vlRays *rays, co
                         vlCrossings *x);
 /* Computes the footprints' axes in uv. The surfaces must be computed already. */
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *surface);
-/* Evaluates textures, bump maps, normal maps, shading frames, wo and BSDF parameters for lanes [first, last), which
- * have the same material. */
-void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s);
+/* Evaluates textures, bump maps, normal maps and BSDF parameters for lanes [first, last), which have the same
+ * material. */
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlVertices *at,
+                       vlTraceScratch *s);
 void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *surface, vlShade *shade);
 /* The lanes that have chosen a light. Lanes with the same light are adjacent as far as possible, so they can be sampled
  * together. */

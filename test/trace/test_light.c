@@ -121,18 +121,19 @@ static uint32_t sample_all(Fixture *f, Cell *cells, unsigned seed) {
   uint32_t done = 0;
   for (; done < TRIES; done += VL_BATCH) {
     for (uint32_t i = 0; i < VL_BATCH; i++) {
-      s->surface.px[i] = f->p.x;
-      s->surface.py[i] = f->p.y;
-      s->surface.pz[i] = f->p.z;
-      s->surface.side[i] = f->side;
-      s->surface.nx[i] = f->n.x;
-      s->surface.ny[i] = f->n.y;
-      s->surface.nz[i] = f->n.z;
-      s->shade.u0[i] = stat_float(&rng);
-      s->shade.u1[i] = stat_float(&rng);
-      s->shade.u2[i] = stat_float(&rng);
+      s->at.surface.px[i] = f->p.x;
+      s->at.surface.py[i] = f->p.y;
+      s->at.surface.pz[i] = f->p.z;
+      s->at.surface.side[i] = f->side;
+      s->at.surface.nx[i] = f->n.x;
+      s->at.surface.ny[i] = f->n.y;
+      s->at.surface.nz[i] = f->n.z;
+      s->numbers.u0[i] = stat_float(&rng);
+      s->numbers.u1[i] = stat_float(&rng);
+      s->numbers.u2[i] = stat_float(&rng);
     }
-    vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u1, s->shade.u2, s->shade.u0, &s->light);
+    vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u1, s->numbers.u2, s->numbers.u0,
+                    &s->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &s->light;
       if (!(l->pdf[i] > 0) || l->delta[i]) continue;

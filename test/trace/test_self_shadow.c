@@ -387,16 +387,17 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       stat_direction(rng, away);
       vlVec3 p = to_float((double[3]){s->touch[0] + distance * away[0], s->touch[1] + distance * away[1],
                                       s->touch[2] + distance * away[2]});
-      t->surface.px[i] = p.x, t->surface.py[i] = p.y, t->surface.pz[i] = p.z;
-      t->surface.no_cosine[i] = 1;
-      t->surface.nx[i] = 0, t->surface.ny[i] = 0, t->surface.nz[i] = 1;
-      t->shade.u0[i] = stat_float(rng), t->shade.u1[i] = stat_float(rng), t->shade.u2[i] = stat_float(rng);
+      t->at.surface.px[i] = p.x, t->at.surface.py[i] = p.y, t->at.surface.pz[i] = p.z;
+      t->at.surface.no_cosine[i] = 1;
+      t->at.surface.nx[i] = 0, t->at.surface.ny[i] = 0, t->at.surface.nz[i] = 1;
+      t->numbers.u0[i] = stat_float(rng), t->numbers.u1[i] = stat_float(rng), t->numbers.u2[i] = stat_float(rng);
     }
-    vl_stage_lights(s->world, VL_BATCH, &t->b, &t->surface, t->shade.u1, t->shade.u2, t->shade.u0, &t->light);
+    vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, t->numbers.u1, t->numbers.u2, t->numbers.u0,
+                    &t->light);
     for (uint32_t i = 0; i < VL_BATCH; i++) {
       const vlLightSamples *l = &t->light;
       if (!(l->pdf[i] > 0)) continue;
-      vlVec3 o = vl_lane3(t->surface.px, t->surface.py, t->surface.pz, i);
+      vlVec3 o = vl_lane3(t->at.surface.px, t->at.surface.py, t->at.surface.pz, i);
       if (in_plane(s, o)) continue;
       vlVec3 d = vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
       float end = media ? vl_length(d) * VL_SHADOW_END : VL_ONE_MINUS_EPSILON;

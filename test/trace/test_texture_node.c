@@ -100,7 +100,7 @@ static void add_kinds(Fixture *f, statRng *rng) {
 static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextureQuery *queries,
                                vlTextureCorner *corners) {
   vlTraceScratch *s = f->scratch;
-  vlSurface *at = &s->surface;
+  vlSurface *at = &s->at.surface;
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     float x = stat_float(rng), y = (1 - x) * stat_float(rng);
     vlVec3 n = vl_vec3(2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1, 2 * stat_float(rng) - 1);
@@ -110,11 +110,11 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextu
     at->u[i] = 3 * x, at->v[i] = y;
     at->px[i] = x, at->py[i] = y, at->pz[i] = 0;
     at->gx[i] = unit.x, at->gy[i] = unit.y, at->gz[i] = unit.z;
-    s->b.dz[i] = -1;
-    s->hits_b.shape[i] = shape, s->hits_b.prim[i] = 0;
+    s->at.paths.dz[i] = -1;
+    s->at.hits.shape[i] = shape, s->at.hits.prim[i] = 0;
     for (int k = 0; k < 9; k++) s->corners.p[k][i] = k == 3 || k == 7 ? 1.0f : 0.0f;
   }
-  return (vlTextureRun){.world = f->world, .s = s, .paths = &s->b, .surface = at};
+  return (vlTextureRun){.world = f->world, .at = &s->at, .s = s};
 }
 
 static void same_bits(void **state) {
@@ -202,11 +202,12 @@ static void assert_light(Fixture *f, float expected) {
   vlTraceScratch *s = f->scratch;
   statRng rng = stat_rng(5);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
-    s->surface.px[i] = s->surface.py[i] = 0.2f, s->surface.pz[i] = 1;
-    s->surface.nx[i] = s->surface.ny[i] = 0, s->surface.nz[i] = -1;
-    s->shade.u0[i] = stat_float(&rng), s->shade.u1[i] = stat_float(&rng), s->shade.u2[i] = stat_float(&rng);
+    s->at.surface.px[i] = s->at.surface.py[i] = 0.2f, s->at.surface.pz[i] = 1;
+    s->at.surface.nx[i] = s->at.surface.ny[i] = 0, s->at.surface.nz[i] = -1;
+    s->numbers.u0[i] = stat_float(&rng), s->numbers.u1[i] = stat_float(&rng), s->numbers.u2[i] = stat_float(&rng);
   }
-  vl_stage_lights(f->world, VL_BATCH, &s->b, &s->surface, s->shade.u0, s->shade.u1, s->shade.u2, &s->light);
+  vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u0, s->numbers.u1, s->numbers.u2,
+                  &s->light);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
     assert_true(s->light.pdf[i] > 0);
     float radiance = s->light.radiance[0][i] * s->light.pdf[i];
@@ -273,9 +274,9 @@ static void mix_by_vertex_color(void **state) {
     vl_scene_add_shape(f.scene, &def);
     build(&f);
     vlTraceScratch *s = f.scratch;
-    s->a.ox[0] = 0.2f, s->a.oy[0] = 0.3f, s->a.oz[0] = 5, s->a.dz[0] = -1;
-    s->hits_a.shape[0] = s->hits_a.prim[0] = 0, s->hits_a.instance[0] = VL_NONE;
-    uint32_t m = vl_hit_material(f.world, &s->a, &s->hits_a, 0);
+    s->rays.ox[0] = 0.2f, s->rays.oy[0] = 0.3f, s->rays.oz[0] = 5, s->rays.dz[0] = -1;
+    s->hits.shape[0] = s->hits.prim[0] = 0, s->hits.instance[0] = VL_NONE;
+    uint32_t m = vl_hit_material(f.world, &s->rays, &s->hits, 0);
     assert_int_equal(f.world->materials.items[m].kind, second ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
     end(&f);
   }

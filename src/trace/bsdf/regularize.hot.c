@@ -5,13 +5,12 @@
 #include "trace/stages.h"
 #include "velo/material.h"
 
-void vl_stage_regularize(vlTracing *t, uint32_t n) {
+void vl_stage_regularize(const vlTracing *t, uint32_t n, vlVertices *at) {
   if (!t->world->def.regularize) return;
-  vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
+  vlShade *sh = &at->shade;
   for (uint32_t i = 0; i < n; i++) {
-    if (!s->scattered[s->b.lane[i]]) continue;
-    const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[i]];
+    if (!t->s->scattered[at->paths.lane[i]]) continue;
+    const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
     if (!(m->traits & VL_MATERIAL_ROUGH)) continue;
     sh->alpha_x[i] = vl_ggx_widened(sh->alpha_x[i]);
     sh->alpha_y[i] = vl_ggx_widened(sh->alpha_y[i]);

@@ -87,7 +87,7 @@ static double exact_distance(const vlWorld *world, const vlGroundTruthBatch *bat
 /* ---- albedo ------------------------------------------------------------------------------------------------------ */
 
 static void keep_frames(vlGroundTruthScratch *s, uint32_t n, bool back) {
-  vlSurface *f = &s->trace.surface;
+  vlSurface *f = &s->trace.at.surface;
   float *rows[6] = {f->nx, f->ny, f->nz, f->ux, f->uy, f->uz};
   for (int k = 0; k < 6; k++)
     for (uint32_t i = 0; i < n; i++) {
@@ -113,10 +113,10 @@ static inline float albedo_at(const vlWorldMaterial *m, const vlShade *sh, float
 static void add_albedo(const vlWorld *world, const vlGroundTruthDef *def, uint32_t set, uint32_t n, vlTraceScratch *s,
                        vlGroundTruthBatch *batch) {
   for (uint32_t i = 0; i < n; i++) {
-    const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
-    uint32_t lane = s->b.lane[i];
+    const vlWorldMaterial *m = &world->materials.items[s->at.hits.material[i]];
+    uint32_t lane = s->at.paths.lane[i];
     for (int c = 0; c < 4; c++) {
-      float a = albedo_at(m, &s->shade, s->b.lambda[c][i], c, i);
+      float a = albedo_at(m, &s->at.shade, s->at.paths.lambda[c][i], c, i);
       for (int k = 0; k < 3; k++) batch->albedo[k][lane] += a * def->weight[set][c][k];
     }
   }
@@ -130,13 +130,13 @@ static void shade(const vlWorld *world, const vlGroundTruthDef *def, uint32_t n,
     if (set) keep_frames(scratch, n, true);
     for (int c = 0; c < 4; c++)
       for (uint32_t i = 0; i < n; i++) {
-        s->b.lambda[c][i] = def->lambda[set][c];
-        s->b.beta[c][i] = 1.0f;
+        s->at.paths.lambda[c][i] = def->lambda[set][c];
+        s->at.paths.beta[c][i] = 1.0f;
       }
     for (uint32_t first = 0, last; first < n; first = last) {
-      uint32_t material = s->hits_b.material[first];
-      for (last = first + 1; last < n && s->hits_b.material[last] == material;) last++;
-      vl_stage_material(world, first, last, material, s);
+      uint32_t material = s->at.hits.material[first];
+      for (last = first + 1; last < n && s->at.hits.material[last] == material;) last++;
+      vl_stage_material(world, first, last, material, &s->at, s);
     }
     if (def->albedo) add_albedo(world, def, set, n, s, batch);
   }
@@ -169,9 +169,9 @@ static void start(const vlGroundTruthDef *def, vlGroundTruthBatch *batch, vlPath
 
 /* Copies those lanes of a that have a hit to b, without gaps. */
 static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s, vlGroundTruthBatch *batch) {
-  const vlPaths *a = &s->a;
-  vlPaths *b = &s->b;
-  vlHits *h = &s->hits_a, *g = &s->hits_b;
+  const vlPaths *a = &s->rays;
+  vlPaths *b = &s->at.paths;
+  vlHits *h = &s->hits, *g = &s->at.hits;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
@@ -201,8 +201,8 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
 static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
                   vlGroundTruthBatch *batch) {
   vlTraceScratch *s = &scratch->trace;
-  start(def, batch, &s->a);
-  s->a.time = s->b.time = world->moves ? scratch->time : NULL;
+  start(def, batch, &s->rays);
+  s->rays.time = s->at.paths.time = world->moves ? scratch->time : NULL;
   for (uint32_t i = 0; world->moves && i < VL_ROW_SIZE; i++) scratch->time[i] = batch->time;
   if (batch->n == 0) return;
   /* The radiance of the rays is not used. */
@@ -210,15 +210,15 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, batch->n, true);
+  vl_stage_hits(&tracing, batch->n, true, &s->rays, &s->hits);
   uint32_t n = gather_hits(world, batch->n, s, batch);
   if (n == 0) return;
-  vl_stage_surface(world, n, &s->b, &s->hits_b, &s->corners, &s->surface);
+  vl_stage_surface(world, n, &s->at.paths, &s->at.hits, &s->corners, &s->at.surface);
   if (def->shading || def->albedo) shade(world, def, n, scratch, batch);
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = s->b.lane[i];
-    batch->distance[lane] = def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->hits_b, i, f->t[i]);
+    uint32_t lane = s->at.paths.lane[i];
+    batch->distance[lane] = def->coarse ? f->t[i] : exact_distance(world, batch, lane, &s->at.hits, i, f->t[i]);
     batch->n_shading[0][lane] = f->nx[i];
     batch->n_shading[1][lane] = f->ny[i];
     batch->n_shading[2][lane] = f->nz[i];
@@ -235,7 +235,7 @@ static void trace(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTru
 static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTruthScratch *scratch,
                  const vlGroundTruthHits *to) {
   vlTraceScratch *s = &scratch->trace;
-  vlPaths *p = &s->a;
+  vlPaths *p = &s->rays;
   uint32_t n = to->n;
   if (n == 0) return;
   for (uint32_t i = 0; i < n; i++) {
@@ -259,8 +259,8 @@ static void hits(const vlWorld *world, const vlGroundTruthDef *def, vlGroundTrut
   for (int c = 0; c < 4; c++) rays.radiance[c] = scratch->light[c];
   vlTraceDef trace_def = {.isa = def->isa, .pixel_spread = def->pixel_spread, .pixel_width = def->pixel_width};
   vlTracing tracing = {.world = world, .def = &trace_def, .s = s, .batch = &rays};
-  vl_stage_hits(&tracing, n, true);
-  const vlHits *h = &s->hits_a;
+  vl_stage_hits(&tracing, n, true, &s->rays, &s->hits);
+  const vlHits *h = &s->hits;
   for (uint32_t i = 0; i < n; i++) {
     bool hit = h->shape[i] != VL_NONE;
     to->object[i] = hit ? h->shape[i] + 1 : 0;

@@ -6,7 +6,7 @@
 
 /* Computes the sigma_a with which a volume of hair has the given reflectance (Chiang et al. 2016, equation 9). */
 static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   for (uint32_t i = r->first; i < r->last; i++) {
     float b = vl_clamp(rows[VL_H_BETA_N][i], 0.0f, 1.0f), b2 = b * b;
     float d = 5.969f - 0.215f * b + 2.532f * b2 - 10.73f * b2 * b + 5.574f * b2 * b2 + 0.245f * b2 * b2 * b;
@@ -19,7 +19,7 @@ static void from_reflectance(vlTextureRun *r, float (*rows)[VL_ROW_SIZE]) {
 
 void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldHair *h = m->own;
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   float(*rows)[VL_ROW_SIZE] = shade->own;
   vl_texture_float(r, h->beta_m, rows[VL_H_BETA_M]);
   vl_texture_float(r, h->beta_n, rows[VL_H_BETA_N]);
@@ -27,7 +27,7 @@ void vl_stage_hair(vlTextureRun *r, const vlWorldMaterial *m) {
   vl_texture_float(r, h->eta, shade->eta_s);
   for (uint32_t i = r->first; i < r->last; i++) {
     rows[VL_H_ALPHA][i] *= 0.017453292f;
-    rows[VL_H_ACROSS][i] = vl_clamp(2.0f * r->surface->v[i] - 1.0f, -1.0f, 1.0f);
+    rows[VL_H_ACROSS][i] = vl_clamp(2.0f * r->at->surface.v[i] - 1.0f, -1.0f, 1.0f);
     shade->eta_s[i] = vl_clamp(shade->eta_s[i], 1.0001f, 10.0f);
   }
   if (h->sigma_a >= 0) vl_rows_spectrum(r, h->sigma_a, rows + VL_H_SIGMA_A);

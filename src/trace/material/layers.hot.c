@@ -5,17 +5,17 @@
 
 /* A seed for each hit, from the pixel, its sample and the ray. */
 static void seeds(vlTextureRun *r) {
-  const vlPaths *p = r->paths;
+  const vlPaths *p = &r->at->paths;
   for (uint32_t i = r->first; i < r->last; i++) {
     uint32_t pixel = vl_hash3((uint32_t)p->px[i], (uint32_t)p->py[i], p->index[i]);
     uint32_t ray = vl_hash3(vl_float_bits(p->dx[i]), vl_float_bits(p->dy[i]), vl_float_bits(p->dz[i]));
-    r->s->shade.seed[i] = vl_hash3(pixel, ray, vl_float_bits(p->ox[i]));
+    r->at->shade.seed[i] = vl_hash3(pixel, ray, vl_float_bits(p->ox[i]));
   }
 }
 
 void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldLayers *l = m->own;
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   float(*rows)[VL_ROW_SIZE] = shade->own;
   vl_rows_albedo(r, l->albedo, 1.0f, rows + VL_L_ALBEDO);
   vl_texture_float(r, l->thickness, rows[VL_L_THICKNESS]);
@@ -45,7 +45,7 @@ void vl_stage_layers(vlTextureRun *r, const vlWorldMaterial *m) {
 }
 
 void vl_stage_translucent(vlTextureRun *r, const vlWorldMaterial *m) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   vl_rows_albedo(r, m->transmittance, m->scale, shade->own + VL_T_TRANSMITTANCE);
   for (int c = 0; c < 4; c++)
     for (uint32_t i = r->first; i < r->last; i++)

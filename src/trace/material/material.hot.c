@@ -19,9 +19,7 @@ static vlVec3 facing(vlVec3 n, vlVec3 side) {
 }
 
 /* Computes dndu and dndv of the interpolated normals of lane i's triangle: 0 without normals or uv. */
-static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
-  const vlCorners *c = &s->corners;
-  vlSurface *f = &s->surface;
+static void triangle_normal_slopes(const vlCorners *c, vlSurface *f, uint32_t i) {
   vlVec3 p[3], n[3];
   for (int k = 0; k < 3; k++) {
     p[k] = vl_lane3(c->p[3 * k], c->p[3 * k + 1], c->p[3 * k + 2], i);
@@ -51,7 +49,7 @@ static void triangle_normal_slopes(vlTraceScratch *s, uint32_t i) {
 /* Bump mapping: the surface p + h n has the derivatives dpdu + h' n + h dndu, and likewise in v; h' by finite
  * differences (pbrt book 10.5.3). */
 static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
-  vlSurface *f = &r->s->surface;
+  vlSurface *f = &r->at->surface;
   float *h = vl_texture_row(r), *hu = vl_texture_row(r), *hv = vl_texture_row(r), *step = vl_texture_row(r);
   float *su = vl_texture_row(r), *sv = vl_texture_row(r), *x = vl_texture_row(r), *y = vl_texture_row(r),
         *z = vl_texture_row(r);
@@ -83,7 +81,8 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
   vl_texture_float(r, node, hv);
   r->shift_u = NULL;
   for (uint32_t i = r->first; i < r->last; i++) {
-    if (r->world->shapes.items[r->s->hits_b.shape[i]].kind == VL_SHAPE_TRIANGLES) triangle_normal_slopes(r->s, i);
+    if (r->world->shapes.items[r->at->hits.shape[i]].kind == VL_SHAPE_TRIANGLES)
+      triangle_normal_slopes(&r->s->corners, f, i);
     vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]);
     vlVec3 du = vl_add(vl_vec3(f->ux[i], f->uy[i], f->uz[i]), vl_mul(n, (hu[i] - h[i]) / step[i]));
     vlVec3 dv = vl_add(vl_vec3(f->vx[i], f->vy[i], f->vz[i]), vl_mul(n, (hv[i] - h[i]) / step[i]));
@@ -98,7 +97,7 @@ static void bump(vlTextureRun *r, int32_t node) { /* uses VL_BUMP_ROWS rows */
 }
 
 static void normal_map(vlTextureRun *r, int32_t image) {
-  vlSurface *f = &r->s->surface;
+  vlSurface *f = &r->at->surface;
   const vlMipmap *mip = r->world->images.items[image].mipmap;
   if (mip->channels < 3) return;
   for (uint32_t i = r->first; i < r->last; i++) {
@@ -116,13 +115,13 @@ static void normal_map(vlTextureRun *r, int32_t image) {
 /* ---- parameters -------------------------------------------------------------------------------------------------- */
 
 static void reflectance(vlTextureRun *r, const vlWorldMaterial *m) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   if (m->reflectance < 0) return;
   vl_rows_albedo(r, m->reflectance, 1.0f, shade->reflectance);
 }
 
 static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   if (!m->use_reflectance) {
     vl_rows_spectrum(r, m->eta, shade->eta);
     vl_rows_spectrum(r, m->k, shade->k);
@@ -138,12 +137,12 @@ static void metal(vlTextureRun *r, const vlWorldMaterial *m) {
 }
 
 static void alphas(vlTextureRun *r, const vlWorldMaterial *m) {
-  vl_row_alpha(r, m, m->u_roughness, r->s->shade.alpha_x);
-  vl_row_alpha(r, m, m->v_roughness, r->s->shade.alpha_y);
+  vl_row_alpha(r, m, m->u_roughness, r->at->shade.alpha_x);
+  vl_row_alpha(r, m, m->v_roughness, r->at->shade.alpha_y);
 }
 
 static void index_of_refraction(vlTextureRun *r, const vlWorldMaterial *m) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   if (m->dispersive) vl_rows_spectrum(r, m->eta, shade->eta);
   for (uint32_t i = r->first; i < r->last; i++) shade->eta_s[i] = m->dispersive ? shade->eta[0][i] : m->eta_s;
 }
@@ -173,7 +172,7 @@ void vl_parameters_coat(vlTextureRun *r, const vlWorldMaterial *m) {
   reflectance(r, m);
   alphas(r, m);
   index_of_refraction(r, m);
-  for (uint32_t i = r->first; i < r->last; i++) r->s->shade.coat[i] = m->coat;
+  for (uint32_t i = r->first; i < r->last; i++) r->at->shade.coat[i] = m->coat;
 }
 
 void vl_parameters_layered(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -195,7 +194,7 @@ void vl_parameters_hair(vlTextureRun *r, const vlWorldMaterial *m) {
 }
 
 void vl_parameters_measured(vlTextureRun *r, const vlWorldMaterial *m) {
-  for (uint32_t i = r->first; i < r->last; i++) r->s->shade.measured[i] = m->measured;
+  for (uint32_t i = r->first; i < r->last; i++) r->at->shade.measured[i] = m->measured;
 }
 
 void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
@@ -207,7 +206,7 @@ void vl_parameters_principled(vlTextureRun *r, const vlWorldMaterial *m) {
  * tint_i after it, for all that the path has crossed so far. At a wavelength the factor is the ratio of the two, so
  * that the product over a path is the transmittance of the whole path. */
 static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   if (!m->principled || !m->principled->by_channel) {
     for (int c = 0; c < 4; c++)
       for (uint32_t i = r->first; i < r->last; i++) {
@@ -222,12 +221,12 @@ static void tints(vlTextureRun *r, const vlWorldMaterial *m) {
   for (uint32_t i = r->first; i < r->last; i++) {
     float before[3], after[3];
     for (int k = 0; k < 3; k++) {
-      before[k] = r->s->passed[k][r->paths->lane[i]];
+      before[k] = r->s->passed[k][r->at->paths.lane[i]];
       after[k] = before[k] * shade->tint_rgb[k][i];
     }
     for (int c = 0; c < 4; c++) {
-      float whole = vl_channels_at(before, r->paths->lambda[c][i]);
-      shade->tint[c][i] = whole > 0.0f ? vl_channels_at(after, r->paths->lambda[c][i]) / whole : 0.0f;
+      float whole = vl_channels_at(before, r->at->paths.lambda[c][i]);
+      shade->tint[c][i] = whole > 0.0f ? vl_channels_at(after, r->at->paths.lambda[c][i]) / whole : 0.0f;
     }
   }
 }
@@ -256,17 +255,18 @@ static void evaluate(vlTextureRun *r, const vlWorldMaterial *m) {
   if (r->world->by_channel) tints(r, m);
 }
 
-void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlTraceScratch *s) {
+void vl_stage_material(const vlWorld *world, uint32_t first, uint32_t last, uint32_t material, vlVertices *at,
+                       vlTraceScratch *s) {
   const vlWorldMaterial *m = &world->materials.items[material];
-  for (uint32_t i = first; m->no_cosine && i < last; i++) s->surface.no_cosine[i] = 1.0f;
-  for (uint32_t i = first; m->one_sided && i < last; i++) s->surface.side[i] = 1.0f;
-  vlTextureRun r = {.world = world, .s = s, .paths = &s->b, .surface = &s->surface, .last = first};
+  for (uint32_t i = first; m->no_cosine && i < last; i++) at->surface.no_cosine[i] = 1.0f;
+  for (uint32_t i = first; m->one_sided && i < last; i++) at->surface.side[i] = 1.0f;
+  vlTextureRun r = {.world = world, .at = at, .s = s, .last = first};
   while (r.last < last) {
     r.first = r.last;
     r.last = last - r.first < VL_MATERIAL_LANES ? last : r.first + VL_MATERIAL_LANES;
     evaluate(&r, m);
   }
-  if (m->dispersive) follow_hero(&s->b, first, last);
+  if (m->dispersive) follow_hero(&at->paths, first, last);
 }
 
 void vl_stage_frames(uint32_t n, const vlPaths *paths, vlSurface *f, vlShade *shade) {

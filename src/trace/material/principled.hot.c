@@ -16,7 +16,7 @@ static void share(vlTextureRun *r, int32_t node, float *row) {
 
 /* The normal of a tangent-space normal map. Its green axis is along dpdv, as in glTF (up in the image). */
 static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float scale, uint32_t i) {
-  const vlSurface *f = &r->s->surface;
+  const vlSurface *f = &r->at->surface;
   vlTexel t = vl_texture_image(node, r->world->images.items[node->image].mipmap, vl_texture_point_of(r, node, i));
   vlVec3 local = vl_normalize(vl_vec3(scale * (2 * t.c[0] - 1), scale * (2 * t.c[1] - 1), 2 * t.c[2] - 1));
   vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]),
@@ -35,8 +35,8 @@ static bool is_map(const vlTextureRun *r, int32_t node) {
 /* The normals of base and coat. The coat has the interpolated vertex normal unless it has its own map; it stays in
  * world space until the frames are computed. */
 static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
-  vlSurface *f = &r->s->surface;
-  float(*rows)[VL_ROW_SIZE] = r->s->shade.own;
+  vlSurface *f = &r->at->surface;
+  float(*rows)[VL_ROW_SIZE] = r->at->shade.own;
   if (p->has_coat) {
     bool map = is_map(r, p->coat_normal);
     for (uint32_t i = r->first; i < r->last; i++) {
@@ -57,7 +57,7 @@ static void normals(vlTextureRun *r, const vlWorldPrincipled *p) {
 
 /* Rotates dpdu around the normal. The result is the tangent of the anisotropic microfacets. */
 static void turn_tangent(vlTextureRun *r, const float *angle) {
-  vlSurface *f = &r->s->surface;
+  vlSurface *f = &r->at->surface;
   for (uint32_t i = r->first; i < r->last; i++) {
     vlSinCos a = vl_sincos(angle[i]);
     vlVec3 n = vl_vec3(f->nx[i], f->ny[i], f->nz[i]), u = vl_vec3(f->ux[i], f->uy[i], f->uz[i]);
@@ -101,7 +101,7 @@ static void layers(vlTextureRun *r, const vlWorldPrincipled *p, float (*rows)[VL
 
 void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldPrincipled *p = m->principled;
-  vlShade *shade = &r->s->shade;
+  vlShade *shade = &r->at->shade;
   float(*rows)[VL_ROW_SIZE] = shade->own;
   uint32_t first = r->first, last = r->last;
   normals(r, p);
@@ -135,7 +135,7 @@ void vl_stage_principled(vlTextureRun *r, const vlWorldMaterial *m) {
       shade->alpha_x[i] = shade->alpha_y[i] + (1.0f - shade->alpha_y[i]) * angle[i] * angle[i];
   }
   for (uint32_t i = first; i < last; i++) {
-    float lambda = r->paths->lambda[0][i];
+    float lambda = r->at->paths.lambda[0][i];
     shade->eta_s[i] = m->dispersive ? vl_max(p->cauchy_a + p->cauchy_b / (lambda * lambda), 1.0f) : m->eta_s;
   }
 }

@@ -18,11 +18,11 @@ void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, 
 
 void vl_fit_surfaces(const vlTracing *t, uint32_t n) {
   const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
-  const vlPaths *p = &s->b;
+  const vlSurface *f = &s->at.surface;
+  const vlPaths *p = &s->at.paths;
   for (uint32_t i = 0; i < n; i++)
-    vl_fit_border(t, p->lane[i], s->hits_b.shape[i], vl_lane3(f->gx, f->gy, f->gz, i), vl_lane3(p->dx, p->dy, p->dz, i),
-                  s->volume->b.medium[i]);
+    vl_fit_border(t, p->lane[i], s->at.hits.shape[i], vl_lane3(f->gx, f->gy, f->gz, i),
+                  vl_lane3(p->dx, p->dy, p->dz, i), s->volume->b.medium[i]);
 }
 
 /* The medium from which shadow ray k meets the shape of its area light. `here`: if the shape is no border. */

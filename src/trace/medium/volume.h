@@ -22,7 +22,7 @@ static inline void vl_shadow_from_medium(const vlTracing *t, uint32_t k, uint32_
 static inline void vl_shadow_from_surface(const vlTracing *t, uint32_t k, uint32_t i, float wi_z) {
   float passed[3];
   if (!t->world->by_channel) return;
-  vl_passed_on(t->s, i, wi_z, passed);
+  vl_passed_on(t, &t->s->at, i, wi_z, passed);
   for (int c = 0; c < 3; c++) t->s->volume->shadow_passed[c][k] = passed[c];
 }
 
@@ -75,7 +75,7 @@ void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *o
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
 void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n); /* paths [0, n) */
 /* Copies the lanes of a that scatter in media to volume.scattered and volume.c. The copies are normalised and start at
- * the scattering points, which are also written to s->surface for light sampling. s->order gets the lanes of a.
+ * the scattering points, which are also written to s->at.surface for light sampling. s->order gets the lanes of a.
  * Returns the number of copies. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
 /* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns the number of paths that

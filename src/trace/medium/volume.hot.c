@@ -2,9 +2,9 @@
  * them are flights (medium.hot.c) that scatter in media or cross interfaces (pbrt book 14.2.3). All lanes of a batch
  * are at the same depth, in a medium or on a surface:
  *
- *   a: rays -> travel -> emission -> those that scatter in media: light samples, phase function -> volume.scattered
- *                                 -> those on surfaces: as in path.hot.c, b -> a
- *   a <- both
+ *   rays -> travel -> emission -> those that scatter in media: light samples, phase function -> volume.scattered
+ *                              -> those on surfaces: as in path.hot.c -> rays
+ *   rays <- both
  *
  * The weight is beta over the mean of the rescaled densities: u, of the path as it was sampled, and l, of the path if
  * light sampling had sampled its last segment. */
@@ -63,15 +63,15 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
 
 /* Stores how the ray of lane i ended. given: radiance that media added. */
 static void end_lane(vlTracing *t, uint32_t i, uint32_t event, float odds, const float given[4]) {
-  vlHits *h = &t->s->hits_a;
+  vlHits *h = &t->s->hits;
   vlVolumeScratch *v = t->s->volume;
-  uint32_t lane = t->s->a.lane[i];
+  uint32_t lane = t->s->rays.lane[i];
   v->event[i] = (uint8_t)event;
   v->odds[lane] = vl_some_odds(odds);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][lane] += given[c];
   for (int c = 0; t->batch->recorder && c < 4; c++) v->given[c][i] = given[c];
   if (event == VL_ON_SURFACE)
-    h->material[i] = vl_hit_material(t->world, &t->s->a, h, i);
+    h->material[i] = vl_hit_material(t->world, &t->s->rays, h, i);
   else
     h->shape[i] = VL_NONE;
 }
@@ -94,8 +94,8 @@ static void open_lanes(vlTracing *t, vlTravel *k, uint32_t first, const float *t
 /* The block of rays from lane `first` on. */
 static void begin_block(vlTracing *t, vlTravel *k, uint32_t first, uint32_t n, const float *t_max, float *time) {
   vlTraceScratch *s = t->s;
-  vlPaths *p = &s->a;
-  vlHits *h = &s->hits_a;
+  vlPaths *p = &s->rays;
+  vlHits *h = &s->hits;
   vlVolumeRows *v = &s->volume->a;
   vlFlights *f = &k->f;
   f->n = n;
@@ -121,13 +121,13 @@ static void begin_flights(const vlTracing *t, vlTravel *k, uint32_t first) {
   vlFlights *f = &k->f;
   for (uint32_t i = 0; i < f->n; i++) {
     f->path[i] = first + i;
-    f->first[i] = s->shade.u0[first + i];
+    f->first[i] = s->numbers.u0[first + i];
     f->count[i] = 0;
     f->odds[i] = 1.0f;
     for (int c = 0; c < 4; c++) f->given[c][i] = 0.0f;
   }
   for (int c = 0; t->world->by_channel && c < 3; c++)
-    for (uint32_t i = 0; i < f->n; i++) f->passed[c][i] = s->passed[c][s->a.lane[first + i]];
+    for (uint32_t i = 0; i < f->n; i++) f->passed[c][i] = s->passed[c][s->rays.lane[first + i]];
 }
 
 /* The next flights of the open lanes: each leads to the surface ahead or to the end of the ray. */
@@ -149,7 +149,7 @@ static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium)
 static void arrive(vlTracing *t, const vlTravel *k, uint32_t first, uint32_t i, uint32_t event) {
   const vlFlights *f = &k->f;
   const float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
-  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->passed[c][t->s->a.lane[first + i]] = f->passed[c][i];
+  for (int c = 0; t->world->by_channel && c < 3; c++) t->s->passed[c][t->s->rays.lane[first + i]] = f->passed[c][i];
   t->s->volume->t[first + i] = f->t[i];
   end_lane(t, first + i, event, f->odds[i], given);
 }
@@ -183,13 +183,13 @@ static void travel_block(vlTracing *t, vlTravel *k, uint32_t first, bool emissio
 
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   vlTraceScratch *s = t->s;
-  vlPaths *p = &s->a;
+  vlPaths *p = &s->rays;
   bool camera = depth == 0 && !t->from_light;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
-  vl_closest_hits(t, n, camera);
+  vl_closest_hits(t, n, camera, p, &s->hits);
   if (!camera) t->batch->bounce_rays += n;
   t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + depth * VL_DIM_STRIDE + VL_DIM_FLIGHT,
-                     s->shade.u0);
+                     s->numbers.u0);
   VL_ROW float odds[VL_FLIGHTS], time[VL_FLIGHTS] = {0};
   vlTravel k;
   vl_travel_start(&k);
@@ -209,7 +209,7 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
 
 /* light_pdf: density of light sampling; 0 if light sampling could not make this path. */
 static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
-  const vlPaths *p = &t->s->a;
+  const vlPaths *p = &t->s->rays;
   float inv = vl_volume_inverse_density(t, i, light_pdf);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
 }
@@ -218,7 +218,7 @@ static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float l
 static void add_sky(vlTracing *t, const uint32_t *lanes, uint32_t count) {
   for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
     vlSkyHits met;
-    vl_hit_sky(t->world, &t->s->a, lanes, count, k, &met);
+    vl_hit_sky(t->world, &t->s->rays, lanes, count, k, &met);
     for (uint32_t j = 0; j < count; j++) {
       const float radiance[4] = {met.radiance[0][j], met.radiance[1][j], met.radiance[2][j], met.radiance[3][j]};
       add_light(t, lanes[j], radiance, met.pdf[j]);
@@ -228,11 +228,11 @@ static void add_sky(vlTracing *t, const uint32_t *lanes, uint32_t count) {
 
 static void add_emission(vlTracing *t, uint32_t i) {
   vlHitLight met;
-  if (vl_hit_emission(t->world, &t->s->a, &t->s->hits_a, i, &met)) add_light(t, i, met.radiance, met.pdf);
+  if (vl_hit_emission(t->world, &t->s->rays, &t->s->hits, i, &met)) add_light(t, i, met.radiance, met.pdf);
 }
 
 static void emission(vlTracing *t, uint32_t n) {
-  const vlHits *h = &t->s->hits_a;
+  const vlHits *h = &t->s->hits;
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = t->s->volume->event[i];
@@ -253,7 +253,7 @@ static void phase_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   vlVolumeScratch *v = s->volume;
   const vlPaths *p = &v->scattered;
   if (t->world->lights.count == 0) return;
-  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, &s->at.surface, dimension, &s->light);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(s->light.pdf[i] > 0.0f)) continue;
@@ -270,19 +270,19 @@ uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint3
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = s->volume;
   vlPaths *p = &v->scattered;
-  vlShade *sh = &s->shade;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  vlNumbers *u = &s->numbers;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_ROULETTE, u->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, u->u1, u->u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     float most = vl_max(vl_max(p->beta[0][i], p->beta[1][i]), vl_max(p->beta[2][i], p->beta[3][i]));
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
     if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
     float survive = vl_roulette_survival(most * p->eta_scale[i], depth);
-    if (!(most > 0.0f) || !(sh->u0[i] < survive)) continue;
+    if (!(most > 0.0f) || !(u->u0[i] < survive)) continue;
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     float g = t->world->media.items[v->c.medium[i]].g;
-    vlVec3 w = vl_phase_sample(g, d, sh->u1[i], sh->u2[i]);
+    vlVec3 w = vl_phase_sample(g, d, u->u1[i], u->u2[i]);
     float pdf = vl_phase(g, vl_dot(d, w));
     for (int c = 0; c < 4; c++) {
       p->beta[c][i] /= survive;
@@ -305,7 +305,7 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   for (uint32_t i = 0; i < n; i++)
     if (v->event[i] == VL_IN_MEDIUM) s->order[count++] = i;
   if (count == 0) return 0;
-  vl_permute_paths(&s->a, p, s->order, count);
+  vl_permute_paths(&s->rays, p, s->order, count);
   vl_volume_permute(&v->a, &v->c, s->order, count);
   vl_volume_normalise_all(t, p, &v->c, count);
   for (uint32_t i = 0; i < count; i++) {
@@ -316,12 +316,13 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
     p->cone[i] = vl_abs(p->cone[i] + p->spread[i] * distance);
     p->spread[i] = t->def->pixel_spread;
     p->from_nx[i] = p->from_ny[i] = p->from_nz[i] = p->from_side[i] = 0.0f;
-    s->surface.px[i] = p->ox[i];
-    s->surface.py[i] = p->oy[i];
-    s->surface.pz[i] = p->oz[i];
-    s->surface.nx[i] = s->surface.ny[i] = s->surface.nz[i] = 0.0f; /* no normal: all directions count equally */
-    s->surface.no_cosine[i] = 1.0f;
-    s->surface.side[i] = 0.0f;
+    s->at.surface.px[i] = p->ox[i];
+    s->at.surface.py[i] = p->oy[i];
+    s->at.surface.pz[i] = p->oz[i];
+    s->at.surface.nx[i] = s->at.surface.ny[i] = s->at.surface.nz[i] =
+        0.0f; /* no normal: all directions count equally */
+    s->at.surface.no_cosine[i] = 1.0f;
+    s->at.surface.side[i] = 0.0f;
   }
   return count;
 }
@@ -342,25 +343,21 @@ static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* Makes the shadow rays of all n light samples, each at the place of its lane, as vl_volume_push_shadow does. lit: 1
  * for those that contribute. */
-static void make_shadows(vlTracing *t, uint32_t n, uint32_t lit[VL_ROW_SIZE]) {
-  vlTraceScratch *s = t->s;
-  const vlPaths *p = &s->b;
-  const vlShade *sh = &s->shade;
-  const vlSurface *f = &s->surface;
-  const vlLightSamples *l = &s->light;
-  vlShadowRays *q = &s->shadow;
-  vlVolumeScratch *v = s->volume;
+static void make_shadows(uint32_t n, const vlVertices *at, const vlLightSamples *l, const vlBsdfValues *bsdf,
+                         vlShadowRays *q, vlVolumeScratch *v, uint32_t lit[VL_ROW_SIZE]) {
+  const vlPaths *p = &at->paths;
+  const vlSurface *f = &at->surface;
   uint32_t padded = VL_PAD(n);
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
-    float v0 = sh->value[0][i], v1 = sh->value[1][i], v2 = sh->value[2][i], v3 = sh->value[3][i];
+    float v0 = bsdf->value[0][i], v1 = bsdf->value[1][i], v2 = bsdf->value[2][i], v3 = bsdf->value[3][i];
     float sum = v0 + v1 + v2 + v3, pdf = l->pdf[i];
     vlVec3 w = vl_vec3(l->wx[i], l->wy[i], l->wz[i]);
     vlVec3 o =
         vl_offset_origin(vl_vec3(f->px[i], f->py[i], f->pz[i]), vl_vec3(f->gx[i], f->gy[i], f->gz[i]), f->offset[i], w);
     vlVec3 to = vl_sub(vl_vec3(l->tx[i], l->ty[i], l->tz[i]), o), d = vl_normalize(to);
     int distant = l->distant[i], delta = l->delta[i];
-    float length = distant ? VL_INFINITY : vl_length(to), own = sh->pdf[i];
+    float length = distant ? VL_INFINITY : vl_length(to), own = bsdf->pdf[i];
     lit[i] = (pdf > 0.0f) & ((sum > 0.0f) | (sum != sum)) ? 1 : 0;
     vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     q->dx[i] = distant ? w.x : d.x;
@@ -379,22 +376,22 @@ static void make_shadows(vlTracing *t, uint32_t n, uint32_t lit[VL_ROW_SIZE]) {
 static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = s->volume;
-  const vlPaths *p = &s->b;
-  const vlShade *sh = &s->shade;
+  const vlVertices *at = &s->at;
+  const vlPaths *p = &at->paths;
   const vlLightSamples *l = &s->light;
   if (t->world->lights.count == 0) return;
-  vl_stage_light_samples(t, n, p, dimension);
-  vl_stage_light_bsdf(t, n);
+  vl_stage_light_samples(t, n, p, &at->surface, dimension, &s->light);
+  vl_stage_light_bsdf(t, n, at, l, &s->values);
   uint32_t count = 0, lit[VL_ROW_SIZE];
-  make_shadows(t, n, lit);
+  make_shadows(n, at, l, &s->values, &s->shadow, v, lit);
   for (uint32_t i = 0; i < n; i++) {
     if (!lit[i]) continue;
     /* Light samples through a subsurface material are taken at the exit (subsurface.hot.c). */
-    bool into = t->world->has_subsurface && t->world->materials.items[s->hits_b.material[i]].subsurface &&
-                (sh->wi[2][i] < 0.0f) != (sh->wo[2][i] < 0.0f);
+    bool into = t->world->has_subsurface && t->world->materials.items[at->hits.material[i]].subsurface &&
+                (s->values.wi[2][i] < 0.0f) != (at->shade.wo[2][i] < 0.0f);
     if (into) continue;
-    vlVec3 g = vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
-    const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    vlVec3 g = vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i), w = vl_lane3(l->wx, l->wy, l->wz, i);
+    const vlWorldShape *shape = &t->world->shapes.items[s->at.hits.shape[i]];
     uint32_t k = count++;
     if (k != i) vl_shadow_move(&s->shadow, i, k);
     v->light_pdf[k] = v->light_pdf[i];
@@ -404,7 +401,7 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
     v->from[k] = i;
     s->shadow.time[k] = vl_path_time(p, i);
     s->shadow.lane[k] = p->lane[i];
-    vl_shadow_from_surface(t, k, i, sh->wi[2][i]);
+    vl_shadow_from_surface(t, k, i, s->values.wi[2][i]);
   }
   vl_volume_shadows(t, p, count, depth);
 }
@@ -421,11 +418,11 @@ void vl_volume_go_on(vlTracing *t, uint32_t count) {
   vl_volume_permute(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
-    float pdf = s->a.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
+    float pdf = s->rays.pdf[k], inv = pdf > 0.0f ? 1.0f / pdf : 0.0f;
     for (int c = 0; c < 4; c++) v->a.l[c][k] = v->a.u[c][k] * inv;
-    v->a.medium[k] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
-                                      vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i),
-                                      vl_lane3(s->a.dx, s->a.dy, s->a.dz, k), v->a.medium[k]);
+    v->a.medium[k] = vl_medium_beyond(&t->world->shapes.items[s->at.hits.shape[i]],
+                                      vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i),
+                                      vl_lane3(s->rays.dx, s->rays.dy, s->rays.dz, k), v->a.medium[k]);
   }
 }
 
@@ -433,16 +430,16 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = s->volume;
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-  n = vl_stage_sort(t, n);
+  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
-  vl_stage_shade(t, n);
+  vl_stage_shade(t, n, &s->at);
   if (t->def->fit) vl_fit_surfaces(t, n);
-  vl_stage_regularize(t, n);
-  vl_volume_normalise_all(t, &s->b, &v->b, n);
-  if (t->batch->recorder) vl_record_shaded(t, n);
+  vl_stage_regularize(t, n, &s->at);
+  vl_volume_normalise_all(t, &s->at.paths, &v->b, n);
+  if (t->batch->recorder) vl_record_shaded(t, n, &s->at);
   surface_light(t, n, depth, dimension);
-  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
   vl_volume_go_on(t, count);
   return t->world->has_subsurface ? vl_stage_subsurface(t, count, depth) : count;
 }
@@ -452,14 +449,14 @@ static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
 uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n) {
   vlVolumeScratch *v = t->s->volume;
   for (uint32_t k = 0; k < count; k++, n++) {
-    vl_path_copy(&v->scattered, v->kept[k], &t->s->a, n);
+    vl_path_copy(&v->scattered, v->kept[k], &t->s->rays, n);
     vl_volume_copy(&v->c, v->kept[k], &v->a, n);
   }
   return n;
 }
 
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
-  vlPaths *p = &t->s->a;
+  vlPaths *p = &t->s->rays;
   vlVolumeRows *rows = &t->s->volume->a;
   for (uint32_t i = 0; i < n; i++) {
     for (int c = 0; c < 4; c++) rows->u[c][i] = rows->l[c][i] = 1.0f;

@@ -4,7 +4,7 @@
 #include "trace/tracer/record.h"
 
 static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
-  const vlPaths *p = &t->s->a;
+  const vlPaths *p = &t->s->rays;
   float inv = vl_volume_inverse_density(t, i, met->pdf);
   vlPathContribution c = {.event = event,
                           .light_pdf = met->pdf,
@@ -22,26 +22,26 @@ static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const v
 }
 
 static void record_arrival(vlTracing *t, uint32_t i, uint32_t depth) {
-  const vlPaths *p = &t->s->a;
-  const vlVolumeScratch *s = t->s->volume;
-  vlPathVertex *v = vl_record_arrival(t, i, depth);
+  const vlPaths *p = &t->s->rays;
+  const vlVolumeScratch *x = t->s->volume;
+  vlPathVertex *v = vl_record_arrival(t, p, i, depth);
   if (!v) return;
   float inv = vl_volume_inverse_density(t, i, 0.0f);
   for (int c = 0; c < 4; c++) v->throughput[c] *= inv;
-  if (s->event[i] == VL_ON_SURFACE) vl_record_surface(t, i, v);
-  if (s->event[i] != VL_IN_MEDIUM && s->event[i] != VL_AT_END) return;
+  if (x->event[i] == VL_ON_SURFACE) vl_record_surface(t, p, &t->s->hits, i, v);
+  if (x->event[i] != VL_IN_MEDIUM && x->event[i] != VL_AT_END) return;
   v->event = VL_PATH_MEDIUM;
   v->fate = VL_PATH_ABSORBED;
-  v->medium = s->a.medium[i] == VL_NONE ? 0 : s->a.medium[i] + 1;
-  v->distance = s->t[i];
-  v->position[0] = p->ox[i] + s->t[i] * p->dx[i];
-  v->position[1] = p->oy[i] + s->t[i] * p->dy[i];
-  v->position[2] = p->oz[i] + s->t[i] * p->dz[i];
+  v->medium = x->a.medium[i] == VL_NONE ? 0 : x->a.medium[i] + 1;
+  v->distance = x->t[i];
+  v->position[0] = p->ox[i] + x->t[i] * p->dx[i];
+  v->position[1] = p->oy[i] + x->t[i] * p->dy[i];
+  v->position[2] = p->oz[i] + x->t[i] * p->dz[i];
 }
 
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
-  const vlPaths *p = &t->s->a;
-  const vlHits *h = &t->s->hits_a;
+  const vlPaths *p = &t->s->rays;
+  const vlHits *h = &t->s->hits;
   const vlVolumeScratch *v = t->s->volume;
   for (uint32_t i = 0; i < n; i++) {
     record_arrival(t, i, depth);
@@ -61,7 +61,7 @@ void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
       record_met(t, i, VL_PATH_LIGHT_SKY, &met);
     }
   }
-  if (depth >= t->def->max_depth) vl_record_depth(t, n);
+  if (depth >= t->def->max_depth) vl_record_depth(t, n, p);
 }
 
 void vl_volume_record_shadows(vlTracing *t, uint32_t count) {

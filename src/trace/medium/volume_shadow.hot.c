@@ -40,7 +40,7 @@ static void begin_block(vlTracing *t, const vlPaths *p, vlTravel *k, uint32_t fi
   f->n = n;
   f->rays = (vlRays){q->ox + first, q->oy + first,    q->oz + first,
                      q->dx + first, q->dy + first,    q->dz + first,
-                     NULL,          q->t_max + first, t->s->a.time ? q->time + first : NULL};
+                     NULL,          q->t_max + first, t->s->rays.time ? q->time + first : NULL};
   f->odds = v->shadow_odds + first;
   for (int c = 0; c < 4; c++) {
     f->beta[c] = v->shadow_beta[c] + first;
@@ -129,8 +129,7 @@ void vl_volume_pass_media(vlTracing *t, const vlPaths *p, uint32_t count, uint32
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
   const vlVolumeScratch *v = t->s->volume;
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
+  vl_stage_occluded(t, count, p, q);
   t->batch->shadow_rays += count;
   vl_volume_pass_media(t, p, count, depth);
   if (t->def->fit) vl_fit_shadows(t, count);

@@ -38,20 +38,19 @@ static void add_emission(vlTracing *t, const vlPaths *p, const vlHits *h, uint32
   if (vl_hit_emission(t->world, p, h, i, &met)) add_hit_light(t, p, i, &met);
 }
 
-void vl_stage_emission(vlTracing *t, uint32_t n) {
-  const vlHits *h = &t->s->hits_a;
+void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h) {
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE)
       missed[count++] = i;
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_emission(t, &t->s->a, h, i);
+      add_emission(t, p, h, i);
     if (count == VL_SKY_BLOCK) {
-      add_sky(t, &t->s->a, missed, count);
+      add_sky(t, p, missed, count);
       count = 0;
     }
   }
-  add_sky(t, &t->s->a, missed, count);
+  add_sky(t, p, missed, count);
 }
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
@@ -98,9 +97,7 @@ uint32_t vl_hit_material(const vlWorld *world, const vlPaths *p, const vlHits *h
   return material;
 }
 
-void vl_closest_hits(vlTracing *t, uint32_t n, bool camera) {
-  vlPaths *p = &t->s->a;
-  vlHits *h = &t->s->hits_a;
+void vl_closest_hits(const vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
   VL_ROW float time[VL_ROW_SIZE];
   vlRays rays = {p->ox, p->oy, p->oz, p->dx, p->dy, p->dz, t_min, t_max, vl_path_times(p, n, time)};
@@ -124,7 +121,7 @@ void vl_closest_beyond(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, fl
 
 /* Passes interface surfaces, which do not change the ray's direction. The ray keeps its origin, which multiple
  * importance sampling needs, and its end. */
-static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
+static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t i, const float *t_max) {
   const vlWorld *world = t->world;
   float t_min = 0;
   for (int step = 0; h->shape[i] != VL_NONE; step++) {
@@ -139,10 +136,8 @@ static void pass_interfaces(vlTracing *t, vlPaths *p, vlHits *h, uint32_t i, con
   }
 }
 
-void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
-  vlPaths *p = &t->s->a;
-  vlHits *h = &t->s->hits_a;
-  vl_closest_hits(t, n, camera);
+void vl_stage_hits(vlTracing *t, uint32_t n, bool camera, const vlPaths *p, vlHits *h) {
+  vl_closest_hits(t, n, camera, p, h);
   if (!camera) t->batch->bounce_rays += n;
   const vlWorldShape *shapes = t->world->shapes.items;
   if (!t->world->has_interfaces && !t->world->has_mixtures) {
@@ -157,9 +152,9 @@ void vl_stage_hits(vlTracing *t, uint32_t n, bool camera) {
 }
 
 /* Alpha is 1 where the camera ray hits a surface that is no backdrop. */
-void vl_stage_alpha(vlTracing *t) {
+void vl_stage_alpha(const vlTracing *t, const vlHits *hits) {
   for (uint32_t i = 0; i < t->batch->n; i++) {
-    uint32_t shape = t->s->hits_a.shape[i];
+    uint32_t shape = hits->shape[i];
     t->batch->alpha[i] = shape == VL_NONE || t->world->shapes.items[shape].backdrop ? 0.0f : 1.0f;
   }
 }

@@ -44,37 +44,38 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
 static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
-  const vlShade *sh = &s->shade;
+  const vlShade *sh = &s->at.shade;
+  const vlBsdfSamples *samples = &s->samples;
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
-    uint32_t i = s->order[k], material = s->hits_b.material[i];
-    bool in = t->world->materials.items[material].subsurface && (sh->flags[i] & VL_SAMPLED_TRANSMISSION);
+    uint32_t i = s->order[k], material = s->at.hits.material[i];
+    bool in = t->world->materials.items[material].subsurface && (samples->flags[i] & VL_SAMPLED_TRANSMISSION);
     x->alive[k] = !in;
     if (!in) continue;
     uint32_t j = count++;
     x->place[j] = k;
     x->material[j] = material;
-    x->px[j] = s->surface.px[i];
-    x->py[j] = s->surface.py[i];
-    x->pz[j] = s->surface.pz[i];
-    x->nx[j] = s->surface.nx[i];
-    x->ny[j] = s->surface.ny[i];
-    x->nz[j] = s->surface.nz[i];
+    x->px[j] = s->at.surface.px[i];
+    x->py[j] = s->at.surface.py[i];
+    x->pz[j] = s->at.surface.pz[i];
+    x->nx[j] = s->at.surface.nx[i];
+    x->ny[j] = s->at.surface.ny[i];
+    x->nz[j] = s->at.surface.nz[i];
     for (int c = 0; c < 4; c++) {
       x->sigma[c][j] = sh->own[VL_S_SIGMA + c][i];
       x->albedo[c][j] = sh->own[VL_S_ALBEDO + c][i];
     }
-    x->entry_eta_scale[j] = sh->eta_scale[i];
+    x->entry_eta_scale[j] = samples->eta_scale[i];
     x->medium[j] = s->volume->b.medium[i];
   }
   if (count == 0) return 0;
-  x->paths = s->a;
+  x->paths = s->rays;
   x->rows = s->volume->a;
-  vl_permute_paths(&x->paths, &s->b, x->place, count);
+  vl_permute_paths(&x->paths, &s->at.paths, x->place, count);
   vl_volume_permute(&x->rows, &s->volume->b, x->place, count);
   for (uint32_t j = 0; j < count; j++) {
     s->volume->b.medium[j] = x->medium[j]; /* the medium outside, to which the path returns */
-    s->b.eta_scale[j] /= x->entry_eta_scale[j];
+    s->at.paths.eta_scale[j] /= x->entry_eta_scale[j];
   }
   return count;
 }
@@ -83,7 +84,7 @@ static uint32_t take_refracted(vlTracing *t, uint32_t n) {
  * that ray origins are not needlessly far away. */
 static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, float half) {
   vlSubsurfaceScratch *x = t->s->subsurface;
-  vlPaths *p = &t->s->b;
+  vlPaths *p = &t->s->at.paths;
   const float *c = t->world->center;
   float radius = 1.001f * t->world->radius;
   vlVec3 to = vl_sub(vl_vec3(c[0], c[1], c[2]), o);
@@ -100,23 +101,23 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
 static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
-  vlPaths *p = &s->b;
-  vlShade *sh = &s->shade;
-  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS, sh->u0);
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE, sh->u1, sh->u2);
+  vlPaths *p = &s->at.paths;
+  vlNumbers *u = &s->numbers;
+  t->sampler->get_1d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE_AXIS, u->u0);
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_PROBE, u->u1, u->u2);
   for (uint32_t j = 0; j < n; j++) {
     Entry e = entry_of(t, j);
     int hero = vl_volume_hero(t, p, j);
     vlSpline albedo = vl_bssrdf_albedo(e.table, e.albedo[hero]);
-    float near = vl_bssrdf_sample(e.table, &albedo, sh->u1[j]), far = vl_bssrdf_sample(e.table, &albedo, 0.999f);
+    float near = vl_bssrdf_sample(e.table, &albedo, u->u1[j]), far = vl_bssrdf_sample(e.table, &albedo, 0.999f);
     x->length[j] = x->t_min[j] = 0.0f;
     x->found[j] = 0;
     if (!(e.sigma[hero] > 0.0f) || !(near >= 0.0f) || !(near < far)) continue;
     vlFrame f = vl_frame_from_z(e.n);
-    vlVec3 along = sh->u0[j] < 0.25f ? f.x : sh->u0[j] < 0.5f ? f.y : f.z;
-    vlVec3 side = sh->u0[j] < 0.25f ? f.y : sh->u0[j] < 0.5f ? f.z : f.x;
-    vlVec3 other = sh->u0[j] < 0.25f ? f.z : sh->u0[j] < 0.5f ? f.x : f.y;
-    vlSinCos turn = vl_sincos_turn(sh->u2[j]);
+    vlVec3 along = u->u0[j] < 0.25f ? f.x : u->u0[j] < 0.5f ? f.y : f.z;
+    vlVec3 side = u->u0[j] < 0.25f ? f.y : u->u0[j] < 0.5f ? f.z : f.x;
+    vlVec3 other = u->u0[j] < 0.25f ? f.z : u->u0[j] < 0.5f ? f.x : f.y;
+    vlSinCos turn = vl_sincos_turn(u->u2[j]);
     float inv = 1.0f / e.sigma[hero], half = __builtin_sqrtf((far - near) * (far + near)) * inv;
     vlVec3 o = vl_add(vl_mul(side, near * inv * turn.cos), vl_mul(other, near * inv * turn.sin));
     if (near * inv < 4.0f * t->world->radius) cut_probe(t, j, vl_add(e.p, o), along, half);
@@ -140,13 +141,14 @@ static float past_crossing(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
-  vlHits *h = &s->hits_b;
+  vlHits *h = &s->at.hits;
   if (h->shape[j] == VL_NONE) return false;
-  vlVec3 o = vl_lane3(s->b.ox, s->b.oy, s->b.oz, j), d = vl_lane3(s->b.dx, s->b.dy, s->b.dz, j);
-  vlPoint at = vl_hit_point(t->world, &s->b, h, j);
-  if (vl_hit_material(t->world, &s->b, h, j) == x->material[j]) {
+  vlVec3 o = vl_lane3(s->at.paths.ox, s->at.paths.oy, s->at.paths.oz, j),
+         d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, j);
+  vlPoint at = vl_hit_point(t->world, &s->at.paths, h, j);
+  if (vl_hit_material(t->world, &s->at.paths, h, j) == x->material[j]) {
     uint32_t count = ++x->found[j];
-    float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->b, j, depth, VL_KEY_PROBE), count));
+    float u = vl_unit_float(vl_hash2(vl_volume_key(t, &s->at.paths, j, depth, VL_KEY_PROBE), count));
     if (u * (float)count < 1.0f) { /* reservoir sampling: each crossing is kept with the same probability */
       x->hits.shape[j] = h->shape[j];
       x->hits.prim[j] = h->prim[j];
@@ -163,9 +165,9 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
 static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
-  const vlPaths *p = &s->b;
+  const vlPaths *p = &s->at.paths;
   vlShadowRays *q = &s->shadow;
-  vlHits *to = &s->hits_a;
+  vlHits *to = &s->hits;
   uint32_t under_way[VL_BATCH], active = 0;
   for (uint32_t j = 0; j < n; j++)
     if (x->length[j] > 0.0f) under_way[active++] = j;
@@ -188,10 +190,10 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
     uint32_t left = 0;
     for (uint32_t k = 0; k < active; k++) {
       uint32_t j = under_way[k];
-      s->hits_b.shape[j] = to->shape[k];
-      s->hits_b.prim[j] = to->prim[k];
-      s->hits_b.instance[j] = to->instance[k];
-      s->hits_b.t[j] = to->t[k];
+      s->at.hits.shape[j] = to->shape[k];
+      s->at.hits.prim[j] = to->prim[k];
+      s->at.hits.instance[j] = to->instance[k];
+      s->at.hits.t[j] = to->t[k];
       if (note_crossing(t, j, depth)) under_way[left++] = j;
     }
     active = left;
@@ -207,17 +209,17 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   uint32_t count = 0;
   for (uint32_t j = 0; j < n; j++)
     if (x->found[j]) x->entry[count++] = j;
-  vl_permute_paths(&s->b, &s->a, x->entry, count);
+  vl_permute_paths(&s->at.paths, &s->rays, x->entry, count);
   vl_volume_permute(&s->volume->b, &s->volume->a, x->entry, count);
   for (uint32_t i = 0; i < count; i++) {
     uint32_t j = x->entry[i];
-    s->hits_b.shape[i] = x->hits.shape[j];
-    s->hits_b.prim[i] = x->hits.prim[j];
-    s->hits_b.instance[i] = x->hits.instance[j];
-    s->hits_b.t[i] = x->hits.t[j];
-    s->hits_b.material[i] = x->material[j];
+    s->at.hits.shape[i] = x->hits.shape[j];
+    s->at.hits.prim[i] = x->hits.prim[j];
+    s->at.hits.instance[i] = x->hits.instance[j];
+    s->at.hits.t[i] = x->hits.t[j];
+    s->at.hits.material[i] = x->material[j];
   }
-  if (count) vl_stage_surface(t->world, count, &s->a, &s->hits_b, &s->corners, &s->surface);
+  if (count) vl_stage_surface(t->world, count, &s->rays, &s->at.hits, &s->corners, &s->at.surface);
   return count;
 }
 
@@ -226,9 +228,9 @@ static uint32_t gather_exits(vlTracing *t, uint32_t n) {
  * of the hero wavelength. */
 static void weigh_exit(vlTracing *t, uint32_t i) {
   vlTraceScratch *s = t->s;
-  vlPaths *p = &s->a;
+  vlPaths *p = &s->rays;
   vlVolumeRows *rows = &s->volume->a;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   uint32_t j = s->subsurface->entry[i];
   Entry e = entry_of(t, j);
   int hero = vl_volume_hero(t, p, i);
@@ -266,7 +268,7 @@ static float exit_value(const vlBssrdfTable *table, float cosine) {
 }
 
 static const vlBssrdfTable *table_at(const vlTracing *t, uint32_t i) {
-  return t->world->materials.items[t->s->hits_b.material[i]].subsurface->table;
+  return t->world->materials.items[t->s->at.hits.material[i]].subsurface->table;
 }
 
 static bool carries(const vlPaths *p, uint32_t i) {
@@ -275,12 +277,12 @@ static bool carries(const vlPaths *p, uint32_t i) {
 
 static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  const vlPaths *p = &s->a;
-  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->rays;
+  const vlSurface *f = &s->at.surface;
   const vlLightSamples *l = &s->light;
   vlVolumeRows *rows = &s->volume->a;
   if (t->world->lights.count == 0) return;
-  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, f, dimension, &s->light);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
@@ -289,7 +291,7 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
     float v = exit_value(table_at(t, i), cosine) * cosine;
     const float value[4] = {v, v, v, v};
     vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), g, f->offset[i], w);
-    const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+    const vlWorldShape *shape = &t->world->shapes.items[s->at.hits.shape[i]];
     count = vl_volume_push_shadow(t, p, rows, i, o, value, cosine * VL_INV_PI,
                                   vl_medium_beyond(shape, g, w, rows->medium[i]), count);
   }
@@ -300,16 +302,16 @@ static void light_exits(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
 static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
-  vlPaths *p = &s->a;
-  const vlSurface *f = &s->surface;
+  vlPaths *p = &s->rays;
+  const vlSurface *f = &s->at.surface;
   vlVolumeRows *rows = &s->volume->a;
-  vlShade *sh = &s->shade;
-  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV, sh->u1, sh->u2);
+  vlNumbers *u = &s->numbers;
+  t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_EXIT_UV, u->u1, u->u2);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t place = x->place[x->entry[i]];
     float sum = p->beta[0][i] + p->beta[1][i] + p->beta[2][i] + p->beta[3][i];
     if (sum != sum) t->batch->radiance[0][p->lane[i]] = __builtin_nanf(""); /* the film drops and counts it */
-    vlVec3 local = vl_warp_cosine_hemisphere(sh->u1[i], sh->u2[i]);
+    vlVec3 local = vl_warp_cosine_hemisphere(u->u1[i], u->u2[i]);
     if (!carries(p, i) || !(local.z > 0.0f)) continue;
     vlVec3 nn = vl_lane3(f->nx, f->ny, f->nz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_normalize(vl_from_local(vl_frame_from_z(nn), local));
@@ -328,7 +330,7 @@ static void leave(vlTracing *t, uint32_t n, uint32_t dimension) {
       p->beta[c][i] *= weight;
       rows->l[c][i] = rows->u[c][i] / pdf;
     }
-    rows->medium[i] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, w, rows->medium[i]);
+    rows->medium[i] = vl_medium_beyond(&t->world->shapes.items[s->at.hits.shape[i]], g, w, rows->medium[i]);
     vl_path_copy(p, i, &x->paths, place);
     vl_volume_copy(rows, i, &x->rows, place);
     x->alive[place] = 1;
@@ -357,7 +359,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
     s->order[count] = k;
     count += x->alive[k];
   }
-  vl_permute_paths(&x->paths, &s->a, s->order, count);
+  vl_permute_paths(&x->paths, &s->rays, s->order, count);
   vl_volume_permute(&x->rows, &s->volume->a, s->order, count);
   return count;
 }
@@ -368,7 +370,7 @@ uint32_t vl_stage_subsurface(vlTracing *t, uint32_t n, uint32_t depth) {
  * a thick solid and the mean free path. */
 void vl_stage_subsurface_inputs(vlTextureRun *r, const vlWorldMaterial *m) {
   const vlWorldSubsurface *b = m->subsurface;
-  vlShade *sh = &r->s->shade;
+  vlShade *sh = &r->at->shade;
   float(*sigma)[VL_ROW_SIZE] = sh->own + VL_S_SIGMA, (*albedo)[VL_ROW_SIZE] = sh->own + VL_S_ALBEDO;
   const float most = 1e15f; /* per unit of length: its square is finite */
   if (b->mfp >= 0) {

@@ -181,7 +181,7 @@ void vl_texture_float(vlTextureRun *r, int32_t index, float *out) {
 
 static void constant_spectrum(const vlTextureRun *r, const vlSpectral *s, float *const out[4]) {
   for (int c = 0; c < 4; c++) {
-    const float *lambda = r->paths->lambda[c];
+    const float *lambda = r->at->paths.lambda[c];
     if (r->rgb) {
       fill(r, c < 3 ? s->scale * s->rgb[c] : 0.0f, out[c]);
       continue;
@@ -225,7 +225,7 @@ static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, ui
   float scale = up->albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
   vlSigmoid s = vl_rgb_table_lookup(up->table, c[0] * inv, c[1] * inv, c[2] * inv);
   for (int k = 0; k < 4; k++) {
-    float lambda = r->paths->lambda[k][i];
+    float lambda = r->at->paths.lambda[k][i];
     float x = scale * vl_sigmoid(s, lambda);
     out[k][i] = up->illuminant ? x * vl_dense_at(up->illuminant, lambda) : x;
   }
@@ -240,7 +240,7 @@ static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t
   }
   VL_ROW float lambda[4][VL_LANES], value[4][VL_LANES];
   for (int c = 0; c < 4; c++)
-    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->paths->lambda[c][first + (k < count ? k : count - 1)];
+    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->at->paths.lambda[c][first + (k < count ? k : count - 1)];
   const float *p = up->table->coefficients;
   float most = up->albedo ? 1.0f : VL_INFINITY;
   /* must vectorise */

@@ -12,9 +12,8 @@
 /* A run of lanes and a stack of scratch rows for nested textures. */
 typedef struct vlTextureRun {
   const vlWorld *world;
-  vlTraceScratch *s;
-  const vlPaths *paths;
-  const vlSurface *surface;
+  vlVertices *at;
+  vlTraceScratch *s;    /* corners and stack */
   uint32_t first, last; /* at most VL_MATERIAL_LANES lanes */
   uint32_t top;         /* first free row */
   const float *shift_u, *shift_v, *shift_x, *shift_y,
@@ -38,7 +37,7 @@ _Static_assert(offsetof(vlTraceScratch, textures) >= sizeof(float[VL_BATCH]), "a
 static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                           vlTexturePoint *at) {
   const vlCorners *c = &r->s->corners;
-  const vlHits *h = &r->s->hits_b;
+  const vlHits *h = &r->at->hits;
   vlTextureCorner where = {&r->world->shapes.items[h->shape[i]], h->prim[i], {1, 0, 0}};
   vlVec3 k[3];
   for (int j = 0; j < 3; j++) k[j] = vl_vec3(c->p[3 * j][i], c->p[3 * j + 1][i], c->p[3 * j + 2][i]);
@@ -54,13 +53,13 @@ static inline void vl_texture_lane_corner(const vlTextureRun *r, const vlTexture
  * other mappings they are finite differences along each axis. */
 static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNode *node, uint32_t i,
                                         vlTexturePoint *at) {
-  const vlSurface *f = r->surface;
+  const vlSurface *f = &r->at->surface;
   if (vl_texture_over_uv(node)) {
     float axes[4] = {f->across_u[i], f->across_v[i], f->along_u[i], f->along_v[i]};
     vl_texture_axes_of_uv(node, axes, at);
     return;
   }
-  const vlPaths *p = r->paths;
+  const vlPaths *p = &r->at->paths;
   vlFootprint print = vl_footprint_of(vl_lane3(p->dx, p->dy, p->dz, i), at->n, at->width);
   vlVec2 here = vl_texture_st(node, *at);
   vlTexturePoint step = *at;
@@ -81,7 +80,7 @@ static inline void vl_texture_lane_axes(const vlTextureRun *r, const vlTextureNo
 }
 
 static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vlTextureNode *node, uint32_t i) {
-  const vlSurface *f = r->surface;
+  const vlSurface *f = &r->at->surface;
   vlTexturePoint at = {.color = {1, 1, 1, 1}};
   at.u = f->u[i];
   at.v = f->v[i];

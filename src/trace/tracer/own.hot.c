@@ -38,7 +38,7 @@ static uint32_t lanes_of(const vlTrace *w, const vlTraceRays *r) {
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
 
 static void start(vlTrace *w, const vlTraceRays *r, uint32_t count) {
-  vlPaths *p = &w->t.s->a;
+  vlPaths *p = &w->t.s->rays;
   const vlTraceBatch *b = &w->batch;
   for (uint32_t i = 0; i < VL_PAD(count); i++) {
     uint32_t k = i < count ? i : count - 1;
@@ -83,7 +83,7 @@ static void clear_hits(vlTraceHits *h, uint32_t count) {
 static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   vlTracing *t = &w->t;
   vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   const vlWorld *world = t->world;
   uint32_t count = lanes_of(w, r);
   clear_hits(h, count);
@@ -94,21 +94,21 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
   w->batch.t_min = w->t_min;
   w->batch.t_max = w->t_max;
   for (int c = 0; c < 4; c++) w->batch.radiance[c] = h->emission[c];
-  vl_stage_hits(t, count, true);
+  vl_stage_hits(t, count, true, &s->rays, &s->hits);
   if (w->begun) w->batch.bounce_rays += count;
   for (uint32_t i = 0; i < count && !w->begun; i++) {
-    uint32_t shape = s->hits_a.shape[i];
+    uint32_t shape = s->hits.shape[i];
     w->batch.alpha[i] = shape == VL_NONE || world->shapes.items[shape].backdrop ? 0.0f : 1.0f;
   }
   w->begun = true;
-  vl_stage_emission(t, count);
+  vl_stage_emission(t, count, &s->rays, &s->hits);
   for (uint32_t i = 0; i < count; i++)
     for (int c = 0; c < 4 && r->t_max[i] < 0.0f; c++) h->emission[c][i] = 0.0f;
-  uint32_t n = w->hits = vl_stage_sort(t, count);
-  vl_stage_shade(t, n);
+  uint32_t n = w->hits = vl_stage_sort(world, count, &s->rays, &s->hits, s->order, &s->at);
+  vl_stage_shade(t, n, &s->at);
   for (uint32_t k = 0; k < n; k++) {
-    uint32_t lane = s->b.lane[k], shape = s->hits_b.shape[k];
-    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, k), d = vl_lane3(s->b.dx, s->b.dy, s->b.dz, k);
+    uint32_t lane = s->at.paths.lane[k], shape = s->at.hits.shape[k];
+    vlVec3 g = vl_lane3(f->gx, f->gy, f->gz, k), d = vl_lane3(s->at.paths.dx, s->at.paths.dy, s->at.paths.dz, k);
     h->t[lane] = f->t[k];
     put3(h->position, lane, vl_lane3(f->px, f->py, f->pz, k));
     put3(h->normal, lane, vl_dot(g, d) > 0.0f ? vl_neg(g) : g);
@@ -117,8 +117,8 @@ static void find_hits(vlTrace *w, const vlTraceRays *r, vlTraceHits *h) {
     h->uv[1][lane] = f->v[k];
     h->object[lane] = shape + 1;
     h->material[lane] = world->shapes.items[shape].material + 1;
-    bool has = world->materials.items[s->hits_b.material[k]].reflectance >= 0;
-    for (int c = 0; c < 4; c++) h->reflectance[c][lane] = has ? s->shade.reflectance[c][k] : 1.0f;
+    bool has = world->materials.items[s->at.hits.material[k]].reflectance >= 0;
+    for (int c = 0; c < 4; c++) h->reflectance[c][lane] = has ? s->at.shade.reflectance[c][k] : 1.0f;
   }
 }
 
@@ -141,12 +141,12 @@ static vlVec3 origin_towards(const vlSurface *f, uint32_t k, vlVec3 d) {
 }
 
 static void leave(vlTrace *w, float (*direction)[VL_OWN_BATCH], vlTraceRays *r) {
-  const vlSurface *f = &w->t.s->surface;
+  const vlSurface *f = &w->t.s->at.surface;
   float d[3][VL_OWN_BATCH];
   __builtin_memcpy(d, direction, sizeof d); /* it may be that of r */
   no_rays(r, w->lanes);
   for (uint32_t k = 0; k < w->hits; k++) {
-    uint32_t lane = w->t.s->b.lane[k];
+    uint32_t lane = w->t.s->at.paths.lane[k];
     vlVec3 to = get3(d, lane);
     put3(r->direction, lane, to);
     put3(r->origin, lane, origin_towards(f, k, to));
@@ -157,7 +157,7 @@ static void leave(vlTrace *w, float (*direction)[VL_OWN_BATCH], vlTraceRays *r) 
 
 static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
   vlTraceScratch *s = w->t.s;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   const vlLightSamples *l = &s->light;
   clear(out->direction, 3);
   clear(out->radiance, 4);
@@ -165,9 +165,9 @@ static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
   __builtin_memset(out->delta, 0, sizeof out->delta);
   no_rays(&out->rays, w->lanes);
   if (w->hits == 0 || w->t.world->lights.count == 0) return;
-  vl_stage_light_samples(&w->t, w->hits, &s->b, VL_DIM_BOUNCE + bounce * VL_DIM_STRIDE);
+  vl_stage_light_samples(&w->t, w->hits, &s->at.paths, f, VL_DIM_BOUNCE + bounce * VL_DIM_STRIDE, &s->light);
   for (uint32_t k = 0; k < w->hits; k++) {
-    uint32_t lane = s->b.lane[k];
+    uint32_t lane = s->at.paths.lane[k];
     if (!(l->pdf[k] > 0.0f)) continue;
     vlVec3 to = vl_lane3(l->wx, l->wy, l->wz, k), o = origin_towards(f, k, to);
     put3(out->direction, lane, to);
@@ -183,27 +183,27 @@ static void lights(vlTrace *w, uint32_t bounce, vlTraceLights *out) {
 static void bsdf(vlTrace *w, float (*direction)[VL_OWN_BATCH], float (*value)[VL_OWN_BATCH], float *pdf) {
   vlTraceScratch *s = w->t.s;
   float d[3][VL_OWN_BATCH];
+  VL_ROW float to[3][VL_ROW_SIZE];
   __builtin_memcpy(d, direction, sizeof d);
   clear(value, 4);
   for (uint32_t i = 0; pdf && i < VL_OWN_BATCH; i++) pdf[i] = 0.0f;
   if (w->hits == 0) return;
   for (uint32_t k = 0; k < VL_PAD(w->hits); k++) {
-    uint32_t lane = s->b.lane[k < w->hits ? k : w->hits - 1];
-    s->light.wx[k] = d[0][lane];
-    s->light.wy[k] = d[1][lane];
-    s->light.wz[k] = d[2][lane];
+    uint32_t lane = s->at.paths.lane[k < w->hits ? k : w->hits - 1];
+    for (int j = 0; j < 3; j++) to[j][k] = d[j][lane];
   }
-  vl_stage_light_bsdf(&w->t, w->hits);
+  vl_stage_local(w->hits, &s->at, to[0], to[1], to[2], s->values.wi);
+  vl_stage_bsdf(&w->t, w->hits, &s->at, s->at.shade.wo, &s->values);
   for (uint32_t k = 0; k < w->hits; k++) {
-    uint32_t lane = s->b.lane[k];
-    for (int c = 0; c < 4; c++) value[c][lane] = s->shade.value[c][k];
-    if (pdf) pdf[lane] = s->shade.pdf[k];
+    uint32_t lane = s->at.paths.lane[k];
+    for (int c = 0; c < 4; c++) value[c][lane] = s->values.value[c][k];
+    if (pdf) pdf[lane] = s->values.pdf[k];
   }
 }
 
 static void bounce(vlTrace *w, uint32_t number, vlTraceBounce *out) {
   vlTraceScratch *s = w->t.s;
-  vlPaths *from = &s->b, *to = &s->a;
+  vlPaths *from = &s->at.paths, *to = &s->rays;
   clear(out->weight, 4);
   clear(&out->pdf, 1);
   __builtin_memset(out->specular, 0, sizeof out->specular);
@@ -215,7 +215,8 @@ static void bounce(vlTrace *w, uint32_t number, vlTraceBounce *out) {
   }
   for (uint32_t i = 0; i < VL_ROW_SIZE; i++) w->radiance[0][i] = 0.0f;
   for (int c = 0; c < 4; c++) w->batch.radiance[c] = w->radiance[c];
-  uint32_t count = vl_stage_scatter(&w->t, w->hits, 1, VL_DIM_BOUNCE + number * VL_DIM_STRIDE);
+  uint32_t count =
+      vl_stage_scatter(&w->t, w->hits, 1, VL_DIM_BOUNCE + number * VL_DIM_STRIDE, &s->at, &s->samples, s->order, to);
   for (uint32_t k = 0; k < w->hits; k++) /* a weight that is no number */
     if (w->radiance[0][from->lane[k]] != 0.0f) out->weight[0][from->lane[k]] = w->radiance[0][from->lane[k]];
   for (uint32_t k = 0; k < count; k++) {

@@ -7,42 +7,44 @@
 
 void vl_trace_random_walk(vlTracing *t) {
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
-  vlPaths *p = &s->b;
-  const vlSurface *f = &s->surface;
+  const vlPaths *p = &s->at.paths;
+  const vlSurface *f = &s->at.surface;
+  const vlBsdfValues *bsdf = &s->values;
+  vlPaths *next = &s->rays;
+  VL_ROW float w[3][VL_ROW_SIZE];
   uint32_t n = t->batch->n;
   for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
-    vl_stage_hits(t, n, depth == 0);
-    if (depth == 0) vl_stage_alpha(t);
-    vl_stage_emission(t, n); /* all rays are marked specular, so that their weight is 1 */
+    vl_stage_hits(t, n, depth == 0, &s->rays, &s->hits);
+    if (depth == 0) vl_stage_alpha(t, &s->hits);
+    vl_stage_emission(t, n, &s->rays, &s->hits); /* all rays are marked specular, so that their weight is 1 */
     if (depth >= t->def->max_depth) break;
-    n = vl_stage_sort(t, n);
+    n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
     if (n == 0) break;
-    vl_stage_shade(t, n);
+    vl_stage_shade(t, n, &s->at);
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = 0;
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, sh->u1, sh->u2);
-    for (uint32_t i = 0; i < VL_PAD(n); i++) {
-      vlVec3 w = vl_warp_sphere(sh->u1[i], sh->u2[i]);
-      vl_set_lane3(s->light.wx, s->light.wy, s->light.wz, i, w);
-    }
-    vl_stage_light_bsdf(t, n);
+    vlNumbers *u = &s->numbers;
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_BSDF_UV, u->u1, u->u2);
+    for (uint32_t i = 0; i < VL_PAD(n); i++) vl_set_lane3(w[0], w[1], w[2], i, vl_warp_sphere(u->u1[i], u->u2[i]));
+    vl_stage_local(n, &s->at, w[0], w[1], w[2], s->values.wi);
+    vl_stage_bsdf(t, n, &s->at, s->at.shade.wo, &s->values);
     for (uint32_t i = 0; i < n; i++) {
       float most = 0.0f;
-      vl_passed_go_on(t, i);
-      for (int c = 0; c < 4; c++) {
-        p->beta[c][i] *= sh->value[c][i] * (4.0f * VL_PI);
-        most = vl_max(most, p->beta[c][i]);
-      }
-      vlVec3 w = vl_normalize(vl_lane3(s->light.wx, s->light.wy, s->light.wz, i));
-      vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], w);
-      vl_set_lane3(p->ox, p->oy, p->oz, i, o);
-      vl_set_lane3(p->dx, p->dy, p->dz, i, w);
-      p->cone[i] = f->width[i];
-      p->spread[i] = t->def->pixel_spread;
+      vl_passed_go_on(t, &s->at, i, bsdf->wi[2][i]);
+      for (int c = 0; c < 4; c++) most = vl_max(most, p->beta[c][i] * (bsdf->value[c][i] * (4.0f * VL_PI)));
       s->order[count] = i;
       count += most > 0.0f;
     }
-    vl_permute_paths(p, &s->a, s->order, count);
+    vl_permute_paths(p, next, s->order, count);
+    for (uint32_t k = 0; k < count; k++) {
+      uint32_t i = s->order[k];
+      vlVec3 d = vl_normalize(vl_lane3(w[0], w[1], w[2], i));
+      vlVec3 o = vl_offset_origin(vl_lane3(f->px, f->py, f->pz, i), vl_lane3(f->gx, f->gy, f->gz, i), f->offset[i], d);
+      for (int c = 0; c < 4; c++) next->beta[c][k] *= bsdf->value[c][i] * (4.0f * VL_PI);
+      vl_set_lane3(next->ox, next->oy, next->oz, k, o);
+      vl_set_lane3(next->dx, next->dy, next->dz, k, d);
+      next->cone[k] = f->width[i];
+      next->spread[k] = t->def->pixel_spread;
+    }
     n = count;
   }
 }

@@ -43,8 +43,7 @@ static void put_ids(const vlHits *h, uint32_t i, vlPathVertex *v) {
 
 /* ---- arrivals ---------------------------------------------------------------------------------------------------- */
 
-vlPathVertex *vl_record_arrival(vlTracing *t, uint32_t i, uint32_t bounce) {
-  const vlPaths *p = &t->s->a;
+vlPathVertex *vl_record_arrival(vlTracing *t, const vlPaths *p, uint32_t i, uint32_t bounce) {
   vlPathVertex *v = new_vertex(t, p->lane[i]);
   if (!v) return NULL;
   v->event = VL_PATH_NOTHING;
@@ -56,9 +55,7 @@ vlPathVertex *vl_record_arrival(vlTracing *t, uint32_t i, uint32_t bounce) {
   return v;
 }
 
-void vl_record_surface(vlTracing *t, uint32_t i, vlPathVertex *v) {
-  const vlPaths *p = &t->s->a;
-  const vlHits *h = &t->s->hits_a;
+void vl_record_surface(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i, vlPathVertex *v) {
   vlPoint at = vl_hit_point(t->world, p, h, i);
   v->event = VL_PATH_SURFACE;
   v->fate = VL_PATH_ABSORBED;
@@ -70,16 +67,16 @@ void vl_record_surface(vlTracing *t, uint32_t i, vlPathVertex *v) {
   v->distance = vl_length(vl_sub(at.p, vl_lane3(p->ox, p->oy, p->oz, i)));
 }
 
-void vl_record_arrivals(vlTracing *t, uint32_t n, uint32_t bounce) {
+void vl_record_arrivals(vlTracing *t, uint32_t n, uint32_t bounce, const vlPaths *rays, const vlHits *hits) {
   for (uint32_t i = 0; i < n; i++) {
-    vlPathVertex *v = vl_record_arrival(t, i, bounce);
-    if (v && t->s->hits_a.shape[i] != VL_NONE) vl_record_surface(t, i, v);
+    vlPathVertex *v = vl_record_arrival(t, rays, i, bounce);
+    if (v && hits->shape[i] != VL_NONE) vl_record_surface(t, rays, hits, i, v);
   }
 }
 
-void vl_record_depth(vlTracing *t, uint32_t n) {
+void vl_record_depth(vlTracing *t, uint32_t n, const vlPaths *rays) {
   for (uint32_t i = 0; i < n; i++) {
-    vlPathVertex *v = last_vertex(t, t->s->a.lane[i]);
+    vlPathVertex *v = last_vertex(t, rays->lane[i]);
     if (v && v->event != VL_PATH_NOTHING) v->fate = VL_PATH_DEPTH;
   }
 }
@@ -109,8 +106,7 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
   to->vertex = path->vertex_count - 1;
 }
 
-static void record_hit(vlTracing *t, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
-  const vlPaths *p = &t->s->a;
+static void record_hit(vlTracing *t, const vlPaths *p, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   vlPathContribution c = {.event = event, .light_pdf = met->pdf, .bsdf_pdf = p->pdf[i], .weight = weight};
   vl_record_name_light(t->world, met->light, &c);
@@ -119,14 +115,12 @@ static void record_hit(vlTracing *t, uint32_t i, vlPathLightEvent event, const v
   vl_record_light(t, p->lane[i], &c);
 }
 
-void vl_record_emission(vlTracing *t, uint32_t n) {
-  const vlPaths *p = &t->s->a;
-  const vlHits *h = &t->s->hits_a;
+void vl_record_emission(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h) {
   for (uint32_t i = 0; i < n; i++) {
     vlHitLight met;
     if (h->shape[i] != VL_NONE) {
       if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE && vl_hit_emission(t->world, p, h, i, &met))
-        record_hit(t, i, VL_PATH_LIGHT_HIT, &met);
+        record_hit(t, p, i, VL_PATH_LIGHT_HIT, &met);
       continue;
     }
     for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
@@ -134,23 +128,21 @@ void vl_record_emission(vlTracing *t, uint32_t n) {
       vl_hit_sky(t->world, p, &i, 1, k, &sky);
       met = (vlHitLight){.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[0]};
       for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][0];
-      record_hit(t, i, VL_PATH_LIGHT_SKY, &met);
+      record_hit(t, p, i, VL_PATH_LIGHT_SKY, &met);
     }
   }
 }
 
-void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count) {
-  const vlTraceScratch *s = t->s;
-  const vlShadowRays *q = &s->shadow;
-  const vlLightSamples *l = &s->light;
+void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at, const vlLightSamples *l,
+                            const vlBsdfValues *values, const vlShadowRays *q) {
   for (uint32_t k = 0, i = 0; k < count; k++, i++) {
-    while (i < n && s->b.lane[i] != q->lane[k]) i++; /* the rays are in the order of the lanes */
+    while (i < n && at->paths.lane[i] != q->lane[k]) i++; /* the rays are in the order of the lanes */
     if (i == n) return;
     vlPathContribution c = {.event = VL_PATH_LIGHT_SAMPLED,
                             .occluded = q->occluded[k],
                             .light_pdf = l->pdf[i],
-                            .bsdf_pdf = l->delta[i] ? 0.0f : s->shade.pdf[i],
-                            .weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], s->shade.pdf[i])};
+                            .bsdf_pdf = l->delta[i] ? 0.0f : values->pdf[i],
+                            .weight = l->delta[i] ? 1.0f : vl_power_heuristic(l->pdf[i], values->pdf[i])};
     vl_record_name_light(t->world, l->light[i], &c);
     c.distant = l->distant[i];
     put3(c.target, c.distant ? vl_lane3(l->wx, l->wy, l->wz, i) : vl_lane3(l->tx, l->ty, l->tz, i));
@@ -184,21 +176,20 @@ static void put_texture(const vlWorld *world, int32_t node, vlPathVertex *v) {
   v->image = image_of(world, node);
 }
 
-void vl_record_shaded(vlTracing *t, uint32_t n) {
+void vl_record_shaded(vlTracing *t, uint32_t n, const vlVertices *at) {
 #define NAME(K, k) [VL_BSDF_##K] = #k,
   static const char *const names[] = {VL_BSDF_KINDS(NAME)};
 #undef NAME
-  const vlTraceScratch *s = t->s;
   for (uint32_t i = 0; i < n; i++) {
-    vlPathVertex *v = last_vertex(t, s->b.lane[i]);
+    vlPathVertex *v = last_vertex(t, at->paths.lane[i]);
     if (!v) continue;
-    const vlWorldMaterial *m = &t->world->materials.items[s->hits_b.material[i]];
+    const vlWorldMaterial *m = &t->world->materials.items[at->hits.material[i]];
     v->bsdf = names[m->bsdf];
-    put3(v->shading, vl_lane3(s->surface.nx, s->surface.ny, s->surface.nz, i));
+    put3(v->shading, vl_lane3(at->surface.nx, at->surface.ny, at->surface.nz, i));
     put_texture(t->world, m->reflectance, v);
     for (int c = 0; c < 4; c++) {
-      v->throughput[c] = s->b.beta[c][i];
-      v->reflectance[c] = m->reflectance >= 0 ? s->shade.reflectance[c][i] : 0.0f;
+      v->throughput[c] = at->paths.beta[c][i];
+      v->reflectance[c] = m->reflectance >= 0 ? at->shade.reflectance[c][i] : 0.0f;
     }
   }
 }
@@ -210,27 +201,26 @@ static float largest_throughput(const vlPathVertex *v) {
   return most;
 }
 
-void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t count, uint32_t depth) {
-  const vlTraceScratch *s = t->s;
-  const vlShade *sh = &s->shade;
-  const vlPaths *p = &s->b;
+void vl_record_scatter(vlTracing *t, uint32_t n, uint32_t depth, const vlVertices *at, const vlBsdfSamples *s,
+                       const vlPaths *next, const uint32_t *order, uint32_t count) {
+  const vlPaths *p = &at->paths;
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v) continue;
-    bool none = sh->flags[i] & VL_SAMPLED_NONE;
-    v->lobe = sh->flags[i] & (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
-    v->pdf = none ? 0.0f : sh->pdf[i];
-    for (int c = 0; c < 4; c++) v->factor[c] = none ? 0.0f : sh->value[c][i];
+    bool none = s->flags[i] & VL_SAMPLED_NONE;
+    v->lobe = s->flags[i] & (VL_SAMPLED_SPECULAR | VL_SAMPLED_TRANSMISSION);
+    v->pdf = none ? 0.0f : s->pdf[i];
+    for (int c = 0; c < 4; c++) v->factor[c] = none ? 0.0f : s->weight[c][i];
     float most = largest_throughput(v);
-    v->survival = vl_roulette_survival(most * p->eta_scale[i], depth);
+    v->survival = vl_roulette_survival(most * next->eta_scale[i], depth);
     v->fate = none || !(most > 0.0f) ? VL_PATH_ABSORBED : VL_PATH_ROULETTE;
   }
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = s->order[k];
+    uint32_t i = order[k];
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v) continue;
     v->fate = VL_PATH_ON;
-    put3(v->direction, vl_lane3(p->dx, p->dy, p->dz, i));
+    put3(v->direction, vl_lane3(next->dx, next->dy, next->dz, i));
   }
 }
 
@@ -268,26 +258,26 @@ void vl_record_phase(vlTracing *t, const vlPaths *p, uint32_t n, uint32_t count,
 
 void vl_record_probes(vlTracing *t, uint32_t n) {
   for (uint32_t j = 0; j < n; j++) {
-    vlPathVertex *v = last_vertex(t, t->s->b.lane[j]);
+    vlPathVertex *v = last_vertex(t, t->s->at.paths.lane[j]);
     if (v && !t->s->subsurface->found[j]) v->fate = VL_PATH_ABSORBED;
   }
 }
 
 void vl_record_exits(vlTracing *t, uint32_t n) {
   const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   for (uint32_t i = 0; i < n; i++) {
-    const vlPathVertex *entry = last_vertex(t, s->a.lane[i]);
+    const vlPathVertex *entry = last_vertex(t, s->rays.lane[i]);
     if (!entry) continue;
     const vlPathVertex before = *entry;
-    vlPathVertex *v = new_vertex(t, s->a.lane[i]);
+    vlPathVertex *v = new_vertex(t, s->rays.lane[i]);
     if (!v) continue;
     vlVec3 from = vl_vec3(before.position[0], before.position[1], before.position[2]);
     vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), way = vl_sub(at, from);
     v->event = VL_PATH_EXIT;
     v->bounce = before.bounce;
     v->bsdf = "subsurface";
-    put_ids(&s->hits_b, i, v);
+    put_ids(&s->at.hits, i, v);
     put3(v->position, at);
     v->distance = vl_length(way);
     if (v->distance > 0.0f) put3(v->arrival, vl_mul(way, 1.0f / v->distance));
@@ -295,13 +285,13 @@ void vl_record_exits(vlTracing *t, uint32_t n) {
     put3(v->shading, vl_lane3(f->nx, f->ny, f->nz, i));
     v->uv[0] = f->u[i];
     v->uv[1] = f->v[i];
-    for (int c = 0; c < 4; c++) v->throughput[c] = s->a.beta[c][i];
+    for (int c = 0; c < 4; c++) v->throughput[c] = s->rays.beta[c][i];
   }
 }
 
 void vl_record_left(vlTracing *t, uint32_t n) {
   const vlSubsurfaceScratch *x = t->s->subsurface;
-  const vlPaths *p = &t->s->a;
+  const vlPaths *p = &t->s->rays;
   for (uint32_t i = 0; i < n; i++) {
     vlPathVertex *v = last_vertex(t, p->lane[i]);
     if (!v || !x->alive[x->place[x->entry[i]]]) continue;

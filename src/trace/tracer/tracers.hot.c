@@ -7,26 +7,27 @@
 
 static void start_paths(vlTracing *t) {
   vlTraceBatch *b = t->batch;
-  vlPaths *p = &t->s->a;
+  vlPaths *p = &t->s->rays;
   const vlTwoWay *way = t->def->two_way;
   bool connects = way && way->connect > 0.0f;
   uint32_t padded = VL_PAD(b->n);
-  t->s->a.time = t->s->b.time = b->time;
+  t->s->rays.time = t->s->at.paths.time = b->time;
   if (t->s->volume) t->s->volume->scattered.time = b->time;
   if (b->lambda[0]) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->numbers.u0);
     float shared = way ? way->shared : -1.0f;
     if (t->def->same_wavelengths && shared < 0.0f) shared = 0.5f;
-    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->shade.u0[i] = shared;
-    if (connects) vl_stage_groups(t, padded, t->s->shade.u0);
+    for (uint32_t i = 0; shared >= 0.0f && i < padded; i++) t->s->numbers.u0[i] = shared;
+    if (connects) vl_stage_groups(t, padded, t->s->numbers.u0);
     const vlColorKernels *color = vl_color_kernels(t->def->isa);
     if (t->def->lambda_span > 0.0f)
-      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+      color->uniform_wavelengths(t->def->lambda_low, t->def->lambda_span, b->n, t->s->numbers.u0, b->lambda,
+                                 b->inv_pdf);
     else
-      color->visible_wavelengths(b->n, t->s->shade.u0, b->lambda, b->inv_pdf);
+      color->visible_wavelengths(b->n, t->s->numbers.u0, b->lambda, b->inv_pdf);
   } else if (connects && way->inner.groups > 1) {
-    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->shade.u0);
-    vl_stage_groups(t, padded, t->s->shade.u0);
+    t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, t->s->numbers.u0);
+    vl_stage_groups(t, padded, t->s->numbers.u0);
   }
   for (uint32_t i = 0; i < padded; i++) {
     p->ox[i] = b->ox[i];
@@ -61,20 +62,20 @@ void vl_trace_raycast(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
   uint32_t n = t->batch->n;
-  vl_stage_hits(t, n, true);
-  vl_stage_alpha(t);
-  vl_stage_emission(t, n);
-  n = vl_stage_sort(t, n);
-  vl_stage_shade(t, n);
+  vl_stage_hits(t, n, true, &s->rays, &s->hits);
+  vl_stage_alpha(t, &s->hits);
+  vl_stage_emission(t, n, &s->rays, &s->hits);
+  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
+  vl_stage_shade(t, n, &s->at);
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = s->b.lane[i];
-    const vlWorldMaterial *m = &world->materials.items[s->hits_b.material[i]];
-    if (vl_shape_light(&world->shapes.items[s->hits_b.shape[i]], s->hits_b.prim[i]) != VL_NONE) continue;
+    uint32_t lane = s->at.paths.lane[i];
+    const vlWorldMaterial *m = &world->materials.items[s->at.hits.material[i]];
+    if (vl_shape_light(&world->shapes.items[s->at.hits.shape[i]], s->at.hits.prim[i]) != VL_NONE) continue;
     float lambda[4];
-    vl_path_lambda(&s->b, i, lambda);
+    vl_path_lambda(&s->at.paths, i, lambda);
     for (int c = 0; c < 4; c++) {
-      float reflectance = m->reflectance >= 0 ? s->shade.reflectance[c][i] : 0.8f;
-      float cosine = vl_abs(s->shade.wo[2][i]);
+      float reflectance = m->reflectance >= 0 ? s->at.shade.reflectance[c][i] : 0.8f;
+      float cosine = vl_abs(s->at.shade.wo[2][i]);
       t->batch->radiance[c][lane] += reflectance * cosine * vl_spectral_at(&world->white, c, lambda[c]);
     }
   }
@@ -85,25 +86,28 @@ void vl_trace_raycast(vlTracing *t) {
 void vl_trace_ambient_occlusion(vlTracing *t) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
+  vlNumbers *u = &s->numbers;
   uint32_t n = t->batch->n;
-  vl_stage_hits(t, n, true);
-  vl_stage_alpha(t);
-  n = vl_stage_sort(t, n);
-  vl_stage_shade(t, n);
-  t->sampler->get_2d(t->def->sampler, n, s->b.px, s->b.py, s->b.index, VL_DIM_BOUNCE + VL_DIM_BSDF_UV, sh->u1, sh->u2);
+  vl_stage_hits(t, n, true, &s->rays, &s->hits);
+  vl_stage_alpha(t, &s->hits);
+  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
+  vl_stage_shade(t, n, &s->at);
+  t->sampler->get_2d(t->def->sampler, n, s->at.paths.px, s->at.paths.py, s->at.paths.index,
+                     VL_DIM_BOUNCE + VL_DIM_BSDF_UV, u->u1, u->u2);
   vlShadowRays *q = &s->shadow;
   for (uint32_t i = 0; i < n; i++) {
-    vlVec3 nn = vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]); /* geometric normal, as in pbrt */
-    vlVec3 d = vl_vec3(s->b.dx[i], s->b.dy[i], s->b.dz[i]);
+    vlVec3 nn =
+        vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]); /* geometric normal, as in pbrt */
+    vlVec3 d = vl_vec3(s->at.paths.dx[i], s->at.paths.dy[i], s->at.paths.dz[i]);
     if (vl_dot(nn, d) > 0.0f) nn = vl_neg(nn);
     bool cosine = t->def->ao_cosine;
-    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(sh->u1[i], sh->u2[i]) : vl_warp_hemisphere(sh->u1[i], sh->u2[i]);
+    vlVec3 local = cosine ? vl_warp_cosine_hemisphere(u->u1[i], u->u2[i]) : vl_warp_hemisphere(u->u1[i], u->u2[i]);
     vlVec3 w = vl_from_local(vl_frame_from_z(nn), local);
-    vlVec3 o = vl_offset_origin(vl_vec3(s->surface.px[i], s->surface.py[i], s->surface.pz[i]),
-                                vl_vec3(s->surface.gx[i], s->surface.gy[i], s->surface.gz[i]), s->surface.offset[i], w);
+    vlVec3 o = vl_offset_origin(vl_vec3(s->at.surface.px[i], s->at.surface.py[i], s->at.surface.pz[i]),
+                                vl_vec3(s->at.surface.gx[i], s->at.surface.gy[i], s->at.surface.gz[i]),
+                                s->at.surface.offset[i], w);
     float lambda[4];
-    vl_path_lambda(&s->b, i, lambda);
+    vl_path_lambda(&s->at.paths, i, lambda);
     vl_set_lane3(q->ox, q->oy, q->oz, i, o);
     vl_set_lane3(q->dx, q->dy, q->dz, i, w);
     q->t_max[i] = t->def->ao_distance;
@@ -111,13 +115,12 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
     for (int c = 0; c < 4; c++)
       q->radiance[c][i] = (cosine ? 1.0f : 2.0f * local.z) * vl_spectral_at(&world->white, c, lambda[c]);
   }
-  for (uint32_t i = 0; s->b.time && i < n; i++) q->time[i] = vl_path_time(&s->b, i);
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, s->b.time ? q->time : NULL};
-  vl_accel_occluded(world, n, &rays, &s->occluders, q->occluded);
+  for (uint32_t i = 0; s->at.paths.time && i < n; i++) q->time[i] = vl_path_time(&s->at.paths, i);
+  vl_stage_occluded(t, n, &s->at.paths, q);
   t->batch->shadow_rays += n;
   for (uint32_t i = 0; i < n; i++)
     if (!q->occluded[i])
-      for (int c = 0; c < 4; c++) t->batch->radiance[c][s->b.lane[i]] += q->radiance[c][i];
+      for (int c = 0; c < 4; c++) t->batch->radiance[c][s->at.paths.lane[i]] += q->radiance[c][i];
 }
 
 /* ---- the others -------------------------------------------------------------------------------------------------- */

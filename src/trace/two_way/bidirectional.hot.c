@@ -61,12 +61,12 @@ static void add_sky(vlTracing *t, const vlPaths *p, const uint32_t *lanes, uint3
 
 static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
   vlHitLight met;
-  if (vl_hit_emission(t->world, p, &t->s->hits_a, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
+  if (vl_hit_emission(t->world, p, &t->s->hits, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
 }
 
 /* first: for camera rays. */
 static void emission(vlTracing *t, uint32_t n, bool first) {
-  const vlHits *h = &t->s->hits_a;
+  const vlHits *h = &t->s->hits;
   uint32_t missed[VL_SKY_BLOCK], count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint8_t event = vl_has_media(t) ? t->s->volume->event[i] : VL_ON_SURFACE;
@@ -74,13 +74,13 @@ static void emission(vlTracing *t, uint32_t n, bool first) {
     if (h->shape[i] == VL_NONE)
       missed[count++] = i;
     else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_emission(t, &t->s->a, i, first);
+      add_emission(t, &t->s->rays, i, first);
     if (count == VL_SKY_BLOCK) {
-      add_sky(t, &t->s->a, missed, count, first);
+      add_sky(t, &t->s->rays, missed, count, first);
       count = 0;
     }
   }
-  add_sky(t, &t->s->a, missed, count, first);
+  add_sky(t, &t->s->rays, missed, count, first);
 }
 
 /* ---- one vertex -------------------------------------------------------------------------------------------------- */
@@ -88,8 +88,8 @@ static void emission(vlTracing *t, uint32_t n, bool first) {
 /* Sets a and b: the strategies that begin on the camera's side (two_way.h). */
 static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &t->s->surface;
-  const vlPaths *p = &t->s->b;
+  const vlSurface *f = &t->s->at.surface;
+  const vlPaths *p = &t->s->at.paths;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
@@ -106,47 +106,46 @@ static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
 /* Adds lane i's light sample as shadow ray `count`; vl_two_way_shadows applies its weight. Returns the next count. */
 static uint32_t push_shadow(vlTracing *t, uint32_t i, vlVec3 o, uint32_t count) {
   vlTraceScratch *s = t->s;
-  const vlShade *sh = &s->shade;
+  const vlBsdfValues *bsdf = &s->values;
   const vlLightSamples *l = &s->light;
   vlShadowRays *q = &s->shadow;
   vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
   if (vl_has_media(t)) {
-    const float value[4] = {sh->value[0][i], sh->value[1][i], sh->value[2][i], sh->value[3][i]};
+    const float value[4] = {bsdf->value[0][i], bsdf->value[1][i], bsdf->value[2][i], bsdf->value[3][i]};
     uint32_t medium =
-        vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]],
-                         vl_lane3(s->surface.gx, s->surface.gy, s->surface.gz, i), w, s->volume->b.medium[i]);
-    uint32_t next = vl_volume_push_shadow(t, &s->b, &s->volume->b, i, o, value, sh->pdf[i], medium, count);
-    vl_shadow_from_surface(t, count, i, sh->wi[2][i]);
+        vl_medium_beyond(&t->world->shapes.items[s->at.hits.shape[i]],
+                         vl_lane3(s->at.surface.gx, s->at.surface.gy, s->at.surface.gz, i), w, s->volume->b.medium[i]);
+    uint32_t next = vl_volume_push_shadow(t, &s->at.paths, &s->volume->b, i, o, value, bsdf->pdf[i], medium, count);
+    vl_shadow_from_surface(t, count, i, bsdf->wi[2][i]);
     return next;
   }
   vlVec3 d = l->distant[i] ? w : vl_sub(vl_lane3(l->tx, l->ty, l->tz, i), o);
   vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = l->distant[i] ? VL_INFINITY : VL_ONE_MINUS_EPSILON;
-  for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * sh->value[c][i] * l->radiance[c][i] * l->pdf[i];
-  q->time[count] = vl_path_time(&s->b, i);
-  q->lane[count] = s->b.lane[i];
+  for (int c = 0; c < 4; c++)
+    q->radiance[c][count] = s->at.paths.beta[c][i] * bsdf->value[c][i] * l->radiance[c][i] * l->pdf[i];
+  q->time[count] = vl_path_time(&s->at.paths, i);
+  q->lane[count] = s->at.paths.lane[i];
   return count + 1;
 }
 
 static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
+  const vlBsdfValues *bsdf = &s->values;
   vlTwoWayRows *r = t->batch->two_way;
   const vlTwoWay *way = t->def->two_way;
   if (world->lights.count == 0) return;
-  vlPaths *p = &s->b;
-  const vlSurface *f = &s->surface;
-  vl_stage_light_samples(t, n, p, dimension);
-  vl_stage_light_bsdf(t, n);
+  const vlPaths *p = &s->at.paths;
+  const vlSurface *f = &s->at.surface;
+  vl_stage_light_samples(t, n, p, f, dimension, &s->light);
+  vl_stage_light_bsdf(t, n, &s->at, &s->light, &s->values);
   const vlLightSamples *l = &s->light;
   uint32_t count = 0, *lane_of = r->count;
-  for (uint32_t i = 0; i < VL_PAD(n); i++)
-    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;
-    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    float sum = bsdf->value[0][i] + bsdf->value[1][i] + bsdf->value[2][i] + bsdf->value[3][i];
     if (!(sum > 0.0f) && sum == sum) continue;
     vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
     vlVec3 w = vl_lane3(l->wx, l->wy, l->wz, i);
@@ -155,43 +154,37 @@ static void direct_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dime
     point.p = vl_lane3(l->tx, l->ty, l->tz, i);
     r->light_ways[count] =
         vl_abs(vl_dot(w, g)) * vl_emission_density(world, way, l->light[i], w, vl_length(vl_sub(point.p, at)), &point);
-    r->light_pdf[count] = l->delta[i] ? 0.0f : sh->pdf[i];
+    r->light_pdf[count] = l->delta[i] ? 0.0f : bsdf->pdf[i];
     r->own[count] = l->pdf[i];
     lane_of[count] = i;
     count = push_shadow(t, i, vl_offset_origin(at, g, f->offset[i], w), count);
   }
-  vl_stage_reverse(t, r, n);
+  vl_stage_reverse(t, n, &s->at, bsdf->wi, &r->back);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = lane_of[k];
-    r->others[k] = r->light_pdf[k] + (way->merged + r->a[i] * r->rev[i] + r->b[i]) * r->light_ways[k];
+    r->others[k] = r->light_pdf[k] + (way->merged + r->a[i] * r->back.pdf[i] + r->b[i]) * r->light_ways[k];
   }
   vl_two_way_shadows(t, p, count, depth);
 }
 
 static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
+  const vlBsdfSamples *samples = &s->samples;
   vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->surface;
-  const vlPaths *p = &s->b;
-  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
-  vl_volume_go_on(t, count);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
-    r->pdf[i] = sh->pdf[i];
-  }
-  vl_stage_reverse(t, r, n);
   const vlTwoWay *way = t->def->two_way;
+  const vlSurface *f = &s->at.surface;
+  const vlPaths *p = &s->rays;
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
+  vl_volume_go_on(t, count);
+  vl_stage_reverse(t, n, &s->at, samples->wi, &r->back);
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = s->order[k];
-    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
-    float pdf = r->pdf[i];
-    uint32_t lane = s->a.lane[k], *smooth = &r->smooth[lane];
-    r->link[lane] = !(sh->flags[i] & VL_SAMPLED_SPECULAR) && pdf > 0.0f ? way->connect / pdf : 0.0f;
-    if (way->apart && s->a.specular[k] && *smooth == depth && depth < t->def->max_depth) *smooth = depth + 1;
-    r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
-                         ? r->a[i] * cosine
-                         : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + way->merged) * cosine / pdf : 0.0f);
+    uint32_t i = s->order[k], lane = p->lane[k], *smooth = &r->smooth[lane];
+    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, k), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float pdf = samples->pdf[i];
+    bool specular = samples->flags[i] & VL_SAMPLED_SPECULAR;
+    r->link[lane] = !specular && pdf > 0.0f ? way->connect / pdf : 0.0f;
+    if (way->apart && p->specular[k] && *smooth == depth && depth < t->def->max_depth) *smooth = depth + 1;
+    r->carry[lane] = vl_carried(r, i, specular, pdf, way->merged, cosine);
   }
   return count;
 }
@@ -201,10 +194,10 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   uint32_t *smooth = t->batch->two_way->smooth;
   for (uint32_t i = 0; i < n; i++) {
-    uint32_t lane = s->a.lane[i];
+    uint32_t lane = s->rays.lane[i];
     if (depth == 0) smooth[lane] = 0;
     if (depth - smooth[lane] < t->def->max_depth) continue;
-    s->hits_a.shape[i] = VL_NONE;
+    s->hits.shape[i] = VL_NONE;
     if (vl_has_media(t)) s->volume->event[i] = VL_AT_END;
   }
 }
@@ -213,11 +206,12 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* Scatters the sorted lanes on surfaces. Returns the number of paths that go on. */
 static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
-  n = vl_stage_sort(t, n);
+  vlTraceScratch *s = t->s;
+  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
-  vl_stage_shade(t, n);
-  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume->b, n);
+  vl_stage_shade(t, n, &s->at);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->at.paths, &t->s->volume->b, n);
   arrive(t, n, depth);
   direct_light(t, n, depth, dimension);
   if (t->def->two_way->inner.paths) vl_stage_connect(t, n, depth);
@@ -236,8 +230,8 @@ void vl_bidirectional_tracer(vlTracing *t) {
     if (media) {
       vl_volume_travel(t, n, depth, depth < most);
     } else {
-      vl_stage_hits(t, n, depth == 0);
-      if (depth == 0) vl_stage_alpha(t);
+      vl_stage_hits(t, n, depth == 0, &t->s->rays, &t->s->hits);
+      if (depth == 0) vl_stage_alpha(t, &t->s->hits);
     }
     emission(t, n, depth == 0);
     if (way->light_only || depth >= most) break;

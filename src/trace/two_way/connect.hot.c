@@ -22,9 +22,9 @@ void vl_stage_groups(vlTracing *t, uint32_t n, float *u) {
 
 static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
   const vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   const vlTwoWayRows *r = t->batch->two_way;
-  float z = s->shade.wo[2][i];
+  float z = s->at.shade.wo[2][i];
   vlEnd e = {.p = vl_lane3(f->px, f->py, f->pz, i),
              .g = vl_lane3(f->gx, f->gy, f->gz, i),
              .n = vl_mul(vl_lane3(f->nx, f->ny, f->nz, i), z < 0.0f ? -1.0f : 1.0f),
@@ -32,7 +32,7 @@ static vlEnd end_on_surface(const vlTracing *t, uint32_t i, uint32_t depth) {
              .diffuse = vl_is_inner_end(t, i),
              .room = t->def->max_depth - depth - 1,
              .air = vl_has_media(t) ? vl_air(t->world, s->volume->b.medium[i]) : 0};
-  for (int c = 0; c < 4; c++) e.tint[c] = s->b.beta[c][i] * (e.diffuse ? s->shade.reflectance[c][i] : 1.0f);
+  for (int c = 0; c < 4; c++) e.tint[c] = s->at.paths.beta[c][i] * (e.diffuse ? s->at.shade.reflectance[c][i] : 1.0f);
   return e;
 }
 
@@ -143,7 +143,7 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
   enum { AHEAD = 8 };
   uint32_t at[AHEAD][CANDIDATES], seed[AHEAD];
   bool drawn[AHEAD];
-  const vlPaths *p = inside ? &t->s->volume->scattered : &t->s->b;
+  const vlPaths *p = inside ? &t->s->volume->scattered : &t->s->at.paths;
   for (uint32_t k = 0; k < n + AHEAD; k++) {
     uint32_t slot = k % AHEAD, i = k - AHEAD;
     if (k >= AHEAD && drawn[slot]) {
@@ -155,7 +155,7 @@ void vl_choose_vertices(vlTracing *t, uint32_t n, uint32_t depth, bool inside, u
     if (k >= n) continue;
     seed[slot] = vl_hash3((uint32_t)p->px[k] ^ t->def->sampler->seed, (uint32_t)p->py[k], p->index[k]);
     seed[slot] = vl_hash2(seed[slot], depth);
-    drawn[slot] = (inside || !vl_all_specular(t->world, t->s, k)) && draw(t, p->lane[k], seed[slot], at[slot]);
+    drawn[slot] = (inside || !vl_all_specular(t->world, &t->s->at, k)) && draw(t, p->lane[k], seed[slot], at[slot]);
   }
 }
 
@@ -171,8 +171,8 @@ static void join_from_surface(vlTracing *t, uint32_t i, uint32_t vertex, float w
   const vlTraceScratch *s = t->s;
   float eye[3];
   if (!t->world->by_channel) return;
-  vl_passed_on(s, i, wi_z, eye);
-  vl_join_channels(t, &s->b, i, eye, t->def->two_way->inner.passed[vertex], count);
+  vl_passed_on(t, &s->at, i, wi_z, eye);
+  vl_join_channels(t, &s->at.paths, i, eye, t->def->two_way->inner.passed[vertex], count);
 }
 
 /* Adds lane i's connection to a vertex as shadow ray `count`. */
@@ -181,7 +181,7 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   const vlTwoWay *way = t->def->two_way;
   const vlLightVertex *x = &way->inner.vertices[vertex];
   vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   vlShadowRays *q = &s->shadow;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
   vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i), xg = vl_vec3(x->g[0], x->g[1], x->g[2]);
@@ -189,44 +189,46 @@ static void push(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   float inv2 = 1.0f / vl_length2(vl_sub(xp, at)), there = vl_abs(vl_dot(xg, w));
   float back = -vl_dot(vl_vec3(x->n[0], x->n[1], x->n[2]), w) * VL_INV_PI;
   r->own[count] = way->connect;
-  r->others[count] = inv2 * ((r->a[i] * r->rev[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
-                             x->back * r->forth[i] * there);
+  r->others[count] = inv2 * ((r->a[i] * r->back.pdf[i] + r->b[i] + way->merged) * back * vl_abs(vl_dot(g, w)) +
+                             x->back * s->values.pdf[i] * there);
   float factor = r->factor[i];
-  factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->b, i) ? 0.25f : 1.0f);
-  for (int c = 0; c < 4; c++) q->radiance[c][count] = s->b.beta[c][i] * r->value[c][i] * x->power[c] * factor;
+  factor *= way->connect * there * inv2 * (x->alone && vl_hero_only(&s->at.paths, i) ? 0.25f : 1.0f);
+  for (int c = 0; c < 4; c++)
+    q->radiance[c][count] = s->at.paths.beta[c][i] * s->values.value[c][i] * x->power[c] * factor;
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], w), d = vl_sub(vl_offset_end(xp, xg, x->offset, w, at), o);
   vl_set_lane3(q->ox, q->oy, q->oz, count, o);
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
   q->t_max[count] = VL_ONE_MINUS_EPSILON;
-  q->time[count] = vl_path_time(&s->b, i);
-  q->lane[count] = s->b.lane[i];
+  q->time[count] = vl_path_time(&s->at.paths, i);
+  q->lane[count] = s->at.paths.lane[i];
 }
 
 /* The same in worlds with media. */
 static void push_in_media(vlTracing *t, uint32_t i, uint32_t vertex, uint32_t count) {
   vlTraceScratch *s = t->s;
   const vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
   vlVec3 w = vl_lane3(r->toward[0], r->toward[1], r->toward[2], i);
-  const vlWorldShape *shape = &t->world->shapes.items[s->hits_b.shape[i]];
+  const vlWorldShape *shape = &t->world->shapes.items[s->at.hits.shape[i]];
+  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])s->values.value;
   vlConnection c = {.i = i,
                     .at = at,
                     .o = vl_offset_origin(at, g, f->offset[i], w),
                     .w = w,
-                    .value = {r->value[0][i], r->value[1][i], r->value[2][i], r->value[3][i]},
-                    .forth = r->forth[i],
-                    .ways = r->a[i] * r->rev[i] + r->b[i] + t->def->two_way->merged,
+                    .value = {value[0][i], value[1][i], value[2][i], value[3][i]},
+                    .forth = s->values.pdf[i],
+                    .ways = r->a[i] * r->back.pdf[i] + r->b[i] + t->def->two_way->merged,
                     .cosine = vl_abs(vl_dot(g, w)),
                     .factor = r->factor[i],
                     .medium = vl_medium_beyond(shape, g, w, s->volume->b.medium[i])};
-  vl_push_connection(t, &s->b, &s->volume->b, &c, vertex, count);
+  vl_push_connection(t, &s->at.paths, &s->volume->b, &c, vertex, count);
 }
 
 void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlTwoWayRows *r = t->batch->two_way;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   const vlLightVertices *inner = &t->def->two_way->inner;
   if (depth + 2 > t->def->max_depth) return;
   uint32_t found = 0;
@@ -238,22 +240,21 @@ void vl_stage_connect(vlTracing *t, uint32_t n, uint32_t depth) {
       w = vl_normalize(vl_sub(vl_vec3(p[0], p[1], p[2]), vl_lane3(f->px, f->py, f->pz, i)));
       found++;
     }
-    s->light.wx[i] = r->toward[0][i] = w.x;
-    s->light.wy[i] = r->toward[1][i] = w.y;
-    s->light.wz[i] = r->toward[2][i] = w.z;
+    vl_set_lane3(r->toward[0], r->toward[1], r->toward[2], i, w);
   }
   if (!found) return;
-  vl_stage_there_and_back(t, r, n);
+  vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values, &r->back);
+  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])s->values.value;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (r->first[i] == VL_NONE) continue;
-    float sum = r->value[0][i] + r->value[1][i] + r->value[2][i] + r->value[3][i];
+    float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(sum > 0.0f) && sum == sum) continue;
     if (vl_has_media(t))
       push_in_media(t, i, r->first[i], count);
     else
       push(t, i, r->first[i], count);
-    join_from_surface(t, i, r->first[i], r->wi[2][i], count++);
+    join_from_surface(t, i, r->first[i], s->values.wi[2][i], count++);
   }
-  vl_two_way_shadows(t, &s->b, count, depth + VL_CONNECTION_KEY);
+  vl_two_way_shadows(t, &s->at.paths, count, depth + VL_CONNECTION_KEY);
 }

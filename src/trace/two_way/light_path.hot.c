@@ -7,36 +7,27 @@
 /* Longer paths carry almost nothing, and would need memory for their photons. */
 enum { LIGHT_BOUNCES = 255 };
 
-void vl_stage_reverse(vlTracing *t, vlTwoWayRows *r, uint32_t n) {
-  vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
-  const vlSurface *f = &s->surface;
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    float x = sh->wo[0][i], y = sh->wo[1][i], z = sh->wo[2][i];
-    s->light.wx[i] = x * sh->tx[i] + y * sh->bx[i] + z * f->nx[i];
-    s->light.wy[i] = x * sh->ty[i] + y * sh->by[i] + z * f->ny[i];
-    s->light.wz[i] = x * sh->tz[i] + y * sh->bz[i] + z * f->nz[i];
-    r->wo[0][i] = x;
-    r->wo[1][i] = y;
-    r->wo[2][i] = z;
-    for (int k = 0; k < 3; k++) sh->wo[k][i] = r->wi[k][i];
+void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, const float wi[3][VL_ROW_SIZE],
+                      vlBsdfValues *back) {
+  const vlShade *sh = &at->shade;
+  const vlSurface *f = &at->surface;
+  for (uint32_t i = 0; i < VL_PAD(n); i++) { /* wo in world space and back: as a light sample's direction is rounded */
+    float a = sh->wo[0][i], b = sh->wo[1][i], c = sh->wo[2][i];
+    float x = a * sh->tx[i] + b * sh->bx[i] + c * f->nx[i];
+    float y = a * sh->ty[i] + b * sh->by[i] + c * f->ny[i];
+    float z = a * sh->tz[i] + b * sh->bz[i] + c * f->nz[i];
+    back->wi[0][i] = x * sh->tx[i] + y * sh->ty[i] + z * sh->tz[i];
+    back->wi[1][i] = x * sh->bx[i] + y * sh->by[i] + z * sh->bz[i];
+    back->wi[2][i] = x * f->nx[i] + y * f->ny[i] + z * f->nz[i];
   }
-  vl_stage_light_bsdf(t, n);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    r->rev[i] = sh->pdf[i];
-    for (int k = 0; k < 3; k++) sh->wo[k][i] = r->wo[k][i];
-  }
+  vl_stage_bsdf(t, n, at, wi, back);
 }
 
-void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n) {
-  const vlShade *sh = &t->s->shade;
-  vl_stage_light_bsdf(t, n);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) rows->wi[k][i] = sh->wi[k][i];
-    for (int c = 0; c < 4; c++) rows->value[c][i] = sh->value[c][i];
-    rows->forth[i] = sh->pdf[i];
-  }
-  vl_stage_reverse(t, rows, n);
+void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float toward[3][VL_ROW_SIZE],
+                             vlBsdfValues *there, vlBsdfValues *back) {
+  vl_stage_local(n, at, toward[0], toward[1], toward[2], there->wi);
+  vl_stage_bsdf(t, n, at, at->shade.wo, there);
+  vl_stage_reverse(t, n, at, (const float(*)[VL_ROW_SIZE])there->wi, back);
 }
 
 /* ---- start ------------------------------------------------------------------------------------------------------- */
@@ -44,7 +35,7 @@ void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n) {
 /* Writes the wavelengths of the batch's paths to rows 4..7, 1 / densities to rows 8..11. */
 static void wavelengths(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   const vlTwoWay *way = t->def->two_way;
-  float *u = t->s->shade.u0;
+  float *u = t->s->numbers.u0;
   float *const lambda[4] = {r->rows[4], r->rows[5], r->rows[6], r->rows[7]};
   float *const inv_pdf[4] = {r->rows[8], r->rows[9], r->rows[10], r->rows[11]};
   t->sampler->get_1d(t->def->sampler, b->n, b->px, b->py, b->index, VL_DIM_WAVELENGTH, u);
@@ -66,15 +57,15 @@ static bool start_medium(const vlTracing *t, const vlEmission *e, uint32_t *medi
 static uint32_t set_out(vlTracing *t, vlTwoWayRows *r, const vlLightBatch *b) {
   const vlWorld *world = t->world;
   vlTraceScratch *s = t->s;
-  vlPaths *p = &s->a;
+  vlPaths *p = &s->rays;
   uint32_t n = b->n, count = 0;
   bool rgb = world->def.color == VL_COLOR_RGB;
   if (!rgb) wavelengths(t, r, b);
-  float *u = s->shade.u0, *u1 = s->shade.u1, *v1 = s->shade.u2, *u2 = r->wi[0], *v2 = r->wi[1];
+  float *u = s->numbers.u0, *u1 = s->numbers.u1, *v1 = s->numbers.u2, *u2 = r->lens[0], *v2 = r->lens[1];
   t->sampler->get_1d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_TIME, u);
   t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_FILM, u1, v1);
   t->sampler->get_2d(t->def->sampler, n, b->px, b->py, b->index, VL_DIM_LENS, u2, v2);
-  p->time = s->b.time = b->time;
+  p->time = s->at.paths.time = b->time;
   if (s->volume) s->volume->scattered.time = b->time;
   for (uint32_t i = 0; i < n; i++) {
     float lambda[4];
@@ -127,8 +118,8 @@ float vl_light_sample_pdf(const vlWorld *world, const vlTwoWayRows *r, uint32_t 
 
 /* Sets a and b of the n shaded lanes: the strategies that begin on the light's side (two_way.h). */
 static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
-  const vlSurface *f = &t->s->surface;
-  const vlPaths *p = &t->s->b;
+  const vlSurface *f = &t->s->at.surface;
+  const vlPaths *p = &t->s->at.paths;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 w = vl_neg(vl_lane3(p->dx, p->dy, p->dz, i));
@@ -148,11 +139,11 @@ static void arrive(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth) {
 /* ---- photons ----------------------------------------------------------------------------------------------------- */
 
 static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
-  const vlPaths *p = &t->s->b;
-  const vlSurface *f = &t->s->surface;
+  const vlPaths *p = &t->s->at.paths;
+  const vlSurface *f = &t->s->at.surface;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (vl_all_specular(t->world, t->s, i) || !(r->cosine[i] > 0.0f)) continue;
+    if (vl_all_specular(t->world, &t->s->at, i) || !(r->cosine[i] > 0.0f)) continue;
     vlPhoton *x = &r->photons[count];
     uint32_t lane = p->lane[i];
     x->p[0] = f->px[i];
@@ -179,9 +170,9 @@ static void leave_photons(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
 
 static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth) {
   const vlTwoWay *way = t->def->two_way;
-  const vlPaths *p = &t->s->b;
-  const vlSurface *f = &t->s->surface;
-  const vlShade *sh = &t->s->shade;
+  const vlPaths *p = &t->s->at.paths;
+  const vlSurface *f = &t->s->at.surface;
+  const vlShade *sh = &t->s->at.shade;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i], path = b->first + lane;
@@ -216,42 +207,36 @@ static void leave_vertices(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint3
 
 static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t depth, uint32_t dimension) {
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
-  const vlSurface *f = &s->surface;
-  const vlPaths *p = &s->b;
-  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension);
+  const vlSurface *f = &s->at.surface;
+  const vlPaths *p = &s->rays;
+  const vlBsdfSamples *samples = &s->samples;
+  uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
   vl_volume_go_on(t, count);
-  for (uint32_t i = 0; i < VL_PAD(n); i++) {
-    for (int k = 0; k < 3; k++) r->wi[k][i] = sh->wi[k][i];
-    r->pdf[i] = sh->pdf[i];
-    float z = vl_abs(sh->wi[2][i]);
-    r->turn[i] = z > 0.0f ? vl_abs(sh->wo[2][i]) / z : 0.0f;
-  }
-  vl_stage_reverse(t, r, n);
+  vl_stage_reverse(t, n, &s->at, samples->wi, &r->back);
   float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
-    uint32_t i = s->order[k], lane = s->a.lane[k];
-    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, i), vl_lane3(f->gx, f->gy, f->gz, i)));
-    float pdf = r->pdf[i];
-    r->carry[lane] = sh->flags[i] & VL_SAMPLED_SPECULAR
-                         ? r->a[i] * cosine
-                         : (pdf > 0.0f ? (r->a[i] * r->rev[i] + r->b[i] + merged) * cosine / pdf : 0.0f);
-    bool inner = !(sh->flags[i] & VL_SAMPLED_SPECULAR) && vl_is_inner_end(t, i) && pdf > 0.0f;
-    r->link[lane] = inner ? connect / pdf : 0.0f;
-    float turn = r->cosine[i] > 0.0f ? r->turn[i] * cosine / r->cosine[i] * sh->eta_scale[i] : 0.0f;
-    for (int c = 0; c < 4; c++) s->a.beta[c][k] *= turn;
-    s->a.eta_scale[k] = 1.0f;
+    uint32_t i = s->order[k], lane = p->lane[k];
+    float cosine = vl_abs(vl_dot(vl_lane3(p->dx, p->dy, p->dz, k), vl_lane3(f->gx, f->gy, f->gz, i)));
+    float pdf = samples->pdf[i];
+    bool specular = samples->flags[i] & VL_SAMPLED_SPECULAR;
+    r->carry[lane] = vl_carried(r, i, specular, pdf, merged, cosine);
+    r->link[lane] = !specular && vl_is_inner_end(t, i) && pdf > 0.0f ? connect / pdf : 0.0f;
+    float z = vl_abs(samples->wi[2][i]), bent = z > 0.0f ? vl_abs(s->at.shade.wo[2][i]) / z : 0.0f;
+    float turn = r->cosine[i] > 0.0f ? bent * cosine / r->cosine[i] * samples->eta_scale[i] : 0.0f;
+    for (int c = 0; c < 4; c++) s->rays.beta[c][k] *= turn;
+    s->rays.eta_scale[k] = 1.0f;
   }
   return count;
 }
 
 static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
                             uint32_t dimension, bool last) {
-  n = vl_stage_sort(t, n);
+  vlTraceScratch *s = t->s;
+  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
   if (n == 0) return 0;
   vl_volume_sorted(t, n);
-  vl_stage_shade(t, n);
-  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->b, &t->s->volume->b, n);
+  vl_stage_shade(t, n, &s->at);
+  if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->at.paths, &t->s->volume->b, n);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
   if (t->def->two_way->inner.paths && !last) leave_vertices(t, r, b, n, depth);
@@ -279,7 +264,7 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
     if (media)
       vl_volume_travel(&t, n, depth, false);
     else
-      vl_stage_hits(&t, n, false);
+      vl_stage_hits(&t, n, false, &scratch->rays, &scratch->hits);
     uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0;
     bool last = depth + 1 == most;
     if (media) inside = vl_light_in_media(&t, r, batch, n, depth, dimension, last);

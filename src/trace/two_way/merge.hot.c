@@ -64,7 +64,7 @@ static float pair_weight(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   float others = r->a[i] * back + r->b[i] + x->a * forth + x->b;
   /* the weight H / (H + others), divided by H */
   float weight = 1.0f / ((x->medium ? way->merged_volume : way->merged) + others);
-  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->b, i) ? 0.25f * weight : weight;
+  return x->alone && vl_hero_only(x->medium ? &t->s->volume->scattered : &t->s->at.paths, i) ? 0.25f * weight : weight;
 }
 
 /* The photon's power for camera path i. With attenuation by RGB channel, the transmittance of the whole path is not the
@@ -74,18 +74,19 @@ static void joined_power(const vlTracing *t, uint32_t i, const vlPhoton *x, floa
   for (int c = 0; c < 4; c++) power[c] = x->power[c];
   if (!t->world->by_channel) return;
   const vlTraceScratch *s = t->s;
-  const vlPaths *p = x->medium ? &s->volume->scattered : &s->b;
+  const vlPaths *p = x->medium ? &s->volume->scattered : &s->at.paths;
   uint32_t lane = p->lane[i];
   float light[3], eye[3] = {s->passed[0][lane], s->passed[1][lane], s->passed[2][lane]};
-  if (!x->medium) vl_passed_on(s, i, wi_z, eye);
+  if (!x->medium) vl_passed_on(t, &s->at, i, wi_z, eye);
   vl_unpack_passed(x->passed, light);
   for (int c = 0; c < 4; c++) power[c] *= vl_joined_factor(light, eye, p->lambda[c][i]);
 }
 
 static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4]) {
   const vlTraceScratch *s = t->s;
-  const vlShade *sh = &s->shade;
-  float zo = sh->wo[2][i], zi = x->w[0] * s->surface.nx[i] + x->w[1] * s->surface.ny[i] + x->w[2] * s->surface.nz[i];
+  const vlShade *sh = &s->at.shade;
+  float zo = sh->wo[2][i],
+        zi = x->w[0] * s->at.surface.nx[i] + x->w[1] * s->at.surface.ny[i] + x->w[2] * s->at.surface.nz[i];
   if (!(zo * zi > 0.0f)) return;
   float forth = vl_abs(zi) * VL_INV_PI, back = vl_abs(zo) * VL_INV_PI;
   float weight = pair_weight(t, i, x, forth, back) * forth;
@@ -98,7 +99,7 @@ static void add_diffuse(vlTracing *t, uint32_t i, const vlPhoton *x, float sum[4
 static void add_listed(vlTracing *t, uint32_t n) {
   vlTwoWayRows *r = t->batch->two_way;
   vlTraceScratch *s = t->s;
-  const vlPaths *p = &s->b;
+  const vlPaths *p = &s->at.paths;
   const vlPhoton *photons = t->def->two_way->map.photons;
   uint32_t most = 0;
   for (uint32_t i = 0; i < n; i++) most = r->count[i] > most ? r->count[i] : most;
@@ -106,18 +107,18 @@ static void add_listed(vlTracing *t, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
       bool has = round < r->count[i];
       const float *w = has ? photons[r->pair[r->first[i] + round]].w : NULL;
-      s->light.wx[i] = has ? w[0] : s->surface.nx[i];
-      s->light.wy[i] = has ? w[1] : s->surface.ny[i];
-      s->light.wz[i] = has ? w[2] : s->surface.nz[i];
+      r->toward[0][i] = has ? w[0] : s->at.surface.nx[i];
+      r->toward[1][i] = has ? w[1] : s->at.surface.ny[i];
+      r->toward[2][i] = has ? w[2] : s->at.surface.nz[i];
     }
-    vl_stage_there_and_back(t, r, n);
+    vl_stage_there_and_back(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->toward, &s->values, &r->back);
     for (uint32_t i = 0; i < n; i++) {
       if (round >= r->count[i]) continue;
       const vlPhoton *x = &photons[r->pair[r->first[i] + round]];
-      float weight = pair_weight(t, i, x, r->forth[i], r->rev[i]), power[4];
-      joined_power(t, i, x, r->wi[2][i], power);
+      float weight = pair_weight(t, i, x, s->values.pdf[i], r->back.pdf[i]), power[4];
+      joined_power(t, i, x, s->values.wi[2][i], power);
       for (int c = 0; c < 4; c++)
-        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * r->value[c][i] * power[c] * weight;
+        t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * s->values.value[c][i] * power[c] * weight;
     }
   }
   for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
@@ -131,15 +132,15 @@ static uint32_t most_bounces(const vlTracing *t, uint32_t lane, uint32_t depth) 
 void vl_stage_merge(vlTracing *t, uint32_t n, uint32_t depth) {
   const vlPhotonMap *map = &t->def->two_way->map;
   vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
-  const vlPaths *p = &s->b;
+  const vlSurface *f = &s->at.surface;
+  const vlPaths *p = &s->at.paths;
   vlTwoWayRows *r = t->batch->two_way;
   uint32_t listed = 0;
   if (!map->buckets) return;
   for (uint32_t i = 0; i < n; i++) r->count[i] = 0;
   for (uint32_t i = 0; i < n; i++) {
-    if (vl_all_specular(t->world, s, i)) continue;
-    bool diffuse = t->world->materials.items[s->hits_b.material[i]].kind == VL_MATERIAL_DIFFUSE;
+    if (vl_all_specular(t->world, &s->at, i)) continue;
+    bool diffuse = t->world->materials.items[s->at.hits.material[i]].kind == VL_MATERIAL_DIFFUSE;
     float sum[4] = {0, 0, 0, 0};
     Near near = near_start(map, vl_lane3(f->px, f->py, f->pz, i), 0, most_bounces(t, p->lane[i], depth));
     r->first[i] = listed;

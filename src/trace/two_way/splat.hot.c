@@ -87,8 +87,7 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
                        uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlShadowRays *q = &s->shadow;
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
+  vl_stage_occluded(t, count, p, q);
   b->shadow_rays += count;
   if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   float *value[4], *lambda[4], *inv_pdf[4];
@@ -117,7 +116,7 @@ void vl_two_way_splats(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, const vlP
 /* Adds shadow ray `count` of surface lane i, to the point `target` on the lens. */
 static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float end, float wi_z) {
   vlTraceScratch *s = t->s;
-  const vlSurface *f = &s->surface;
+  const vlSurface *f = &s->at.surface;
   vlShadowRays *q = &s->shadow;
   vlVec3 at = vl_lane3(f->px, f->py, f->pz, i), g = vl_lane3(f->gx, f->gy, f->gz, i);
   vlVec3 o = vl_offset_origin(at, g, f->offset[i], vl_sub(target, at));
@@ -128,14 +127,14 @@ static void push(vlTracing *t, uint32_t i, uint32_t count, vlVec3 target, float 
     vlVolumeScratch *v = s->volume;
     q->t_max[count] = vl_min(end, 1.0f - 0x1p-21f) * vl_length(d);
     d = vl_normalize(d);
-    v->shadow_medium[count] = vl_medium_beyond(&t->world->shapes.items[s->hits_b.shape[i]], g, d, v->b.medium[i]);
+    v->shadow_medium[count] = vl_medium_beyond(&t->world->shapes.items[s->at.hits.shape[i]], g, d, v->b.medium[i]);
     v->from[count] = i;
     vl_shadow_from_surface(t, count, i, wi_z);
     for (int c = 0; c < 4; c++) v->density[c][count] = v->b.u[c][i];
   }
   vl_set_lane3(q->dx, q->dy, q->dz, count, d);
-  q->time[count] = vl_path_time(&s->b, i);
-  q->lane[count] = s->b.lane[i];
+  q->time[count] = vl_path_time(&s->at.paths, i);
+  q->lane[count] = s->at.paths.lane[i];
 }
 
 void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
@@ -144,16 +143,17 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
   if (!way->eye.sees) return;
   if (way->alone && depth == 0) return; /* the camera sees a highlight: no random direction leads there */
   vlTraceScratch *s = t->s;
-  vlShade *sh = &s->shade;
-  const vlSurface *f = &s->surface;
-  const vlPaths *p = &s->b;
+  const vlShade *sh = &s->at.shade;
+  vlNumbers *u = &s->numbers;
+  const vlSurface *f = &s->at.surface;
+  const vlPaths *p = &s->at.paths;
   vlShadowRays *q = &s->shadow;
   if (way->eye.lens_radius > 0.0f)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, u->u1, u->u2);
   vl_look_from(t, r, n, f->px, f->py, f->pz);
   for (uint32_t i = 0; i < VL_PAD(n); i++) {
     uint32_t k = i < n ? i : n - 1, lane = p->lane[k];
-    vlCameraSample view = vl_view_of(t, r, k, lane, vl_lane3(f->px, f->py, f->pz, i), sh->u1[i], sh->u2[i]);
+    vlCameraSample view = vl_view_of(t, r, k, lane, vl_lane3(f->px, f->py, f->pz, i), u->u1[i], u->u2[i]);
     vlVec3 w = view.w;
     r->wi[0][i] = w.x * sh->tx[i] + w.y * sh->ty[i] + w.z * sh->tz[i];
     r->wi[1][i] = w.x * sh->bx[i] + w.y * sh->by[i] + w.z * sh->bz[i];
@@ -166,19 +166,20 @@ void vl_connect_to_camera(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32
     r->y[i] = view.y;
     vl_set_lane3(r->eye[0], r->eye[1], r->eye[2], i, view.from);
   }
-  vl_stage_reverse(t, r, n);
+  vl_stage_reverse(t, n, &s->at, (const float(*)[VL_ROW_SIZE])r->wi, &r->back);
+  const float(*value)[VL_ROW_SIZE] = (const float(*)[VL_ROW_SIZE])r->back.value;
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
-    float sum = sh->value[0][i] + sh->value[1][i] + sh->value[2][i] + sh->value[3][i];
+    float sum = value[0][i] + value[1][i] + value[2][i] + value[3][i];
     if (!(r->per_square[i] > 0.0f) || !(sum > 0.0f) || !(r->cosine[i] > 0.0f)) continue;
     push(t, i, count, vl_lane3(r->eye[0], r->eye[1], r->eye[2], i), r->end[i], r->wi[2][i]);
-    r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->rev[i] + r->b[i];
+    r->others[count] = way->light_only ? 0.0f : way->merged + r->a[i] * r->back.pdf[i] + r->b[i];
     r->own[count] =
         way->paths / r->per_square[i]; /* S_1: density of this strategy, divided by P_1 L_1 like the others */
     uint32_t lane = p->lane[i];
     float inv = 1.0f / r->cosine[i];
     for (int c = 0; c < 4; c++)
-      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * sh->value[c][i] * inv * r->weight[i];
+      q->radiance[c][count] = p->beta[c][i] * r->flux[c][lane] * value[c][i] * inv * r->weight[i];
     r->x[count] = r->x[i];
     r->y[count] = r->y[i];
     count++;
@@ -191,11 +192,11 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) 
   if (!way->eye.sees || way->light_only) return;
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = s->volume;
-  vlShade *sh = &s->shade;
-  const vlPaths *p = &s->a;
+  vlNumbers *u = &s->numbers;
+  const vlPaths *p = &s->rays;
   vlShadowRays *q = &s->shadow;
   if (way->eye.lens_radius > 0.0f)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, VL_DIM_BOUNCE + VL_DIM_LIGHT_UV, u->u1, u->u2);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
@@ -208,7 +209,7 @@ void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n) 
     if (!(r->a[i] > 0.0f)) continue;
     vlVec3 at = vl_lane3(r->lx, r->ly, r->lz, lane);
     vlVec3 g = vl_lane3(r->lnx, r->lny, r->lnz, lane);
-    vlCameraSample view = vl_view_of(t, r, i, lane, at, sh->u1[i], sh->u2[i]);
+    vlCameraSample view = vl_view_of(t, r, i, lane, at, u->u1[i], u->u2[i]);
     float cosine = vl_dot(view.w, g);
     if (!view.seen || !(r->cosine[i] * cosine >= 0.0f) || cosine == 0.0f) continue;
     float shown = vl_shown(way, light, r->a[i], view.per_square, vl_abs(cosine));

@@ -26,23 +26,22 @@ typedef struct vlTwoWayRows {
   VL_ROW float area[3][VL_ROW_SIZE]; /* of a camera path of one's own camera: vlCameraSample.area; 0: not connected */
   /* The following rows are indexed by element of the sorted batch. */
   VL_ROW float a[VL_ROW_SIZE], b[VL_ROW_SIZE]; /* S = a rev + b */
-  VL_ROW float rev[VL_ROW_SIZE];               /* vl_stage_reverse */
   VL_ROW float cosine[VL_ROW_SIZE]; /* cosine between incoming ray and geometric normal; in media: the extinction */
-  VL_ROW float wo[3][VL_ROW_SIZE], pdf[VL_ROW_SIZE];
-  VL_ROW float wi[3][VL_ROW_SIZE]; /* local: the directions that are evaluated forth and back */
+  vlBsdfValues back;                /* vl_stage_reverse */
   union {
-    struct {                                                  /* camera paths */
-      VL_ROW float value[4][VL_ROW_SIZE], forth[VL_ROW_SIZE]; /* vl_stage_there_and_back */
-      VL_ROW float toward[3][VL_ROW_SIZE];                    /* world: towards the vertex of a connection */
-      VL_ROW float factor[VL_ROW_SIZE];                       /* vl_choose_vertices */
+    struct {                               /* camera paths */
+      VL_ROW float toward[3][VL_ROW_SIZE]; /* world: towards the vertex of a connection, or where a photon came from */
+      VL_ROW float factor[VL_ROW_SIZE];    /* vl_choose_vertices */
       /* by light sample: its density by the BSDF; the density of light paths that arrive from there */
       VL_ROW float light_pdf[VL_ROW_SIZE], light_ways[VL_ROW_SIZE];
     };
-    struct { /* light paths */
-      /* of connections to the camera: density of camera rays' first vertex; end of the ray; point on the lens */
-      VL_ROW float per_square[VL_ROW_SIZE], end[VL_ROW_SIZE], weight[VL_ROW_SIZE], eye[3][VL_ROW_SIZE];
+    struct {                             /* light paths */
+      VL_ROW float lens[2][VL_ROW_SIZE]; /* while they start: random numbers */
+      /* of connections to the camera: local direction; density of camera rays' first vertex; end of the ray; point on
+       * the lens */
+      VL_ROW float wi[3][VL_ROW_SIZE], per_square[VL_ROW_SIZE], end[VL_ROW_SIZE], weight[VL_ROW_SIZE],
+          eye[3][VL_ROW_SIZE];
       VL_ROW float splat_lambda[4][VL_ROW_SIZE], splat_inv_pdf[4][VL_ROW_SIZE];
-      VL_ROW float turn[VL_ROW_SIZE]; /* |wo . shading normal| / |wi . shading normal| */
     };
   };
   VL_ROW float x[VL_ROW_SIZE], y[VL_ROW_SIZE];        /* film points: first of lanes, later of splats */
@@ -140,12 +139,20 @@ void vl_look_from(const vlTracing *t, vlTwoWayRows *rows, uint32_t n, const floa
 /* For cameras of one's own: fills rows->area, by which the n camera paths of the batch weigh light paths. */
 void vl_measure_camera_rays(const vlTracing *t);
 
-/* Writes to rows->rev the density of sampling wo if the path had come from rows->wi, and to shade.value the BSDF's
- * value f(wi, wo) |cos wo|. Keeps shade.wo; overwrites shade.wi, shade.pdf and the light samples' wx, wy, wz. */
-void vl_stage_reverse(vlTracing *t, vlTwoWayRows *rows, uint32_t n);
-/* Evaluates the BSDFs for the light samples' directions, and vl_stage_reverse for the way back. Writes to rows->wi
- * those directions (local), to rows->value the BSDFs' values of the way there, to rows->forth its densities. */
-void vl_stage_there_and_back(vlTracing *t, vlTwoWayRows *rows, uint32_t n);
+/* The BSDFs of n vertices for paths that come from wi (local) and leave in direction wo: back->pdf is the density of
+ * sampling wo, back->value is f(wi, wo) |cos wo|. */
+void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, const float wi[3][VL_ROW_SIZE],
+                      vlBsdfValues *back);
+/* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way back. */
+void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float toward[3][VL_ROW_SIZE],
+                             vlBsdfValues *there, vlBsdfValues *back);
+
+/* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and cosine. */
+static inline float vl_carried(const vlTwoWayRows *r, uint32_t i, bool specular, float pdf, float merged,
+                               float cosine) {
+  if (specular) return r->a[i] * cosine;
+  return pdf > 0.0f ? (r->a[i] * r->back.pdf[i] + r->b[i] + merged) * cosine / pdf : 0.0f;
+}
 
 /* A ray that leaves a light. */
 typedef struct vlEmission {
@@ -179,12 +186,12 @@ static inline float vl_shown(const vlTwoWay *way, uint32_t light, float area_pdf
 void vl_show_lights(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n);
 
 /* Whether the BSDF of lane i is all specular, so that the vertex cannot be connected. */
-static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s, uint32_t i) {
-  const float *x = s->shade.alpha_x, *y = s->shade.alpha_y;
-  switch (world->materials.items[s->hits_b.material[i]].smooth) {
+static inline bool vl_all_specular(const vlWorld *world, const vlVertices *at, uint32_t i) {
+  const float *x = at->shade.alpha_x, *y = at->shade.alpha_y;
+  switch (world->materials.items[at->hits.material[i]].smooth) {
     case VL_SMOOTH_NEVER: return false;
     case VL_SMOOTH_BY_ALPHA: return vl_ggx_is_smooth(x[i], y[i]);
-    case VL_SMOOTH_BY_ALPHA_OR_INDEX: return vl_ggx_is_smooth(x[i], y[i]) || s->shade.eta_s[i] == 1.0f;
+    case VL_SMOOTH_BY_ALPHA_OR_INDEX: return vl_ggx_is_smooth(x[i], y[i]) || at->shade.eta_s[i] == 1.0f;
     case VL_SMOOTH_ALWAYS: return true;
   }
   return false;
@@ -192,7 +199,7 @@ static inline bool vl_all_specular(const vlWorld *world, const vlTraceScratch *s
 
 /* Whether camera paths connect to a light path's vertex on the surface of lane i. */
 static inline bool vl_is_inner_end(const vlTracing *t, uint32_t i) {
-  return t->world->materials.items[t->s->hits_b.material[i]].bsdf == VL_BSDF_DIFFUSE;
+  return t->world->materials.items[t->s->at.hits.material[i]].bsdf == VL_BSDF_DIFFUSE;
 }
 
 static inline bool vl_has_media(const vlTracing *t) {

@@ -5,8 +5,7 @@
 
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth) {
   vlShadowRays *q = &t->s->shadow;
-  vlRays rays = {q->ox, q->oy, q->oz, q->dx, q->dy, q->dz, NULL, q->t_max, p->time ? q->time : NULL};
-  vl_accel_occluded(t->world, count, &rays, &t->s->occluders, q->occluded);
+  vl_stage_occluded(t, count, p, q);
   t->batch->shadow_rays += count;
   if (vl_has_media(t)) vl_volume_pass_media(t, p, count, depth);
   for (uint32_t k = 0; k < count; k++) {
@@ -54,7 +53,7 @@ static void light_samples(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   vlTwoWayRows *r = t->batch->two_way;
   const vlLightSamples *l = &t->s->light;
   if (world->lights.count == 0) return;
-  vl_stage_light_samples(t, n, p, dimension);
+  vl_stage_light_samples(t, n, p, &t->s->at.surface, dimension, &t->s->light);
   uint32_t count = 0;
   for (uint32_t i = 0; i < n; i++) {
     if (!(l->pdf[i] > 0.0f)) continue;
@@ -190,16 +189,16 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   if (!way->eye.sees) return;
   vlVolumeScratch *v = t->s->volume;
   const vlPaths *p = &v->scattered;
-  vlShade *sh = &t->s->shade;
+  vlNumbers *u = &t->s->numbers;
   vlShadowRays *q = &t->s->shadow;
   if (way->eye.lens_radius > 0.0f)
-    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, sh->u1, sh->u2);
+    t->sampler->get_2d(t->def->sampler, n, p->px, p->py, p->index, dimension + VL_DIM_LIGHT_UV, u->u1, u->u2);
   uint32_t count = 0;
   vl_look_from(t, r, n, p->ox, p->oy, p->oz);
   for (uint32_t i = 0; i < n; i++) {
     uint32_t lane = p->lane[i];
     vlVec3 o = vl_lane3(p->ox, p->oy, p->oz, i);
-    vlCameraSample view = vl_view_of(t, r, i, lane, o, sh->u1[i], sh->u2[i]);
+    vlCameraSample view = vl_view_of(t, r, i, lane, o, u->u1[i], u->u2[i]);
     if (!view.seen) continue;
     float phase = phase_of(t, i, view.w);
     vl_set_lane3(q->ox, q->oy, q->oz, count, o);

@@ -67,28 +67,29 @@ void vl_fit_border(const vlTracing *t, uint32_t lane, uint32_t shape, vlVec3 g, 
 void vl_fit_surfaces(const vlTracing *t, uint32_t n);
 void vl_fit_shadows(const vlTracing *t, uint32_t count);
 
-/* Traces the n rays of a through media and interfaces to their events. depth: number of the bounce; emission: add the
- * emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last scattering. */
+/* Traces the n rays of vlTraceScratch.rays through media and interfaces to their events. depth: number of the bounce;
+ * emission: add the emission of the media that the rays cross. Densities go to volume.a. Ray origins stay at the last
+ * scattering. */
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission);
 void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *order, uint32_t n);
 /* Normalises path i: the mean of its densities becomes 1, and beta becomes its weight. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i);
 void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t n); /* paths [0, n) */
-/* Copies the lanes of a that scatter in media to volume.scattered and volume.c. The copies are normalised and start at
- * the scattering points, which are also written to s->at.surface for light sampling. s->order gets the lanes of a.
+/* Copies the rays that scatter in media to volume.scattered and volume.c. The copies are normalised and start at the
+ * scattering points, which are also written to s->at.surface for light sampling. s->order gets the rays' indices.
  * Returns the number of copies. */
 uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
 /* Samples new directions by the phase function, with Russian roulette as on surfaces. Returns the number of paths that
  * go on; volume.kept lists them. */
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-/* Sets the initial media of the n paths of a. medium: by lane; null: all paths start in the camera's medium. */
+/* Sets the initial media of the n rays. medium: by lane; null: all paths start in the camera's medium. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
 /* vl_volume_sorted copies volume.a to volume.b for the n sorted lanes. After scattering on surfaces, vl_volume_go_on
  * copies the `count` lanes in s->order back to volume.a. Both do nothing if the world has neither media nor subsurface
  * materials. */
 void vl_volume_sorted(vlTracing *t, uint32_t n);
 void vl_volume_go_on(vlTracing *t, uint32_t count);
-/* Appends the first `count` paths of volume.kept to the n paths of a. Returns their new number. */
+/* Appends the first `count` paths of volume.kept to the n rays. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n);
 /* The flights of the `count` shadow rays that are not occluded, to volume.shadow_*. beta is the transmittance; the
  * path's densities are relative to the density of light sampling. */
@@ -100,7 +101,7 @@ uint32_t vl_volume_push_shadow(vlTracing *t, const vlPaths *p, const vlVolumeRow
 /* Traces the shadow rays added by vl_volume_push_shadow and adds the radiance that arrives. */
 void vl_volume_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);
 
-/* The inverse of the mean density of path i of a over the techniques that could have made it. light_pdf: density of
+/* The inverse of the mean density of ray i over the techniques that could have made it. light_pdf: density of
  * light sampling; 0 if light sampling could not make this path. */
 static inline float vl_volume_inverse_density(const vlTracing *t, uint32_t i, float light_pdf) {
   const vlVolumeRows *v = &t->s->volume->a;
@@ -119,7 +120,7 @@ static inline float vl_volume_shadow_density(const vlTracing *t, uint32_t k, flo
   return vl_flight_mean(density, vl_volume_rgb(t) ? 3 : 4);
 }
 
-/* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the n paths of a; and the
+/* Recorded paths (tracer/record.h): what travel and the lights that rays hit have added to the n rays; and the
  * `count` shadow rays, after they were traced. */
 void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth);
 void vl_volume_record_shadows(vlTracing *t, uint32_t count);

@@ -327,7 +327,7 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
   return count;
 }
 
-/* Scatters the lanes of a in media and writes the new rays to volume.scattered. Returns the number of paths that go
+/* Scatters the rays in media and writes the new rays to volume.scattered. Returns the number of paths that go
  * on; volume.kept lists them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
   uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);

@@ -2,7 +2,7 @@
  * profiles of world/material/bssrdf.h and pbrt's estimator (pbrt book, 3rd edition, 15.4). This stage processes the
  * paths that have entered a subsurface material, before volume.hot.c traces them further:
  *
- *   a, those refracted -> probes: segments through the solid near the entry -> all surfaces of the material on them,
+ *   rays, those refracted -> probes: segments through the solid near the entry -> all surfaces of the material on them,
  * one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the other paths
  *
  * Half of the probes are parallel to the normal; the others are parallel to one of two tangents. The hero wavelength's
@@ -39,8 +39,8 @@ static Entry entry_of(const vlTracing *t, uint32_t j) {
   return e;
 }
 
-/* Copies the paths of a that entered a subsurface material to b, as probes. Path k of a comes from lane s->order[k] of
- * the surfaces. Keeps a copy of a in the scratch memory. Returns the number of probes. */
+/* Copies the rays that entered a subsurface material to s->at.paths, as probes. Ray k comes from vertex s->order[k].
+ * Keeps a copy of all rays in the scratch memory. Returns the number of probes. */
 static uint32_t take_refracted(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
@@ -97,7 +97,7 @@ static void cut_probe(const vlTracing *t, uint32_t j, vlVec3 o, vlVec3 along, fl
   x->length[j] = end > start ? end - start : 0.0f;
 }
 
-/* Samples the probes: origin and direction of the paths of b, x->length (0: none). */
+/* Samples the probes: origin and direction of s->at.paths, x->length (0: none). */
 static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
@@ -137,7 +137,7 @@ static float past_crossing(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
   return vl_max(t, t_min) + vl_max(margin, VL_MIN_POSITIVE); /* more than t_min even if t_min and margin are 0 */
 }
 
-/* Records one crossing of probe j, whose ids are in hits_b. Returns false if it was the last crossing. */
+/* Records one crossing of probe j, whose ids are in s->at.hits. Returns false if it was the last crossing. */
 static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;
@@ -202,7 +202,7 @@ static void follow_probes(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- exits ------------------------------------------------------------------------------------------------------- */
 
-/* Copies the probes with a crossing to paths of a; x->entry has their probes. Returns their number. */
+/* Copies the probes with a crossing to s->rays; x->entry has their probes. Returns their number. */
 static uint32_t gather_exits(vlTracing *t, uint32_t n) {
   vlTraceScratch *s = t->s;
   vlSubsurfaceScratch *x = s->subsurface;

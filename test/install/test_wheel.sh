@@ -52,6 +52,24 @@ END
   else
     skip "pip installs it" "python3-pip is not installed"
   fi
+  if command -v patchelf >/dev/null 2>&1 && [ "$(uname -m)" = x86_64 ]; then
+    mkdir "$work/full"
+    check "makes a wheel with the libraries inside" "$VELO_SOURCE_DIR/tools/bundle_wheel" "$work/a/$wheel" "$work/full"
+    full=$(echo "$work"/full/velo-"$version"-cp311-abi3-manylinux_2_36_x86_64.whl)
+    check "its RECORD is right" "$python" "$work/record.py" "$full"
+    check "it unpacks" "$python" -m zipfile -e "$full" "$work/unpacked"
+    cat >"$work/maps.py" <<'END'
+import os, velo
+paths = {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+bundled = {os.path.basename(path).split("-")[0] for path in paths if "/velo.libs/" in path}
+assert {"libpng16", "libOpenEXRCore", "libjansson"} <= bundled, paths
+others = [path for path in paths if "/velo" not in path and os.path.basename(path).split("-")[0].split(".")[0] in bundled - {"libz", "libexpat"}]
+assert not others, others
+END
+    check "all but Python's own libraries are those inside" env PYTHONPATH="$work/unpacked" "$python" "$work/maps.py"
+  else
+    skip "a wheel with the libraries inside" "patchelf is not installed"
+  fi
 else
   skip "wheel" "the Python module is not built"
 fi

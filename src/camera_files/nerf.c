@@ -46,6 +46,27 @@ static vlResult read_lens(const vlCameraFile *file, const json_t *frame, const j
   return VL_OK;
 }
 
+/* Fields of instant-ngp that make another camera of it: refused, so that none is read as a pinhole. */
+static vlResult refuse_others(const vlCameraFile *file, const json_t *frame, const json_t *tree) {
+  static const char *const polynomial[] = {"ftheta_p0", "ftheta_p1", "ftheta_p2", "ftheta_p3", "ftheta_p4"};
+  static const char *const flags[] = {"latlong", "equirectangular"};
+  for (size_t i = 0; i < VL_LENGTH(polynomial); i++)
+    if (vl_camera_has(holder(frame, tree, polynomial[i]), polynomial[i]))
+      return vl_camera_wrong_in(file, holder(frame, tree, polynomial[i]), polynomial[i],
+                                "nerf: \"%s\": the f-theta projection is not taken", polynomial[i]);
+  for (size_t i = 0; i < VL_LENGTH(flags); i++)
+    if (json_is_true(json_object_get(holder(frame, tree, flags[i]), flags[i])))
+      return vl_camera_wrong_in(file, holder(frame, tree, flags[i]), flags[i],
+                                "nerf: \"%s\" is not taken; there are perspective cameras and fisheyes", flags[i]);
+  const char *start = "transform_matrix_start", *end = "transform_matrix_end";
+  const json_t *first = json_object_get(frame, start), *last = json_object_get(frame, end);
+  if ((first || last) && (!first || !last || !json_equal(first, last)))
+    return vl_camera_wrong_in(file, frame, first ? start : end,
+                              "nerf: \"%s\": the pose of a rolling shutter, which moves, is not taken",
+                              first ? start : end);
+  return VL_OK;
+}
+
 /* w and h; the synthetic scenes have none: the size is that of the frame's image. */
 static vlResult read_size(const vlCameraFile *file, const json_t *frame, const json_t *tree, vlCameraRecord *record) {
   const json_t *w = holder(frame, tree, "w"), *h = holder(frame, tree, "h");
@@ -74,6 +95,7 @@ vlResult vl_camera_read_nerf_frame(const vlCameraFile *file, const json_t *frame
                 {"camera_angle_y", &angle_y}};
   for (size_t i = 0; i < 6 && result == VL_OK; i++)
     result = vl_camera_optional(file, holder(frame, tree, fields[i].key), fields[i].key, fields[i].value);
+  if (result == VL_OK) result = refuse_others(file, frame, tree);
   if (result == VL_OK) result = read_lens(file, frame, tree, d);
   if (result == VL_OK) result = vl_camera_numbers(file, frame, "transform_matrix", m, 12, 16, &count);
   if (result != VL_OK) return result;

@@ -62,6 +62,27 @@ vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, con
   return VL_OK;
 }
 
+vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree, const vlCameraDef *d) {
+  const json_t *roi = json_object_get(tree, "roi");
+  double binning[2] = {0, 0}, x = 0, y = 0, width = 0, height = 0;
+  vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
+                                   VL_FIELD_OPTIONAL("binning_y", &binning[1]));
+  if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
+    return vl_camera_wrong_in(file, tree, "binning_x",
+                              "%s: binning of %g x %g pixels is not taken; give the full image's camera", file->dialect,
+                              binning[0], binning[1]);
+  if (result != VL_OK || !json_is_object(roi)) return result;
+  result = VL_READ_FIELDS(file, roi, VL_FIELD_OPTIONAL("x_offset", &x), VL_FIELD_OPTIONAL("y_offset", &y),
+                          VL_FIELD_OPTIONAL("width", &width), VL_FIELD_OPTIONAL("height", &height));
+  bool whole = width == 0.0 && height == 0.0; /* as ROS defines it */
+  whole = whole || (x == 0.0 && y == 0.0 && width == d->width && height == d->height);
+  if (result != VL_OK || whole) return result;
+  return vl_camera_wrong_in(file, tree, "roi",
+                            "%s: a region of interest, %g x %g pixels at %g,%g, is not taken; give the full image's "
+                            "camera and render with --crop",
+                            file->dialect, width, height, x, y);
+}
+
 /* A negative fy (as in ICL-NUIM's RGB-D sequences): a camera with y up, in a left-handed world. Converted to fy > 0
  * and a pose that mirrors y, which gives the same pixels. */
 static vlResult turn_y(const vlCameraFile *file, vlCameraDef *d) {
@@ -169,6 +190,7 @@ vlResult vl_camera_read_opencv(const vlCameraFile *file, const json_t *tree, vlC
   vlResult result = read_size(file, tree, record);
   if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, NAME_IN(tree, matrix_names), d);
   if (result == VL_OK) result = vl_opencv_read_lens(file, tree, NAME_IN(tree, lens_names), d);
+  if (result == VL_OK) result = vl_opencv_refuse_part(file, tree, d);
   if (result == VL_OK && vl_camera_has(tree, "xi")) { /* xi marks the omnidirectional model */
     double xi = 0.0;
     bool list = !json_is_number(json_object_get(tree, "xi"));

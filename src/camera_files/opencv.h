@@ -8,6 +8,9 @@
 vlResult vl_opencv_read_matrix(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *def);
 /* Reads the coefficients at a key. The tree names their model; without a name, the number of coefficients decides. */
 vlResult vl_opencv_read_lens(const vlCameraFile *file, const json_t *tree, const char *key, vlCameraDef *def);
+/* ROS's binning and region of interest, with which matrix and size are not those of the image. Refuses them. def: with
+ * the size. */
+vlResult vl_opencv_refuse_part(const vlCameraFile *file, const json_t *tree, const vlCameraDef *def);
 /* Computes the coefficients to write, and whether the camera is a fisheye. */
 vlResult vl_opencv_lens_of(const vlCameraFile *file, const vlCameraDef *def, double k[14], uint32_t *count,
                            bool *fisheye);

@@ -14,18 +14,11 @@ static vlResult read_ros(const vlCameraFile *file, const json_t *tree, vlCameraR
   const char *k = json_object_get(tree, "K") ? "K" : json_object_get(tree, "k") ? "k" : "camera_matrix";
   const char *c = json_object_get(tree, "D") ? "D" : json_object_get(tree, "d") ? "d" : "distortion_coefficients";
   bool message = k[0] != 'c';
-  double binning[2] = {0, 0};
   vlResult result = VL_READ_FIELDS(file, tree, VL_FIELD_SIDE(message ? "width" : "image_width", &d->width),
                                    VL_FIELD_SIDE(message ? "height" : "image_height", &d->height));
   if (result == VL_OK) result = vl_opencv_read_matrix(file, tree, k, d);
   if (result == VL_OK) result = vl_opencv_read_lens(file, tree, c, d);
-  if (result == VL_OK)
-    result = VL_READ_FIELDS(file, tree, VL_FIELD_OPTIONAL("binning_x", &binning[0]),
-                            VL_FIELD_OPTIONAL("binning_y", &binning[1]));
-  if (result == VL_OK && (binning[0] > 1.0 || binning[1] > 1.0))
-    return vl_camera_wrong_in(file, tree, "binning_x",
-                              "ros: binning of %g x %g pixels is not taken; give the full image's camera", binning[0],
-                              binning[1]);
+  if (result == VL_OK) result = vl_opencv_refuse_part(file, tree, d);
   vl_camera_set_origin(d);
   vl_camera_name(record, vl_camera_text(tree, "camera_name"));
   return result;

@@ -41,10 +41,11 @@ static int fill(const char *part, size_t length, void *user) {
   return 0;
 }
 
-/* Returns a value as text: strings without quotes, other values as JSON, shortened if they are long. */
+/* Returns a value as text: strings without quotes if they have any visible character, other values as JSON, shortened
+ * if they are long. */
 static const char *words_of(const json_t *value, char *text, size_t size) {
   if (!value || json_is_null(value)) return "not given";
-  if (json_is_string(value)) {
+  if (json_is_string(value) && json_string_value(value)[strspn(json_string_value(value), " \t\r\n")]) {
     snprintf(text, size, "%.*s", (int)size - 1, json_string_value(value));
     return text;
   }

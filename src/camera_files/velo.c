@@ -403,8 +403,9 @@ void vl_camera_put_velo(const vlCameraRecord *record, vlCameraText *text) {
     vl_camera_put(text, ",\n");
   }
   vl_camera_put(text, "  \"pixel_origin\": \"corner\",\n  \"axes\": \"x right, y down, z forward\",\n");
-  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u", projection_key(d->projection),
-                d->width, d->height);
+  const char *key = projection_key(d->projection);
+  vl_camera_put(text, "  \"projection\": \"%s\",\n  \"width\": %u,\n  \"height\": %u",
+                *key ? key : vl_projection_name(d->projection), d->width, d->height);
   for (size_t i = 0; i < fields.count; i++) put_field(text, &fields.items[i], d, &standard);
   vl_camera_put(text, "\n}\n");
 }

@@ -242,6 +242,40 @@ static void long_values_are_cut(void **state) {
   vl_receipt_destroy(now);
 }
 
+/* No difference shows a value as nothing. */
+static void empty_values_are_shown(void **state) {
+  Fixture *f = *state;
+  static const char *const empty[] = {"\"\"", "\" \"", "[]", "{}"};
+  vlReceipt *other = parse(f, "{\"velo_receipt\": 1, \"scene\": \"a\"}");
+  for (size_t i = 0; i < sizeof empty / sizeof *empty; i++) {
+    char text[80], is[80], was[80];
+    snprintf(text, sizeof text, "{\"velo_receipt\": 1, \"scene\": %s}", empty[i]);
+    snprintf(is, sizeof is, "scene is %s, was a\n", empty[i]);
+    snprintf(was, sizeof was, "scene is a, was %s\n", empty[i]);
+    vlReceipt *receipt = parse(f, text);
+    assert_string_equal(differences(other, receipt, VL_RECEIPT_ALL), is);
+    assert_string_equal(differences(receipt, other, VL_RECEIPT_ALL), was);
+    vl_receipt_destroy(receipt);
+  }
+  vl_receipt_destroy(other);
+}
+
+/* What camera files cannot hold has a name in receipts. */
+static void every_projection_has_a_name(void **state) {
+  Fixture *f = *state;
+  vlReceiptDef def = vl_default_receipt_def();
+  vlSceneDefs *defs = vl_scene_defs(f->scene);
+  def.defs = defs;
+  for (vlProjection p = VL_PROJECTION_PERSPECTIVE; p <= VL_PROJECTION_OWN; p++) {
+    if (p == VL_PROJECTION_OPTICS) continue; /* needs a lens; it has a name in the same way as VL_PROJECTION_OWN */
+    defs->camera.projection = p;
+    vlReceipt *receipt = make(f, &def);
+    assert_null(strstr(vl_receipt_text(receipt), "\"projection\":\"\""));
+    assert_non_null(strstr(vl_receipt_text(receipt), "\"projection\":\""));
+    vl_receipt_destroy(receipt);
+  }
+}
+
 static void a_film_has_the_receipt_of_its_image(void **state) {
   Fixture *f = *state;
   static const char *const words[2][5] = {{"velo", "render", "a.pbrt", "--spp", "16"},
@@ -376,6 +410,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(files_are_recorded, set_up, tear_down),
       cmocka_unit_test_setup_teardown(numbers_are_exact, set_up, tear_down),
       cmocka_unit_test_setup_teardown(differences_are_named, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(empty_values_are_shown, set_up, tear_down),
+      cmocka_unit_test_setup_teardown(every_projection_has_a_name, set_up, tear_down),
       cmocka_unit_test_setup_teardown(long_values_are_cut, set_up, tear_down),
       cmocka_unit_test_setup_teardown(a_film_has_the_receipt_of_its_image, set_up, tear_down),
       cmocka_unit_test_setup_teardown(autofocus_is_in_the_camera, set_up, tear_down),

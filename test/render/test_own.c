@@ -608,6 +608,11 @@ static void names_in_films(void **state) {
   stage_close(&s);
 }
 
+static bool add_difference(void *user, const char *text) {
+  strcat(strcat(user, text), ";");
+  return true;
+}
+
 static void names_in_receipts(void **state) {
   (void)state;
   Stage s = small_stage(NULL, NULL);
@@ -631,7 +636,12 @@ static void names_in_receipts(void **state) {
   vlCameraDef camera;
   assert_int_equal(vl_receipt_camera(parsed, &camera, NULL, NULL, &error), VL_ERROR_UNSUPPORTED);
   assert_non_null(strstr(error.message, "\"pinhole\""));
-  assert_true(vl_receipt_compare(receipt[0], parsed, VL_RECEIPT_CAMERA, NULL, NULL) > 0);
+  char named[2][400] = {"", ""};
+  assert_true(vl_receipt_compare(receipt[0], parsed, VL_RECEIPT_CAMERA, add_difference, named[0]) > 0);
+  assert_non_null(strstr(named[0], "projection is own, was perspective;"));
+  assert_non_null(strstr(named[0], "own is pinhole, was not given;"));
+  assert_true(vl_receipt_compare(parsed, receipt[0], VL_RECEIPT_CAMERA, add_difference, named[1]) > 0);
+  assert_non_null(strstr(named[1], "projection is perspective, was own;"));
   assert_true(vl_receipt_compare(receipt[0], parsed, VL_RECEIPT_SETTINGS, NULL, NULL) > 0);
   assert_int_equal(vl_receipt_compare(receipt[1], parsed, VL_RECEIPT_ALL, NULL, NULL), 0);
   vl_receipt_destroy(parsed);

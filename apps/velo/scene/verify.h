@@ -79,6 +79,8 @@ typedef struct Verify {
   char reference[4096];   /* path of the program; empty: the scene is not compared with it */
   char unreferenced[400]; /* why it is not; empty: it is */
 
+  bool far_light; /* there is an infinite or distant light */
+  double meets;   /* how much of the image a light path from the sky or a sun meets, as a number of independent paths */
   double matrix[VERIFY_PLACES][16]; /* world of the copy from the world of the file */
   VerifyPlace place;                /* the scene's state */
   VerifyLights lights;

@@ -61,7 +61,7 @@ static bool may_be_smooth(const vlMaterialDef *m) {
   return (row->traits & VL_MATERIAL_ROUGH) && !rough;
 }
 
-static Features find_features(const Verify *v) {
+static Features find_features(Verify *v) {
   Features f = {.narrow = false};
   const vlMaterialDef *material;
   const vlLightDef *light;
@@ -75,6 +75,7 @@ static Features find_features(const Verify *v) {
   for (uint32_t i = 1; (light = vl_scene_light(v->scene, (vlLightId){i})); i++) {
     const bool sky = light->kind == VL_LIGHT_INFINITE;
     f.sky = f.sky || sky;
+    v->far_light = v->far_light || sky || light->kind == VL_LIGHT_DISTANT;
     f.small = f.small || !sky;
   }
   f.lamps = v->light_count;

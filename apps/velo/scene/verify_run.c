@@ -8,7 +8,7 @@
 #include "scene/verify.h"
 #include "velo/edit.h"
 
-enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096 };
+enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };
 
 /* ---- places ------------------------------------------------------------------------------------------------------ */
 
@@ -181,6 +181,25 @@ static void find_centre(const vlImage *floats, const vlCamera *camera, double ce
   for (int k = 0; k < 3; k++) centre[k] = seen > 0 ? sum[1 + k] / seen : camera->world_from_camera[4 * k + 3];
 }
 
+/* Light paths from far away start on a disk as large as the world. A surface of the size of pixel i, at the distance
+ * t_i, is met by a share p_i = t_i^2 / (fx fy) / (pi r^2) of them. The image of n light paths, P pixels of equal
+ * radiance, has the relative variance (1/P^2) sum 1/(n p_i): that of n P^2 / sum 1/p_i independent paths. */
+static double share_of_light_paths(const vlImage *floats, const vlCamera *camera, const vlWorld *world) {
+  const size_t pixels = (size_t)vl_image_width(floats) * vl_image_height(floats), step = vl_image_channels(floats);
+  const float *value = vl_image_const_pixels(floats);
+  double seen = 0, sum = 0, square = 0;
+  vlWorldInfo info;
+  vl_world_info(world, &info);
+  for (int k = 0; k < 3; k++) square += 0.25 * pow((double)info.bounds_max[k] - (double)info.bounds_min[k], 2);
+  for (size_t i = 0; i < pixels; i++) {
+    const double t = (double)value[i * step];
+    if (!isfinite(t) || !(t > 0)) continue;
+    seen++;
+    sum += camera->fx * camera->fy * 3.14159265358979 * square / (t * t);
+  }
+  return sum > 0 ? seen * seen / sum : 1;
+}
+
 vlResult verify_prepare(Verify *v, vlError *error) {
   vlWorld *world = NULL;
   vlImage *floats = NULL, *ids = NULL;
@@ -197,6 +216,7 @@ vlResult verify_prepare(Verify *v, vlError *error) {
   if (result == VL_OK) {
     find_centre(floats, &v->camera, centre, &distance);
     choose_places(v, centre, distance);
+    v->meets = share_of_light_paths(floats, &v->camera, world);
   }
   vl_image_destroy(floats);
   vl_image_destroy(ids);
@@ -348,11 +368,26 @@ static void share_budget(Verify *v) {
   }
 }
 
+/* Few light paths from far away meet what the camera sees of a large world: their mean has a heavy tail, and many looks
+ * would miss most of the light. */
+static void leave_out_rare(Verify *v) {
+  for (int i = 0; i < v->run_count; i++) {
+    VerifyRun *run = &v->runs[i];
+    const double paths = (double)v->width * v->height * run->spp[0] * VERIFY_REPLICATES;
+    if (run->left_out || run->tracer != VL_TRACER_LIGHT_PATH || !v->far_light || paths * v->meets >= LEAST_MET)
+      continue;
+    run->left_out = true;
+    verify_note(v, "%s is not compared: of its %.3g light paths from far away about %.2g meet what the camera sees",
+                run->name, paths, paths * v->meets);
+  }
+}
+
 vlResult verify_measure(Verify *v, vlError *error) {
   const vlResult result = each_run(v, VERIFY_TRIAL, error);
   for (int i = 0; i < v->run_count; i++)
     if (v->runs[i].against >= 0 && v->runs[v->runs[i].against].left_out) v->runs[i].left_out = true;
   if (result == VL_OK) share_budget(v);
+  if (result == VL_OK) leave_out_rare(v);
   return result;
 }
 

@@ -27,6 +27,10 @@ typedef struct vlFilmLock vlFilmLock;
 VL_API vlResult vl_film_lock(vlContext *context, const char *path, vlFilmLock **lock, vlError *error);
 /** Releases a lock. Null is allowed. */
 VL_API void vl_film_unlock(vlFilmLock *lock);
+/** For a signal handler that ends the process: removes the lock files of films and the temporary files of all writers
+ * that this context has made and not removed yet. Async-signal-safe. The process must end afterwards without another
+ * call that uses the context; threads that are writing files wait for its end. Null is allowed. */
+VL_API void vl_remove_unfinished(vlContext *context);
 
 /** How to write a film. */
 typedef struct vlFilmWriteDef {

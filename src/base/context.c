@@ -15,6 +15,8 @@
 #include "base/pool.h"
 #include "base/sandbox.h"
 #include "base/text.h"
+#include "base/unfinished.h"
+#include "velo/film.h"
 
 struct vlContext {
   vlContextDef def;
@@ -24,6 +26,7 @@ struct vlContext {
   atomic_uint_fast64_t last_number;
   vlFileRecords files;
   vlFileInputs inputs;
+  vlUnfinishedList unfinished;
   vlSandbox sandbox;
   vlPool pool;
 };
@@ -224,6 +227,7 @@ vlResult vl_context_create(const vlContextDef *def, vlContext **result) {
   if (!context) return VL_ERROR_MEMORY;
   memset(context, 0, sizeof *context);
   context->def = d;
+  context->unfinished.allocator = d.allocator;
   context->isa = isa;
   pthread_mutex_init(&context->log_mutex, NULL);
   pthread_mutex_init(&context->files.mutex, NULL);
@@ -258,6 +262,7 @@ void vl_context_destroy(vlContext *context) {
   vl_free(context, context->files.files.items);
   for (size_t i = 0; i < context->inputs.list.count; i++) vl_free(context, context->inputs.list.items[i].path);
   vl_free(context, context->inputs.list.items);
+  vl_unfinished_free(&context->unfinished);
   vl_sandbox_free(&context->sandbox);
   context->def.allocator.release(context->def.allocator.user, context);
 }
@@ -280,6 +285,14 @@ vlFileRecords *vl_context_file_records(vlContext *context) {
 
 vlFileInputs *vl_context_file_inputs(vlContext *context) {
   return context->def.keep_inputs ? &context->inputs : NULL;
+}
+
+vlUnfinishedList *vl_context_unfinished(vlContext *context) {
+  return &context->unfinished;
+}
+
+void vl_remove_unfinished(vlContext *context) {
+  if (context) vl_unfinished_remove(&context->unfinished);
 }
 
 bool vl_context_interrupted(const vlContext *context) {

@@ -28,10 +28,11 @@ void vl_file_unmap(const char *data, size_t size);
 typedef struct vlFileWriter {
   int descriptor;
   int failed_errno;
-  char path[4096];           /* as given, for messages */
-  char target[4096];         /* the file to replace, with links resolved */
-  char temporary[4096 + 64]; /* empty: no name yet */
-  bool replaces;             /* the file exists, with these permissions */
+  char path[4096];                 /* as given, for messages */
+  char target[4096];               /* the file to replace, with links resolved */
+  char temporary[4096 + 64];       /* empty: no name yet */
+  struct vlUnfinished *unfinished; /* the temporary file, once it has a name; else null */
+  bool replaces;                   /* the file exists, with these permissions */
   mode_t mode;
   uid_t owner;
   gid_t group;

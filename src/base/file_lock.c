@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/unfinished.h"
 
 #define PREFIX ".velo-"
 #define SUFFIX ".lock"
@@ -74,24 +75,61 @@ static int open_lock(const char *path) {
   return descriptor;
 }
 
-/* One attempt: 0 and lock->descriptor, or errno. EAGAIN: another has the lock; EEXIST, ESTALE: its file changed. */
-static int try_lock(vlFileLock *lock) {
-  int descriptor = open_lock(lock->path);
-  if (descriptor < 0) return errno;
-  int code = set_lock(descriptor);
+/* Writes the name of vl_lock_sibling. name: of the lock's file. Async-signal-safe, as the next two functions are. */
+static void name_sibling(const char *name, char *sibling, size_t size) {
+  const size_t length = strlen(name) - (sizeof SUFFIX - 1);
+  if (length + sizeof SIBLING > size) {
+    sibling[0] = 0;
+    return;
+  }
+  memcpy(sibling, name, length);
+  memcpy(sibling + length, SIBLING, sizeof SIBLING);
+}
+
+/* Removes a lock's file and its sibling, unless another process or another descriptor has the lock. */
+static void remove_lock(int descriptor, int folder, const char *name) {
+  char sibling[sizeof((vlFileLock *)0)->path];
+  if (set_lock(descriptor) != 0 || !is_named(descriptor, folder, name)) return;
+  name_sibling(name, sibling, sizeof sibling);
+  unlinkat(folder, sibling, 0);
+  unlinkat(folder, name, 0);
+}
+
+/* Of a process that ends (vlUnfinishedFn). Where the file is not known to be open, its maker may be another process. */
+static void remove_held(int descriptor, const char *path) {
+  if (descriptor < 0) descriptor = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor >= 0) remove_lock(descriptor, AT_FDCWD, path);
+}
+
+static void drop(vlFileLock *lock) {
+  vl_unfinished_drop(lock->unfinished);
+  lock->unfinished = NULL;
+}
+
+/* One attempt: 0 and lock->descriptor, or errno. EAGAIN: another has the lock; EEXIST, ESTALE: its file changed. The
+ * file is noted before it may be made. */
+static int try_lock(vlFileLock *lock, vlContext *context) {
+  lock->unfinished = vl_unfinished_add(vl_context_unfinished(context), lock->path, -1, remove_held);
+  if (!lock->unfinished) return ENOMEM;
+  int descriptor = open_lock(lock->path), code = descriptor < 0 ? errno : 0;
+  atomic_store(&lock->unfinished->descriptor, descriptor);
+  if (code == 0) code = set_lock(descriptor);
   if (code == 0 && !is_named(descriptor, AT_FDCWD, lock->path)) code = ESTALE;
-  if (code)
-    close(descriptor);
-  else
+  if (code == 0) {
     lock->descriptor = descriptor;
+    return 0;
+  }
+  drop(lock);
+  if (descriptor >= 0) close(descriptor);
   return code;
 }
 
-vlResult vl_file_lock(vlFileLock *lock, const char *path, vlLockState *state, vlError *error) {
+vlResult vl_file_lock(vlFileLock *lock, vlContext *context, const char *path, vlLockState *state, vlError *error) {
   lock->descriptor = -1;
+  lock->unfinished = NULL;
   *state = VL_LOCK_BUSY;
-  int code = name_lock(path, lock->path, sizeof lock->path) ? try_lock(lock) : errno;
-  for (int busy = 0, changed = 0; busy < TRIES && changed < MOST_CHANGES; code = try_lock(lock)) {
+  int code = name_lock(path, lock->path, sizeof lock->path) ? try_lock(lock, context) : errno;
+  for (int busy = 0, changed = 0; busy < TRIES && changed < MOST_CHANGES; code = try_lock(lock, context)) {
     if (code == EAGAIN) { /* whoever sweeps the folder holds it for a moment */
       const struct timespec wait = {0, MILLISECONDS * 1000000L};
       nanosleep(&wait, NULL);
@@ -109,28 +147,25 @@ vlResult vl_file_lock(vlFileLock *lock, const char *path, vlLockState *state, vl
     unlink(lock->path);
     return VL_OK;
   }
+  if (code == ENOMEM) return vl_fail_memory(error);
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: cannot lock it: %s", path, strerror(code));
 }
 
 void vl_file_unlock(vlFileLock *lock) {
   if (lock->descriptor < 0) return;
   unlink(lock->path);
+  drop(lock);
   close(lock->descriptor); /* last, because closing releases the lock */
   lock->descriptor = -1;
 }
 
 void vl_lock_sibling(const vlFileLock *lock, char *path, size_t size) {
-  snprintf(path, size, "%.*s" SIBLING, (int)(strlen(lock->path) - (sizeof SUFFIX - 1)), lock->path);
+  name_sibling(lock->path, path, size);
 }
 
 void vl_file_lock_sweep(int folder, const char *name) {
   int descriptor = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
-  if (set_lock(descriptor) == 0 && is_named(descriptor, folder, name)) {
-    char sibling[64];
-    snprintf(sibling, sizeof sibling, "%.*s" SIBLING, (int)(sizeof PREFIX - 1 + DIGITS), name);
-    unlinkat(folder, sibling, 0);
-    unlinkat(folder, name, 0);
-  }
+  remove_lock(descriptor, folder, name);
   close(descriptor);
 }

@@ -3,11 +3,12 @@
 #ifndef BASE_FILE_LOCK_H
 #define BASE_FILE_LOCK_H
 
-#include "velo/base.h"
+#include "base/context.h"
 
 typedef struct vlFileLock {
-  int descriptor;       /* of the lock's file; -1: not held */
-  char path[4096 + 64]; /* of the lock's file */
+  int descriptor;                  /* of the lock's file; -1: not held */
+  struct vlUnfinished *unfinished; /* the lock's file while it is held */
+  char path[4096 + 64];            /* of the lock's file */
 } vlFileLock;
 
 typedef enum vlLockState {
@@ -17,11 +18,11 @@ typedef enum vlLockState {
 } vlLockState;
 
 /* Takes the lock of the file `path`, whose symbolic links are followed and which need not exist. Waits half a second at
- * most. The system releases the lock when the process ends in whatever way; vl_file_unlock also removes the lock's
- * file. One that a killed process leaves is empty, locks nothing, and is removed by vl_remove_leftovers. The lock is an
- * open file description lock (fcntl): NFS servers know it, and closing other descriptors does not release it. Errors:
- * IO. */
-vlResult vl_file_lock(vlFileLock *lock, const char *path, vlLockState *state, vlError *error);
+ * most. The system releases the lock when the process ends in whatever way; vl_file_unlock and vl_remove_unfinished
+ * also remove the lock's file. One that a killed process leaves is empty, locks nothing, and is removed by
+ * vl_remove_leftovers. The lock is an open file description lock (fcntl): NFS servers know it, and closing other
+ * descriptors does not release it. Errors: IO, MEMORY. */
+vlResult vl_file_lock(vlFileLock *lock, vlContext *context, const char *path, vlLockState *state, vlError *error);
 /* Does nothing if the lock is not held. */
 void vl_file_unlock(vlFileLock *lock);
 /* Removes a lock's file and the file of vl_lock_sibling if no process holds the lock. folder: a descriptor. */

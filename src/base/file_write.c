@@ -12,6 +12,7 @@
 #include "base/file_lock.h"
 #include "base/file_stream.h"
 #include "base/text.h"
+#include "base/unfinished.h"
 
 /* Temporary files are named by the process id alone, so that targets with the longest names can be written. The
  * writer holds a lock on its temporary file: one without a lock belongs to a process that has ended. */
@@ -19,9 +20,28 @@
 #define SUFFIX ".tmp"
 enum { MOST_TRIES = 1000 };
 
-static void name_temporary(vlFileWriter *writer, unsigned number) {
+/* Removes a temporary file (vlUnfinishedFn), unless another writer has it. */
+static void remove_temporary(int descriptor, const char *path) {
+  struct stat mine, named;
+  if (descriptor < 0) descriptor = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor, &mine) != 0) return;
+  if (lstat(path, &named) == 0 && mine.st_ino == named.st_ino && mine.st_dev == named.st_dev) unlink(path);
+}
+
+/* Chooses the temporary file's name before the file has it. False: errno is set. */
+static bool name_temporary(vlFileWriter *writer, unsigned number) {
   snprintf(writer->temporary, sizeof writer->temporary, "%.*s" PREFIX "%ld-%u" SUFFIX,
            (int)vl_folder_length(writer->target), writer->target, (long)getpid(), number);
+  writer->unfinished = vl_unfinished_add(vl_context_unfinished(writer->context), writer->temporary, writer->descriptor,
+                                         remove_temporary);
+  if (!writer->unfinished) errno = ENOMEM;
+  return writer->unfinished;
+}
+
+/* The temporary file is gone, or is the target now. */
+static void drop_temporary(vlFileWriter *writer) {
+  vl_unfinished_drop(writer->unfinished);
+  writer->unfinished = NULL;
 }
 
 /* Opens a file without a name (O_TMPFILE), which disappears with its process. Not every file system supports them. */
@@ -43,9 +63,12 @@ static bool give_name(vlFileWriter *writer) {
   char self[64];
   snprintf(self, sizeof self, "/proc/self/fd/%d", writer->descriptor);
   for (unsigned i = 0; i < MOST_TRIES; i++) {
-    name_temporary(writer, i);
+    if (!name_temporary(writer, i)) break;
     if (linkat(AT_FDCWD, self, AT_FDCWD, writer->temporary, AT_SYMLINK_FOLLOW) == 0) return true;
-    if (errno != EEXIST) break;
+    const int code = errno;
+    drop_temporary(writer);
+    errno = code;
+    if (code != EEXIST) break;
   }
   writer->temporary[0] = 0;
   return false;
@@ -58,13 +81,20 @@ static bool open_temporary(vlFileWriter *writer) {
     return true;
   }
   for (unsigned i = 0; i < MOST_TRIES; i++) {
-    name_temporary(writer, i);
+    if (!name_temporary(writer, i)) return false;
     writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (writer->descriptor < 0 && errno == EEXIST) continue;
-    if (writer->descriptor < 0) return false;
+    if (writer->descriptor < 0) {
+      const int code = errno;
+      drop_temporary(writer);
+      errno = code;
+      if (code == EEXIST) continue;
+      return false;
+    }
+    atomic_store(&writer->unfinished->descriptor, writer->descriptor);
     struct stat info; /* another process may have removed it as abandoned before it was locked */
     bool locked = flock(writer->descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
     if (locked && fstat(writer->descriptor, &info) == 0 && info.st_nlink > 0) return true;
+    drop_temporary(writer);
     close(writer->descriptor);
     writer->descriptor = -1;
   }
@@ -115,6 +145,7 @@ vlResult vl_file_open_write(vlFileWriter *writer, vlContext *context, const char
   }
   if (vl_follow_links(path, writer->target, sizeof writer->target)) open_temporary(writer);
   if (writer->descriptor >= 0) return VL_OK;
+  if (errno == ENOMEM) return vl_fail_memory(error);
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", path, strerror(errno));
 }
 
@@ -123,6 +154,7 @@ void vl_file_open_memory(vlFileWriter *writer, vlContext *context, const char *n
   writer->descriptor = -1;
   writer->context = context;
   writer->in_memory = true;
+  writer->unfinished = NULL;
   writer->memory = NULL;
   writer->memory_size = writer->memory_capacity = 0;
   writer->replaces = false;
@@ -224,10 +256,12 @@ vlResult vl_file_commit(vlFileWriter *writer, vlError *error) {
   if (!writer->failed_errno && !writer->temporary[0] && !give_name(writer)) writer->failed_errno = errno;
   if (!writer->failed_errno && rename(writer->temporary, writer->target) != 0) writer->failed_errno = errno;
   if (writer->failed_errno && writer->temporary[0]) unlink(writer->temporary);
+  drop_temporary(writer);
   if (!writer->failed_errno) sync_folder(writer);
   if (close(writer->descriptor) != 0 && !writer->failed_errno) writer->failed_errno = errno;
   writer->descriptor = -1; /* closed last, because closing releases the lock */
   if (!writer->failed_errno) return VL_OK;
+  if (writer->failed_errno == ENOMEM) return vl_fail_memory(error);
   return vl_fail(error, VL_ERROR_IO, "cannot write %s: %s", writer->path, strerror(writer->failed_errno));
 }
 
@@ -239,6 +273,7 @@ void vl_file_abandon(vlFileWriter *writer) {
   }
   if (writer->descriptor < 0) return;
   if (writer->temporary[0]) unlink(writer->temporary);
+  drop_temporary(writer);
   close(writer->descriptor);
   writer->descriptor = -1;
 }

@@ -16,7 +16,7 @@ vlResult vl_film_lock(vlContext *context, const char *path, vlFilmLock **lock, v
   vlLockState state = VL_LOCK_NONE;
   vlResult result = VL_OK;
   bool is_device = vl_path_is_stream(path); /* there is nothing to keep */
-  if (!is_device) result = vl_file_lock(&made->file, path, &state, error);
+  if (!is_device) result = vl_file_lock(&made->file, context, path, &state, error);
   if (result == VL_OK && state == VL_LOCK_NONE && !is_device)
     vl_log(context, VL_LOG_WARNING, NULL,
            "%s: this file system has no locks; two processes that write it would not notice", path);

@@ -11,6 +11,7 @@ rounds full_disks 4 space
 rounds failing_calls 12 call
 rounds refused_memory 12 memory
 rounds refused_threads 2 threads
+rounds interrupts 12 interrupt
 rounds few_files 4 files
 rounds limits 4 limit
 rounds vanished_folders 3 folder
@@ -23,6 +24,11 @@ films space 3
 films call 6
 films memory 10
 films folder 3
+
+# A signal right after each call that opens, locks, names or removes a file: no lock and no temporary file stays.
+interrupts() { check "$1" "$VELO_SOURCE_DIR/tools/check_faults" --velo "$VELO" --every-interrupt --output "$2"; }
+interrupts every_interrupt_of_a_merge 'film merge part_1'
+interrupts every_interrupt_of_a_film 'scene.pbrt --film out.film --checkpoint'
 
 # An error that OpenEXR reports while it writes: its lock is held then. Each allocation of the writer fails once.
 if library=$work/interpose.so && cc -shared -fPIC -O1 -o "$library" "$VELO_SOURCE_DIR/tools/faults/interpose.c" -ldl 2>/dev/null; then

@@ -1,15 +1,16 @@
 /* tools/faults/interpose.c: makes one call of the C library fail. tools/check_faults preloads it:
  *   VELO_FAULT=CALL:K:ERRNO       the K-th call of that kind (from 1) fails
  *   VELO_FAULT=CALL:K+:ERRNO      that and all later ones
- *   VELO_FAULT_COUNT=FILE         how many calls of that kind there were, at exit
- * CALL: memory (malloc, calloc, realloc, aligned), read (read, pread), write (write, pwrite, ftruncate),
- * sync, rename, link, open, thread.
- * Calls on standard input, output and error do not count. */
+ *   VELO_FAULT=CALL:K:-SIGNAL     the K-th call succeeds, and its thread gets that signal right after it (open and
+ * name) VELO_FAULT_COUNT=FILE         how many calls of that kind there were, at exit CALL: memory (malloc, calloc,
+ * realloc, aligned), read (read, pread), write (write, pwrite, ftruncate), sync, rename, link, open, name (open, fcntl,
+ * rename, link, unlink), thread. Calls on standard input, output and error do not count. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -49,12 +50,31 @@ static __attribute__((destructor)) void finish(void) {
   fclose(file);
 }
 
+static __thread int signal_due;
+
 static int fails(const char *call) {
   if (!atomic_load(&ready) || strcmp(call, fault_call) != 0) return 0;
   long n = atomic_fetch_add(&calls, 1) + 1;
   if (n != fault_at && !(fault_stays && fault_at && n > fault_at)) return 0;
+  if (fault_errno < 0) {
+    signal_due = -fault_errno;
+    return 0;
+  }
   errno = fault_errno;
   return 1;
+}
+
+/* Sends the signal after a call. Returns the call's result. */
+static int after(int result) {
+  int number = signal_due, code = errno;
+  signal_due = 0;
+  if (number) raise(number);
+  errno = code;
+  return result;
+}
+/* Whether a call that changes or opens a name fails: it counts under both kinds. */
+static int name_fails(const char *call) {
+  return fails(call) || fails("name");
 }
 
 /* The C library's own function that the function defined here replaces. */
@@ -107,21 +127,38 @@ int fsync(int file) {
   return fails("sync") ? -1 : NEXT(fsync, file);
 }
 int rename(const char *from, const char *to) {
-  return fails("rename") ? -1 : NEXT(rename, from, to);
+  return name_fails("rename") ? -1 : after(NEXT(rename, from, to));
 }
 int linkat(int a, const char *from, int b, const char *to, int flags) {
-  return fails("link") ? -1 : NEXT(linkat, a, from, b, to, flags);
+  return name_fails("link") ? -1 : after(NEXT(linkat, a, from, b, to, flags));
+}
+int unlink(const char *path) {
+  return fails("name") ? -1 : after(NEXT(unlink, path));
+}
+int fcntl(int file, int command, ...) {
+  va_list more;
+  va_start(more, command);
+  void *argument = va_arg(more, void *);
+  va_end(more);
+  return fails("name") ? -1 : after(NEXT(fcntl, file, command, argument));
+}
+int fcntl64(int file, int command, ...) {
+  va_list more;
+  va_start(more, command);
+  void *argument = va_arg(more, void *);
+  va_end(more);
+  return fails("name") ? -1 : after(NEXT(fcntl64, file, command, argument));
 }
 static mode_t mode_of(int flags, va_list more) {
   return flags & (O_CREAT | __O_TMPFILE) ? va_arg(more, mode_t) : 0;
 }
-#define OPEN(name)                                             \
-  int name(const char *path, int flags, ...) {                 \
-    va_list more;                                              \
-    va_start(more, flags);                                     \
-    mode_t mode = mode_of(flags, more);                        \
-    va_end(more);                                              \
-    return fails("open") ? -1 : NEXT(name, path, flags, mode); \
+#define OPEN(name)                                                         \
+  int name(const char *path, int flags, ...) {                             \
+    va_list more;                                                          \
+    va_start(more, flags);                                                 \
+    mode_t mode = mode_of(flags, more);                                    \
+    va_end(more);                                                          \
+    return name_fails("open") ? -1 : after(NEXT(name, path, flags, mode)); \
   }
 OPEN(open)
 OPEN(open64)

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "image/header.h"
@@ -182,7 +183,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
     else
       status = report_error(&error, result, out);
   }
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

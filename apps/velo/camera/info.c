@@ -4,6 +4,7 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/vector.h"
 #include "image/image.h"
@@ -133,7 +134,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
       print_text(path, &record, &camera, &info);
     status = image_finish_output(STATUS_OK);
   }
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 
@@ -142,7 +143,7 @@ static int run_points(const Arguments *arguments, int (*all)(const vlCamera *, d
   if (lines.bad && status == STATUS_OK) status = STATUS_SCENE;
   if (lines.file && !from_stdin) fclose(lines.file);
   free(lines.line);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

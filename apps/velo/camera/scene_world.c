@@ -32,5 +32,5 @@ int scene_world_open(SceneWorld *s, const Command *command, const Arguments *arg
 void scene_world_close(SceneWorld *s) {
   vl_world_destroy(s->world);
   vl_scene_destroy(s->scene);
-  vl_context_destroy(s->context);
+  context_close(s->context);
 }

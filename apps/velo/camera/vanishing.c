@@ -7,6 +7,7 @@
 #include "camera/camera.h"
 #include "camera/numbers.h"
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/json.h"
 #include "cli/report.h"
 #include "cli/vector.h"
@@ -290,7 +291,7 @@ static int run_inverse(const Arguments *arguments) {
       result = vl_camera_write(context, v[V_OUT].text, &file, &record, &error);
       if (result != VL_OK) status = report_error(&error, result, v[V_OUT].text);
     }
-    vl_context_destroy(context);
+    context_close(context);
     if (status >= 0) return status;
   }
   say_camera(&record.camera, v[V_JSON].given);
@@ -331,7 +332,7 @@ static int run_vanishing(const Command *command, const Arguments *arguments) {
       say_text(&camera, &points);
     status = image_finish_output(STATUS_OK);
   }
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -214,7 +214,7 @@ static int run_verify(const Command *command, const Arguments *arguments) {
     (o[VERIFY_JSON].given ? print_json : print_text)(&v, path, against, threshold, failure);
     status = image_finish_output(failure ? STATUS_OTHER : STATUS_OK);
   }
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -22,7 +22,7 @@ int context_open(const vlContextDef *def, vlContext **context) {
   }
   switch (vl_context_create(&ours, context)) {
     case VL_OK:
-    case VL_CANCELLED: return -1;
+    case VL_CANCELLED: signals_watch(*context); return -1;
     case VL_ERROR_MISSING: return report_failure(STATUS_MISSING, "--sandbox: there is no such folder");
     case VL_ERROR_ARGUMENT:
     case VL_ERROR_UNSUPPORTED:
@@ -34,6 +34,11 @@ int context_open(const vlContextDef *def, vlContext **context) {
   }
   return report_failure(STATUS_OTHER, "no memory, or the system refuses to start %u threads: --threads N",
                         ours.threads);
+}
+
+void context_close(vlContext *context) {
+  signals_forget(context);
+  vl_context_destroy(context);
 }
 
 const char *context_isa_name(const vlContext *context) {

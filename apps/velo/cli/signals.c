@@ -8,11 +8,15 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "velo/film.h"
+
 enum { MOST_SIGNALS = 2 }; /* after this number of signals, the next one ends the program */
+enum { MOST_CONTEXTS = 8 };
 
 static atomic_int pending, count;
-static atomic_bool remember, on_terminal;
+static atomic_bool remember, on_terminal, ending;
 static _Atomic time_t last; /* time of the last signal that counted, seconds */
+static _Atomic(vlContext *) watched[MOST_CONTEXTS];
 
 /* Nobody may read the messages: what a pipe does not take at once is dropped, so that the signal still ends velo. Calls
  * only async-signal-safe functions. */
@@ -23,11 +27,19 @@ static void say(const char *text) {
   (void)ignored;
 }
 
+/* Ends the program. A further signal returns to this. */
+static void end(int code) {
+  if (atomic_exchange(&ending, true)) return;
+  for (int i = 0; i < MOST_CONTEXTS; i++) vl_remove_unfinished(atomic_exchange(&watched[i], NULL));
+  _exit(code);
+}
+
 static void handle(int number) {
   if (!remember) {
     if (on_terminal) say("\n"); /* ends the line on which the terminal shows ^C */
     say("velo: interrupted; nothing was rendered yet, nothing is written\n");
-    _exit(128 + number);
+    end(128 + number);
+    return;
   }
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -37,7 +49,7 @@ static void handle(int number) {
     count = 1;
   } else if (now.tv_sec > last + 1) {
     last = now.tv_sec;
-    if (++count > MOST_SIGNALS) _exit(128 + pending);
+    if (++count > MOST_SIGNALS) end(128 + pending);
   }
 }
 
@@ -53,6 +65,21 @@ void signals_install(void) {
     if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler == SIG_IGN) continue;
     sigaction(numbers[i], &action, NULL);
   }
+}
+
+void signals_watch(vlContext *context) {
+  for (int i = 0; i < MOST_CONTEXTS; i++) {
+    vlContext *none = NULL;
+    if (atomic_compare_exchange_strong(&watched[i], &none, context)) return;
+  }
+}
+
+void signals_forget(vlContext *context) {
+  for (int i = 0; i < MOST_CONTEXTS && context; i++) {
+    vlContext *same = context;
+    if (atomic_compare_exchange_strong(&watched[i], &same, NULL)) return;
+  }
+  while (context && ending) pause(); /* the handler, in another thread, uses it */
 }
 
 void signals_remember(void) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/attributes.h"
@@ -107,7 +108,7 @@ static int run_develop(const Command *command, const Arguments *arguments) {
   vl_image_destroy(d.spectrum);
   vl_film_destroy(d.film);
   vl_film_file_close(d.file);
-  vl_context_destroy(d.context);
+  context_close(d.context);
   return status;
 }
 

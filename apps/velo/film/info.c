@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "film/blocks.h"
 #include "image/image.h"
@@ -147,7 +148,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   }
   film_parts_free(&parts);
   vl_film_file_close(file);
-  vl_context_destroy(context);
+  context_close(context);
   return image_finish_output(status);
 }
 

@@ -2,6 +2,7 @@
 #include <limits.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/output_names.h"
@@ -22,7 +23,7 @@ static int run_merge(const Command *command, const Arguments *arguments) {
   def.overwrite = arguments->values[MERGE_OVERWRITE].given;
   vlResult result = vl_film_merge(context, arguments->all_operands, (uint32_t)arguments->operand_count, &def,
                                   output_opened(output->text), &error);
-  vl_context_destroy(context);
+  context_close(context);
   return result == VL_OK ? STATUS_OK : report_error(&error, result, NULL);
 }
 

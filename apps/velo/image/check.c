@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/vector.h"
 #include "image/check.h"
@@ -280,7 +281,7 @@ static int run_check(const Command *command, const Arguments *arguments) {
   vl_image_destroy(other);
   vl_optics_destroy(c->optics);
   vl_optics_destroy(c->other_optics);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

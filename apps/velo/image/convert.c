@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/job.h"
@@ -189,7 +190,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   }
   if (status < 0) status = outputs_write(context, &outputs, image, 0, OUTPUT_FINISHED);
   vl_image_destroy(image);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

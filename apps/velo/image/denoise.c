@@ -60,7 +60,7 @@ static int run_denoise(const Command *command, const Arguments *arguments) {
   if (status < 0) status = outputs_write(context, &outputs, clean, 0, OUTPUT_FINISHED);
   vl_image_destroy(clean);
   vl_image_destroy(image);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

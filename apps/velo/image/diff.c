@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/output_names.h"
@@ -138,7 +139,7 @@ static int run_diff(const Command *command, const Arguments *arguments) {
   vl_image_destroy(heat);
   vl_image_destroy(b);
   vl_image_destroy(a);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -239,7 +239,7 @@ static int run_info(const Command *command, const Arguments *arguments) {
   }
   vl_receipt_destroy(receipt);
   vl_image_destroy(image);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

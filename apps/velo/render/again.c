@@ -120,5 +120,5 @@ int again_check(const Again *again, const ReceiptPlan *plan, vlContext *context,
 
 void again_close(Again *again) {
   vl_receipt_destroy(again->receipt);
-  vl_context_destroy(again->context);
+  context_close(again->context);
 }

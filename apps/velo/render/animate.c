@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "render/job.h"
@@ -153,6 +154,6 @@ int animate_run(const Command *command, const Arguments *arguments, AnimateRende
     report_note("%u frames", (a.last - a.first) / a.step + 1);
   vl_world_destroy(shared.world);
   vl_scene_destroy(shared.scene);
-  vl_context_destroy(shared.context);
+  context_close(shared.context);
   return status;
 }

@@ -183,5 +183,5 @@ int continue_film(const FilmClaim *claim, const Arguments *arguments, const vlRe
 
 void continue_close(Continue *c) {
   vl_film_file_close(c->file);
-  vl_context_destroy(c->context);
+  context_close(c->context);
 }

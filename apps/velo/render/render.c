@@ -447,7 +447,7 @@ static void free_render(Render *render) {
   if (!shared) vl_world_destroy(render->world);
   if (!shared || render->scene != shared->scene) vl_scene_destroy(render->scene);
   report_memory_of(NULL, 0);
-  if (!shared) vl_context_destroy(render->context);
+  if (!shared) context_close(render->context);
   if (shared) shared->context = render->context;
   again_close(&render->again);
   continue_close(&render->resumed);

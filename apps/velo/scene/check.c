@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
@@ -174,7 +175,7 @@ static int run(const Command *command, const Arguments *arguments) {
     status = report_stdout(status);
   }
   free(list.items);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -4,6 +4,7 @@
 #include <strings.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "render/output_names.h"
@@ -85,7 +86,7 @@ static int run_convert(const Command *command, const Arguments *arguments) {
   }
   vl_scene_destroy(scene);
   if (status == STATUS_OK && v[CONVERT_PROVE].given) status = convert_prove(context, &load, from, to);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

@@ -347,7 +347,7 @@ static int run(const Command *command, const Arguments *arguments) {
   if (r == VL_OK) status = report_stdout(STATUS_OK);
   vl_check_destroy(f.check);
   vl_scene_destroy(f.scene);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

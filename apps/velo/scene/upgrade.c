@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/context.h"
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
@@ -84,7 +85,7 @@ static int run(const Command *command, const Arguments *arguments) {
   status = report_stdout(status);
   for (size_t i = 0; i < list.count; i++) free(list.kinds[i].text);
   free(list.kinds);
-  vl_context_destroy(context);
+  context_close(context);
   return status;
 }
 

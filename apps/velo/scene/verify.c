@@ -106,7 +106,7 @@ static void close_all(Verify *v) {
   free(v->material_of);
   free(v->marks);
   vl_scene_destroy(v->scene);
-  vl_context_destroy(v->context);
+  context_close(v->context);
 }
 
 static int run_verify(const Command *command, const Arguments *arguments) {

@@ -150,6 +150,6 @@ int view_run(const Arguments *arguments) {
   engine_destroy(engine);
   film_claim_release(&claim);
   report_memory_of(NULL, 0);
-  vl_context_destroy(context);
+  context_close(context);
   return status == STATUS_OK ? stopped : status;
 }

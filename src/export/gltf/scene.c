@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "base/unfinished.h"
 #include "export/export.h"
 #include "math/elementary.h"
 #include "velo/camera_file.h"
@@ -24,6 +25,11 @@ static vlResult write_camera(vlExport *x, const vlCameraRecord *record, const ch
     def.drop_count = VL_LENGTH(beyond);
   }
   return vl_camera_write(x->context, path, &def, record, &error);
+}
+
+static void remove_file(int descriptor, const char *path) {
+  (void)descriptor;
+  unlink(path);
 }
 
 /* Makes axes exactly orthogonal if they are orthogonal except for rounding, since readers of glTF decompose
@@ -74,6 +80,8 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   char name[64], path[4096];
   snprintf(name, sizeof name, ".velo-export-%ld.gltf", (long)getpid());
   if (!vl_export_path(x, name, path, sizeof path)) return false;
+  vlUnfinished *unfinished = vl_unfinished_add(vl_context_unfinished(x->context), path, -1, remove_file);
+  if (!unfinished) return vl_export_fail(x, VL_ERROR_MEMORY, "out of memory");
   vlResult r = write_camera(x, &record, path, false);
   if (r == VL_ERROR_UNSUPPORTED) {
     vl_export_lose(x, "the camera's projection, lens or principal point: in the extras, which velo alone reads");
@@ -81,6 +89,7 @@ bool vl_gltf_put_camera(vlExport *x, json_t *nodes, bool mirror) {
   }
   json_t *tree = r == VL_OK ? json_load_file(path, 0, NULL) : NULL;
   unlink(path);
+  vl_unfinished_drop(unfinished);
   if (r == VL_ERROR_MEMORY) return vl_export_fail(x, r, "out of memory");
   if (r == VL_ERROR_IO || (r == VL_OK && !tree)) {
     json_decref(tree);

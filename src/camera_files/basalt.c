@@ -95,10 +95,6 @@ static vlResult read_basalt(const vlCameraFile *file, const json_t *tree, vlCame
                             vl_camera_asked(file, "0").text, record->frames);
 }
 
-static bool is_basalt(const json_t *tree) {
-  return vl_camera_has_in(tree, "value0", "intrinsics");
-}
-
 static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14], r[9], q[4];
@@ -127,4 +123,4 @@ static vlResult write_basalt(const vlCameraFile *file, const vlCameraRecord *rec
 }
 
 const vlCameraFormat vl_format_basalt = {
-    .name = "basalt", .is_tree = is_basalt, .read = read_basalt, .write = write_basalt};
+    .name = "basalt", .marks = {"intrinsics"}, .marks_in = "value0", .read = read_basalt, .write = write_basalt};

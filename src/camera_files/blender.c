@@ -77,9 +77,8 @@ static vlResult write_blender(const vlCameraFile *file, const vlCameraRecord *re
   return VL_OK;
 }
 
-static bool is_blender(const json_t *tree) {
-  return vl_camera_has(tree, "matrix_world") || vl_camera_has(tree, "sensor_fit") || vl_camera_has(tree, "lens");
-}
-
-const vlCameraFormat vl_format_blender = {
-    .name = "blender", .is_tree = is_blender, .read = read_blender, .write = write_blender};
+const vlCameraFormat vl_format_blender = {.name = "blender",
+                                          .marks = {"matrix_world", "sensor_fit", "lens"},
+                                          .one_mark = true,
+                                          .read = read_blender,
+                                          .write = write_blender};

@@ -133,11 +133,6 @@ static vlResult read_camodocal(const vlCameraFile *file, const json_t *tree, vlC
   return result;
 }
 
-static bool is_camodocal(const json_t *tree) {
-  return vl_camera_has(tree, "model_type") || vl_camera_has(tree, "cam0_calib") ||
-         vl_camera_has(tree, "projection_parameters");
-}
-
 static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   double k[14];
@@ -165,5 +160,8 @@ static vlResult write_camodocal(const vlCameraFile *file, const vlCameraRecord *
   return VL_OK;
 }
 
-const vlCameraFormat vl_format_camodocal = {
-    .name = "camodocal", .is_tree = is_camodocal, .read = read_camodocal, .write = write_camodocal};
+const vlCameraFormat vl_format_camodocal = {.name = "camodocal",
+                                            .marks = {"model_type", "cam0_calib", "projection_parameters"},
+                                            .one_mark = true,
+                                            .read = read_camodocal,
+                                            .write = write_camodocal};

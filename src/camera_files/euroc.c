@@ -45,13 +45,10 @@ static vlResult read_euroc(const vlCameraFile *file, const json_t *tree, vlCamer
   return VL_OK;
 }
 
-static bool is_euroc(const json_t *tree) {
-  return vl_camera_has(tree, "T_BS") || vl_camera_has(tree, "sensor_type");
-}
-
 const vlCameraFormat vl_format_euroc = {
     .name = "euroc",
-    .is_tree = is_euroc,
+    .marks = {"T_BS", "sensor_type"},
+    .one_mark = true,
     .read = read_euroc,
     .holds = VL_HOLDS_POSE,
     .lenses = VL_LENSES_COMMON,

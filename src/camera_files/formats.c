@@ -98,10 +98,19 @@ static const vlCameraDialect order[] = {VL_CAMERA_DIALECT_REALITYCAPTURE,
                                         VL_CAMERA_DIALECT_BLENDER,
                                         VL_CAMERA_DIALECT_OPENCV};
 
+static bool has_marks(const vlCameraFormat *format, const json_t *tree) {
+  const json_t *object = format->marks_in ? json_object_get(tree, format->marks_in) : tree;
+  if (format->marks_in && json_is_array(object)) object = json_array_get(object, 0);
+  size_t count = 0, found = 0;
+  while (count < VL_LENGTH(format->marks) && format->marks[count])
+    found += vl_camera_has(object, format->marks[count++]);
+  return format->one_mark ? found > 0 : count > 0 && found == count;
+}
+
 vlCameraDialect vl_camera_dialect_of_tree(const json_t *tree) {
   for (size_t i = 0; i < VL_LENGTH(order); i++) {
     const vlCameraFormat *format = vl_camera_formats[order[i]];
-    if (format->is_tree && format->is_tree(tree)) return order[i];
+    if (format->is_tree ? format->is_tree(tree) : has_marks(format, tree)) return order[i];
   }
   return VL_CAMERA_DIALECT_AUTO;
 }

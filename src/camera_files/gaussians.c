@@ -17,14 +17,10 @@ static vlResult read_gaussians(const vlCameraFile *file, const json_t *tree, vlC
   return VL_OK;
 }
 
-static bool is_gaussians(const json_t *tree) {
-  return vl_camera_has_in(tree, "[]", "position") && vl_camera_has_in(tree, "[]", "rotation") &&
-         vl_camera_has_in(tree, "[]", "fx");
-}
-
 const vlCameraFormat vl_format_gaussians = {
     .name = "gaussians",
-    .is_tree = is_gaussians,
+    .marks = {"position", "rotation", "fx"},
+    .marks_in = "[]",
     .read = read_gaussians,
     .holds = VL_HOLDS_POSE,
     .centred = true,

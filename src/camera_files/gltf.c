@@ -248,8 +248,4 @@ static vlResult write_gltf(const vlCameraFile *file, const vlCameraRecord *recor
   return result;
 }
 
-static bool is_gltf(const json_t *tree) {
-  return vl_camera_has(tree, "asset");
-}
-
-const vlCameraFormat vl_format_gltf = {.name = "gltf", .is_tree = is_gltf, .read = read_gltf, .write = write_gltf};
+const vlCameraFormat vl_format_gltf = {.name = "gltf", .marks = {"asset"}, .read = read_gltf, .write = write_gltf};

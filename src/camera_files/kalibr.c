@@ -180,9 +180,5 @@ static vlResult write_kalibr(const vlCameraFile *file, const vlCameraRecord *rec
   return VL_OK;
 }
 
-static bool is_kalibr(const json_t *tree) {
-  return vl_camera_has(tree, "cam0");
-}
-
 const vlCameraFormat vl_format_kalibr = {
-    .name = "kalibr", .is_tree = is_kalibr, .read = vl_camera_read_kalibr, .write = write_kalibr};
+    .name = "kalibr", .marks = {"cam0"}, .read = vl_camera_read_kalibr, .write = write_kalibr};

@@ -155,8 +155,8 @@ static vlResult write_nerf(const vlCameraFile *file, const vlCameraRecord *recor
   return vl_camera_put_form(text, record, &c, NULL, ",\n     \"transform_matrix\": [$flipped:4]}\n  ]\n}\n");
 }
 
-static bool is_nerf(const json_t *tree) {
-  return vl_camera_has(tree, "frames") || vl_camera_has(tree, "fl_x") || vl_camera_has(tree, "camera_angle_x");
-}
-
-const vlCameraFormat vl_format_nerf = {.name = "nerf", .is_tree = is_nerf, .read = read_nerf, .write = write_nerf};
+const vlCameraFormat vl_format_nerf = {.name = "nerf",
+                                       .marks = {"frames", "fl_x", "camera_angle_x"},
+                                       .one_mark = true,
+                                       .read = read_nerf,
+                                       .write = write_nerf};

@@ -43,13 +43,10 @@ static vlResult read_nerfstudio(const vlCameraFile *file, const json_t *tree, vl
   return VL_OK;
 }
 
-static bool is_nerfstudio(const json_t *tree) {
-  return vl_camera_has_in(tree, "camera_path", "camera_to_world");
-}
-
 const vlCameraFormat vl_format_nerfstudio = {
     .name = "nerfstudio",
-    .is_tree = is_nerfstudio,
+    .marks = {"camera_to_world"},
+    .marks_in = "camera_path",
     .read = read_nerfstudio,
     .holds = VL_HOLDS_POSE,
     .centred = true,

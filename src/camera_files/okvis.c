@@ -48,10 +48,6 @@ static vlResult read_okvis(const vlCameraFile *file, const json_t *tree, vlCamer
   return VL_OK;
 }
 
-static bool is_okvis(const json_t *tree) {
-  return vl_camera_has_in(tree, "cameras", "T_SC");
-}
-
 static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   vlFittedLens fit;
@@ -67,4 +63,5 @@ static vlResult write_okvis(const vlCameraFile *file, const vlCameraRecord *reco
       VL_VALUES("k", fit.k, full ? 8 : 4), VL_WORD("lens", fit.family == VL_LENS_FISHEYE ? "equidistant" : brown));
 }
 
-const vlCameraFormat vl_format_okvis = {.name = "okvis", .is_tree = is_okvis, .read = read_okvis, .write = write_okvis};
+const vlCameraFormat vl_format_okvis = {
+    .name = "okvis", .marks = {"T_SC"}, .marks_in = "cameras", .read = read_okvis, .write = write_okvis};

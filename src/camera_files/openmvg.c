@@ -138,10 +138,6 @@ static vlResult read_openmvg(const vlCameraFile *file, const json_t *tree, vlCam
                         json_array_get(json_object_get(tree, "intrinsics"), 0), record);
 }
 
-static bool is_openmvg(const json_t *tree) {
-  return vl_camera_has(tree, "sfm_data_version");
-}
-
 static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   vlCamera c;
   vlFittedLens fit;
@@ -181,4 +177,4 @@ static vlResult write_openmvg(const vlCameraFile *file, const vlCameraRecord *re
 }
 
 const vlCameraFormat vl_format_openmvg = {
-    .name = "openmvg", .is_tree = is_openmvg, .read = read_openmvg, .write = write_openmvg};
+    .name = "openmvg", .marks = {"sfm_data_version"}, .read = read_openmvg, .write = write_openmvg};

@@ -71,10 +71,6 @@ static vlResult read_orbslam(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-static bool is_orbslam(const json_t *tree) {
-  return vl_camera_has(tree, "Camera.fx") || vl_camera_has(tree, "Camera1.fx") || vl_camera_has(tree, "Camera.type");
-}
-
 static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *record, vlCameraText *text) {
   static const char *const pinhole[] = {"k1", "k2", "p1", "p2", "k3"}, *const radial[] = {"k1", "k2", "k3", "k4"};
   vlCamera c;
@@ -91,5 +87,8 @@ static vlResult write_orbslam(const vlCameraFile *file, const vlCameraRecord *re
   return vl_camera_put_form(text, record, &c, NULL, "\nCamera.width: $width\nCamera.height: $height\n");
 }
 
-const vlCameraFormat vl_format_orbslam = {
-    .name = "orbslam", .is_tree = is_orbslam, .read = read_orbslam, .write = write_orbslam};
+const vlCameraFormat vl_format_orbslam = {.name = "orbslam",
+                                          .marks = {"Camera.fx", "Camera1.fx", "Camera.type"},
+                                          .one_mark = true,
+                                          .read = read_orbslam,
+                                          .write = write_orbslam};

@@ -71,13 +71,9 @@ static vlResult read_polycam(const vlCameraFile *file, const json_t *tree, vlCam
   return result;
 }
 
-static bool is_polycam(const json_t *tree) {
-  return vl_camera_has(tree, "t_00") && vl_camera_has(tree, "t_23") && vl_camera_has(tree, "fx");
-}
-
 const vlCameraFormat vl_format_polycam = {
     .name = "polycam",
-    .is_tree = is_polycam,
+    .marks = {"t_00", "t_23", "fx"},
     .read = read_polycam,
     .holds = VL_HOLDS_POSE,
     .lenses = 1 << VL_LENS_PINHOLE,
@@ -107,11 +103,7 @@ static vlResult read_scanner(const vlCameraFile *file, const json_t *tree, vlCam
   return vl_camera_size_beside(file, (const char *const[]){image, NULL}, record);
 }
 
-static bool is_scanner(const json_t *tree) {
-  return vl_camera_has(tree, "cameraPoseARFrame") && vl_camera_has(tree, "intrinsics");
-}
-
 const vlCameraFormat vl_format_scanner3d = {.name = "scanner3d",
-                                            .is_tree = is_scanner,
+                                            .marks = {"cameraPoseARFrame", "intrinsics"},
                                             .read = read_scanner,
                                             .not_written = "it describes a recording of a phone"};

@@ -108,12 +108,9 @@ static vlResult read_nuscenes(const vlCameraFile *file, const json_t *tree, vlCa
   return vl_camera_size_beside(file, NULL, record);
 }
 
-static bool is_nuscenes(const json_t *tree) {
-  return vl_camera_has_in(tree, "[]", "camera_intrinsic") && vl_camera_has_in(tree, "[]", "rotation");
-}
-
 const vlCameraFormat vl_format_nuscenes = {.name = "nuscenes",
-                                           .is_tree = is_nuscenes,
+                                           .marks = {"camera_intrinsic", "rotation"},
+                                           .marks_in = "[]",
                                            .read = read_nuscenes,
                                            .not_written = "it is a table of a dataset, with keys of other tables"};
 
@@ -135,13 +132,10 @@ static vlResult read_panoptic(const vlCameraFile *file, const json_t *tree, vlCa
   return VL_OK;
 }
 
-static bool is_panoptic(const json_t *tree) {
-  return vl_camera_has_in(tree, "cameras", "distCoef") && vl_camera_has_in(tree, "cameras", "K");
-}
-
 const vlCameraFormat vl_format_panoptic = {
     .name = "panoptic",
-    .is_tree = is_panoptic,
+    .marks = {"distCoef", "K"},
+    .marks_in = "cameras",
     .read = read_panoptic,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
     .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,
@@ -175,14 +169,9 @@ static vlResult read_nerfies(const vlCameraFile *file, const json_t *tree, vlCam
   return VL_OK;
 }
 
-static bool is_nerfies(const json_t *tree) {
-  return vl_camera_has(tree, "orientation") && vl_camera_has(tree, "focal_length") &&
-         vl_camera_has(tree, "principal_point");
-}
-
 const vlCameraFormat vl_format_nerfies = {
     .name = "nerfies",
-    .is_tree = is_nerfies,
+    .marks = {"orientation", "focal_length", "principal_point"},
     .read = read_nerfies,
     .holds = VL_HOLDS_POSE | VL_HOLDS_SKEW,
     .lenses = 1 << VL_LENS_PINHOLE | 1 << VL_LENS_OPENCV,

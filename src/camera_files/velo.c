@@ -420,9 +420,5 @@ vlResult vl_camera_write_velo(const vlCameraFile *file, const vlCameraRecord *re
   return result;
 }
 
-static bool is_velo(const json_t *tree) {
-  return vl_camera_has(tree, "velo_camera");
-}
-
 const vlCameraFormat vl_format_velo = {
-    .name = "velo", .is_tree = is_velo, .read = vl_camera_read_velo, .write = vl_camera_write_velo};
+    .name = "velo", .marks = {"velo_camera"}, .read = vl_camera_read_velo, .write = vl_camera_write_velo};

@@ -150,12 +150,27 @@ static vlResult walk(Search *s, const json_t *prim) {
   return result;
 }
 
+/* The image's size; aspect: of the aperture, for a file without a resolution. */
+static vlResult read_resolution(const Search *s, double aspect, vlCameraRecord *record) {
+  double size[2];
+  if (!s->resolution) return vl_camera_size(s->file, aspect, record);
+  vlResult result = vl_camera_numbers(s->file, s->resolution, "resolution", size, 2, 2, NULL);
+  if (result != VL_OK) return result;
+  for (int i = 0; i < 2; i++)
+    if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
+      return vl_camera_wrong(s->file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels",
+                             size[i]);
+  record->camera.width = (uint32_t)size[0];
+  record->camera.height = (uint32_t)size[1];
+  return VL_OK;
+}
+
 static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord *record) {
   const vlCameraFile *file = s->file;
   const json_t *prim = s->camera;
   vlCameraDef *d = &record->camera;
   double focal = 50.0, across = 20.955, down = 15.2908, offset_x = 0.0, offset_y = 0.0, stop = 0.0, focus = 0.0;
-  double range[2], size[2], exposure = 0.0, rate = 24.0;
+  double range[2], exposure = 0.0, rate = 24.0;
   vlResult result = VL_READ_FIELDS(
       file, prim, VL_FIELD_OPTIONAL("focalLength", &focal), VL_FIELD_OPTIONAL("horizontalAperture", &across),
       VL_FIELD_OPTIONAL("verticalAperture", &down), VL_FIELD_OPTIONAL("horizontalApertureOffset", &offset_x),
@@ -178,18 +193,7 @@ static vlResult read_camera(const Search *s, const json_t *root, vlCameraRecord 
                            vl_short_text(projection).text);
   if (!(focal > 0.0 && across > 0.0 && down > 0.0 && rate > 0.0))
     return vl_camera_wrong(file, "usd: focalLength, horizontalAperture and verticalAperture must be above zero");
-  if (s->resolution) {
-    result = vl_camera_numbers(file, s->resolution, "resolution", size, 2, 2, NULL);
-    for (int i = 0; i < 2 && result == VL_OK; i++)
-      if (!(size[i] >= 1.0 && size[i] <= 1 << 24) || size[i] != floor(size[i]))
-        return vl_camera_wrong(file, "usd: a resolution of %g; an image's side is 1 to 16777216 whole pixels", size[i]);
-    if (result == VL_OK) {
-      d->width = (uint32_t)size[0];
-      d->height = (uint32_t)size[1];
-    }
-  } else {
-    result = vl_camera_size(file, across / down, record);
-  }
+  result = read_resolution(s, across / down, record);
   if (result != VL_OK) return result;
   double w = d->width, h = d->height;
   /* orthographic apertures are in tenths of a unit too */

@@ -22,13 +22,17 @@ typedef struct vlImageFile {
   vlImage **header; /* not null: only the header is read; vl_codec_create stores an image here and stops the reader */
 } vlImageFile;
 
+/* Whether the bytes are a file of the format. */
+typedef bool vlCodecProbe(const uint8_t *data, size_t size);
+typedef vlResult vlCodecRead(const vlImageFile *file, vlImage **image);
+typedef vlResult vlCodecWrite(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+
 typedef struct vlCodec {
   const char *name;        /* for messages: "PNG" */
   const char *suffixes[4]; /* file name suffixes with the dot, for writing; the list ends with null */
-  bool (*probe)(const uint8_t *data, size_t size);
-  vlResult (*read)(const vlImageFile *file, vlImage **image);
-  vlResult (*write)(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer,
-                    vlError *error); /* null: the format is read only */
+  vlCodecProbe *probe;
+  vlCodecRead *read;
+  vlCodecWrite *write; /* null: the format is read only */
 } vlCodec;
 
 extern const vlCodec vl_codecs[];
@@ -58,35 +62,12 @@ vlResult vl_codec_make(const vlImageFile *file, const vlImageDef *def, vlImage *
 void vl_codec_row_8bit(const vlImage *image, uint32_t y, const uint32_t *channel, uint32_t count, float *scratch,
                        uint8_t *result);
 
-vlResult vl_exr_read(const vlImageFile *file, vlImage **image);
-vlResult vl_exr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
+vlCodecProbe vl_exr_probe, vl_png_probe, vl_jpeg_probe, vl_hdr_probe, vl_pfm_probe, vl_tga_probe, vl_bmp_probe,
+    vl_gif_probe, vl_pnm_probe, vl_qoi_probe, vl_webp_probe;
+vlCodecRead vl_exr_read, vl_png_read, vl_jpeg_read, vl_hdr_read, vl_pfm_read, vl_tga_read, vl_bmp_read, vl_gif_read,
+    vl_pnm_read, vl_qoi_read, vl_webp_read;
+vlCodecWrite vl_exr_write, vl_png_write, vl_jpeg_write, vl_hdr_write, vl_pfm_write, vl_tga_write;
 vlResult vl_exr_write_layers(const vlImage *const *images, uint32_t count, const vlWriteDef *def, vlFileWriter *writer,
                              vlError *error);
-bool vl_exr_probe(const uint8_t *data, size_t size);
-vlResult vl_png_read(const vlImageFile *file, vlImage **image);
-vlResult vl_png_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
-bool vl_png_probe(const uint8_t *data, size_t size);
-vlResult vl_jpeg_read(const vlImageFile *file, vlImage **image);
-vlResult vl_jpeg_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
-bool vl_jpeg_probe(const uint8_t *data, size_t size);
-vlResult vl_hdr_read(const vlImageFile *file, vlImage **image);
-vlResult vl_hdr_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
-bool vl_hdr_probe(const uint8_t *data, size_t size);
-vlResult vl_pfm_read(const vlImageFile *file, vlImage **image);
-vlResult vl_pfm_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
-bool vl_pfm_probe(const uint8_t *data, size_t size);
-vlResult vl_tga_read(const vlImageFile *file, vlImage **image);
-vlResult vl_tga_write(const vlImage *image, const vlWriteDef *def, vlFileWriter *writer, vlError *error);
-bool vl_tga_probe(const uint8_t *data, size_t size);
-vlResult vl_bmp_read(const vlImageFile *file, vlImage **image);
-bool vl_bmp_probe(const uint8_t *data, size_t size);
-vlResult vl_gif_read(const vlImageFile *file, vlImage **image);
-bool vl_gif_probe(const uint8_t *data, size_t size);
-vlResult vl_pnm_read(const vlImageFile *file, vlImage **image);
-bool vl_pnm_probe(const uint8_t *data, size_t size);
-vlResult vl_qoi_read(const vlImageFile *file, vlImage **image);
-bool vl_qoi_probe(const uint8_t *data, size_t size);
-vlResult vl_webp_read(const vlImageFile *file, vlImage **image);
-bool vl_webp_probe(const uint8_t *data, size_t size);
 
 #endif

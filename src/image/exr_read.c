@@ -120,7 +120,8 @@ static double ratio(const Reader *r) {
   return r->dwa ? 16384.0 : 1032.0;
 }
 
-static vlResult layout(Reader *r) {
+/* How the file is stored: scanlines or tiles, its compression, the list of channels. */
+static vlResult read_storage(Reader *r) {
   const vlImageFile *file = r->base.file;
   exr_storage_t storage;
   exr_result_t code = exr_get_storage(r->exr, 0, &storage);
@@ -136,15 +137,21 @@ static vlResult layout(Reader *r) {
   r->dwa = r->compression == EXR_COMPRESSION_DWAA || r->compression == EXR_COMPRESSION_DWAB;
   if (r->list->num_channels < 1) return vl_codec_broken(file, "OpenEXR", "no channels");
   if (r->list->num_channels > 1024) return vl_codec_unsupported(file, "OpenEXR", "more than 1024 channels");
+  return VL_OK;
+}
 
-  uint32_t bytes = 0, halves = 0, integers = 0, count = (uint32_t)r->list->num_channels;
+/* Counts the channels that are wanted and finds the type that holds them; bytes: of a pixel of all channels. */
+static vlResult read_channels(Reader *r, uint32_t *bytes) {
+  const vlImageFile *file = r->base.file;
+  *bytes = 0;
+  uint32_t halves = 0, integers = 0, count = (uint32_t)r->list->num_channels;
   for (uint32_t i = 0; i < count; i++) {
     const exr_attr_chlist_entry_t *c = &r->list->entries[i];
     if (c->x_sampling != 1 || c->y_sampling != 1) return vl_codec_unsupported(file, "OpenEXR", "subsampled channels");
     if (!c->name.str || !c->name.str[0] || c->name.length > 255)
       return vl_codec_broken(file, "OpenEXR", "a channel without a name");
     if ((unsigned)c->pixel_type >= EXR_PIXEL_LAST_TYPE) return vl_codec_broken(file, "OpenEXR", "unknown pixel type");
-    bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
+    *bytes += c->pixel_type == EXR_PIXEL_HALF ? 2 : 4;
     if (!is_wanted(file, c->name.str)) continue;
     r->count++;
     halves += c->pixel_type == EXR_PIXEL_HALF;
@@ -158,22 +165,16 @@ static vlResult layout(Reader *r) {
   if (r->user_type == EXR_PIXEL_FLOAT && integers)
     vl_log(file->context, VL_LOG_INFO, NULL, "%s: integers beside floats are read as floats, exact up to 2^24",
            file->name);
+  return VL_OK;
+}
 
-  int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
-          height = (int64_t)r->window.max.y - r->window.min.y + 1;
-  if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
-  if (width > INT32_MAX / (r->user_size * (int64_t)count) || height > INT32_MAX)
-    return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
-  /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run lengths. Each chunk is
-   * checked below, too. */
-  vlResult result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height,
-                                     (double)width * (double)height * bytes, ratio(r));
-  if (result != VL_OK) return result;
+static vlResult read_chunks(Reader *r) {
+  const vlImageFile *file = r->base.file;
   int32_t chunks;
-  code = exr_get_chunk_count(r->exr, 0, &chunks);
+  exr_result_t code = exr_get_chunk_count(r->exr, 0, &chunks);
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   if (chunks < 1 || (uint64_t)chunks * 8 > file->size)
-    return vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height, 8.0 * chunks, 0.0);
+    return vl_codec_promise(file, "OpenEXR", r->width, r->height, 8.0 * chunks, 0.0);
   if (r->tiled)
     code = exr_get_tile_sizes(r->exr, 0, 0, 0, &r->tile_width, &r->tile_height);
   else
@@ -181,9 +182,28 @@ static vlResult layout(Reader *r) {
   if (code != EXR_ERR_SUCCESS) return fail(r, code);
   if (r->tiled ? r->tile_width < 1 || r->tile_height < 1 : r->lines < 1)
     return vl_codec_broken(file, "OpenEXR", "empty chunks");
+  return VL_OK;
+}
+
+static vlResult layout(Reader *r) {
+  const vlImageFile *file = r->base.file;
+  uint32_t bytes;
+  vlResult result = read_storage(r);
+  if (result == VL_OK) result = read_channels(r, &bytes);
+  if (result != VL_OK) return result;
+  int64_t width = (int64_t)r->window.max.x - r->window.min.x + 1,
+          height = (int64_t)r->window.max.y - r->window.min.y + 1;
+  if (width < 1 || height < 1) return vl_codec_broken(file, "OpenEXR", "its data window is empty");
+  if (width > INT32_MAX / (r->user_size * (int64_t)r->list->num_channels) || height > INT32_MAX)
+    return vl_codec_unsupported(file, "OpenEXR", "rows of more than 2^31 bytes");
+  /* Best compression ratios: 1032:1 for deflate; for DWA one value per block of 64 and run lengths. Each chunk is
+   * checked below, too. */
+  result = vl_codec_promise(file, "OpenEXR", (uint64_t)width, (uint64_t)height, (double)width * (double)height * bytes,
+                            ratio(r));
+  if (result != VL_OK) return result;
   r->width = (uint32_t)width;
   r->height = (uint32_t)height;
-  return VL_OK;
+  return read_chunks(r);
 }
 
 /* Finds the chunk at column and row of the grid. Checks that it lies in the file and that its compression ratio is

@@ -83,10 +83,32 @@ static void ball(float radius, float corners[CORNERS][3]) {
     for (int i = 0; i < 3; i++) corners[k][i] = i == k / 2 ? (k & 1 ? -radius : radius) : 0;
 }
 
-bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
+/* Writes the corners and faces of point i. */
+static void put_point(const vlPlainMesh *m, size_t i, float radius, vlPlainMesh *made) {
   static const uint32_t disc_faces[DISC_FACES][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}};
   static const uint32_t ball_faces[BALL_FACES][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                                                      {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  size_t faces = m->normals ? DISC_FACES : BALL_FACES;
+  float corners[CORNERS][3];
+  if (m->normals)
+    disc(m->normals + 3 * i, radius, corners);
+  else
+    ball(radius, corners);
+  for (size_t k = 0; k < CORNERS; k++) {
+    size_t at = i * CORNERS + k;
+    for (size_t c = 0; c < 3; c++) {
+      made->positions[3 * at + c] = m->positions[3 * i + c] + corners[k][c];
+      made->normals[3 * at + c] = m->normals ? m->normals[3 * i + c] : corners[k][c];
+    }
+    if (m->colors) memcpy(made->colors + 4 * at, m->colors + 4 * i, 4 * sizeof(float));
+  }
+  for (size_t f = 0; f < faces; f++)
+    for (size_t k = 0; k < 3; k++)
+      made->indices[3 * (i * faces + f) + k] =
+          (uint32_t)(i * CORNERS) + (m->normals ? disc_faces[f][k] : ball_faces[f][k]);
+}
+
+bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
   size_t faces = m->normals ? DISC_FACES : BALL_FACES, count = m->vertices;
   if (count * BALL_FACES > 0x3fffffff) return false;
   double size = diagonal(m), radius = spacing(m);
@@ -101,25 +123,7 @@ bool vl_import_points(vlContext *context, const char *path, vlPlainMesh *m) {
     VL_FREE(context, made.positions, made.normals, made.indices, made.colors);
     return false;
   }
-  for (size_t i = 0; i < count; i++) {
-    float corners[CORNERS][3];
-    if (m->normals)
-      disc(m->normals + 3 * i, (float)radius, corners);
-    else
-      ball((float)radius, corners);
-    for (size_t k = 0; k < CORNERS; k++) {
-      size_t at = i * CORNERS + k;
-      for (size_t c = 0; c < 3; c++) {
-        made.positions[3 * at + c] = m->positions[3 * i + c] + corners[k][c];
-        made.normals[3 * at + c] = m->normals ? m->normals[3 * i + c] : corners[k][c];
-      }
-      if (m->colors) memcpy(made.colors + 4 * at, m->colors + 4 * i, 4 * sizeof(float));
-    }
-    for (size_t f = 0; f < faces; f++)
-      for (size_t k = 0; k < 3; k++)
-        made.indices[3 * (i * faces + f) + k] =
-            (uint32_t)(i * CORNERS) + (m->normals ? disc_faces[f][k] : ball_faces[f][k]);
-  }
+  for (size_t i = 0; i < count; i++) put_point(m, i, (float)radius, &made);
   VL_FREE(context, m->positions, m->normals, m->uvs, m->colors, m->indices);
   made.face_colors = m->face_colors;
   *m = made;

@@ -198,20 +198,21 @@ vlResult vl_scene_set_medium(vlScene *scene, vlMediumId id, const vlMediumDef *d
 
 /* ---- shapes, lights ---------------------------------------------------------------------------------------------- */
 
+static vlResult show(vlScene *scene, vlSceneMarks *marks, uint32_t id, bool shown, vlError *error) {
+  vlSceneMark *mark = mark_of(scene, marks, id);
+  if (!mark) return vl_fail_memory(error);
+  mark->hidden = !shown;
+  return VL_OK;
+}
+
 vlResult vl_scene_show_light(vlScene *scene, vlLightId id, bool shown, vlError *error) {
   vlResult result = check(scene, ITEM(scene, lights, id) != NULL, "light", error);
-  vlSceneMark *mark = result == VL_OK ? mark_of(scene, &scene->light_marks, id.index) : NULL;
-  if (result == VL_OK && !mark) return vl_fail_memory(error);
-  if (mark) mark->hidden = !shown;
-  return result;
+  return result == VL_OK ? show(scene, &scene->light_marks, id.index, shown, error) : result;
 }
 
 vlResult vl_scene_show_shape(vlScene *scene, vlShapeId id, bool shown, vlError *error) {
   vlResult result = check(scene, ITEM(scene, shapes, id) != NULL, "shape", error);
-  vlSceneMark *mark = result == VL_OK ? mark_of(scene, &scene->shape_marks, id.index) : NULL;
-  if (result == VL_OK && !mark) return vl_fail_memory(error);
-  if (mark) mark->hidden = !shown;
-  return result;
+  return result == VL_OK ? show(scene, &scene->shape_marks, id.index, shown, error) : result;
 }
 
 vlResult vl_scene_set_shape_material(vlScene *scene, vlShapeId id, vlMaterialId material, vlError *error) {

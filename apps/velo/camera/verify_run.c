@@ -53,6 +53,29 @@ static bool place_of(const Pose *pose, double i, double j, double point[3], doub
 }
 
 /* Lists the corners that the image should show completely, with the radius of their windows. */
+/* The crop around the corners that are expected. */
+static void crop_around(Pose *pose) {
+  const Verification *v = pose->v;
+  double box[4] = {v->camera.width, v->camera.height, 0, 0};
+  for (int k = 0; k < pose->count; k++) {
+    const Expected *e = &pose->expected[k];
+    double around = fmax(16.0, e->apart);
+    box[0] = fmin(box[0], e->x - around);
+    box[1] = fmin(box[1], e->y - around);
+    box[2] = fmax(box[2], e->x + around);
+    box[3] = fmax(box[3], e->y + around);
+  }
+  if (v->keep || pose->count == 0) {
+    box[0] = box[1] = 0;
+    box[2] = v->camera.width;
+    box[3] = v->camera.height;
+  }
+  for (int a = 0; a < 4; a++) {
+    double size = a % 2 ? v->camera.height : v->camera.width;
+    pose->crop[a] = (uint32_t)fmin(fmax(a < 2 ? floor(box[a]) : ceil(box[a]), 0.0), size);
+  }
+}
+
 static void expect_corners(Pose *pose) {
   const Verification *v = pose->v;
   pose->count = 0;
@@ -77,24 +100,7 @@ static void expect_corners(Pose *pose) {
       if (e.reach < 4.5 || !in_one_piece(&v->camera, e.x, e.y, e.reach + MARGIN)) continue;
       pose->expected[pose->count++] = e;
     }
-  double box[4] = {v->camera.width, v->camera.height, 0, 0};
-  for (int k = 0; k < pose->count; k++) {
-    const Expected *e = &pose->expected[k];
-    double around = fmax(16.0, e->apart);
-    box[0] = fmin(box[0], e->x - around);
-    box[1] = fmin(box[1], e->y - around);
-    box[2] = fmax(box[2], e->x + around);
-    box[3] = fmax(box[3], e->y + around);
-  }
-  if (v->keep || pose->count == 0) {
-    box[0] = box[1] = 0;
-    box[2] = v->camera.width;
-    box[3] = v->camera.height;
-  }
-  for (int a = 0; a < 4; a++) {
-    double size = a % 2 ? v->camera.height : v->camera.width;
-    pose->crop[a] = (uint32_t)fmin(fmax(a < 2 ? floor(box[a]) : ceil(box[a]), 0.0), size);
-  }
+  crop_around(pose);
 }
 
 /* Chooses a pose that shows at least four corners. The film points cover the image evenly (the R2 sequence). */

@@ -137,6 +137,26 @@ static void confine(const Render *render, const Arguments *arguments) {
   confine_apply(&c, arguments);
 }
 
+static int make_context(Render *render, const Arguments *arguments) {
+  const OptionValue *v = arguments->values;
+  int status = -1;
+  vlContextDef def = vl_default_context_def();
+  def.log = report_log;
+  if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
+  if (v[RENDER_ISA].given) def.isa = (vlIsa)v[RENDER_ISA].integer;
+  if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
+  if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
+  def.sandbox = arguments->folders;
+  def.sandbox_count = (uint32_t)arguments->folder_count;
+  if (!render->context) {
+    confine(render, arguments);
+    status = context_open(&def, &render->context);
+  }
+  if (status < 0) report_memory_of(render->context, def.max_memory);
+  if (status < 0) status = note_inputs(render, arguments);
+  return status;
+}
+
 static int prepare(Render *render, const Arguments *arguments) {
   const OptionValue *v = arguments->values;
   if (v[RENDER_QUIET].given && v[RENDER_VERBOSE].given) return report_usage("--quiet and --verbose exclude each other");
@@ -171,21 +191,7 @@ static int prepare(Render *render, const Arguments *arguments) {
   if (status < 0) status = outputs_check_folders(&film);
   if (status >= 0) return status;
 
-  vlContextDef def = vl_default_context_def();
-  def.log = report_log;
-  if (v[RENDER_THREADS].given) def.threads = (uint32_t)v[RENDER_THREADS].integer;
-  if (v[RENDER_ISA].given) def.isa = (vlIsa)v[RENDER_ISA].integer;
-  if (v[RENDER_MAX_MEMORY].given) def.max_memory = (size_t)v[RENDER_MAX_MEMORY].integer;
-  if (v[RENDER_MAX_TEXTURE].given) def.max_texture_pixels = (uint64_t)v[RENDER_MAX_TEXTURE].integer;
-  def.sandbox = arguments->folders;
-  def.sandbox_count = (uint32_t)arguments->folder_count;
-  if (!render->context) {
-    confine(render, arguments);
-    status = context_open(&def, &render->context);
-  }
-  if (status < 0) report_memory_of(render->context, def.max_memory);
-  if (status < 0) status = note_inputs(render, arguments);
-  return status;
+  return make_context(render, arguments);
 }
 
 /* Adds the files of each frame and view. */
@@ -341,6 +347,14 @@ static int claim_films(Render *render, const Arguments *arguments) {
   return -1;
 }
 
+static int load_frames(Render *render, const Arguments *arguments) {
+  render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
+  int status = frames_load(&render->frames, render->context, &render->job, arguments);
+  if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
+  if (status < 0) status = check_metering(&render->outputs, arguments);
+  return status;
+}
+
 static int load_and_build(Render *render, const char *path, const Arguments *arguments) {
   double start = monotonic_seconds();
   const bool kept = render->shared && render->shared->scene;
@@ -379,10 +393,7 @@ static int load_and_build(Render *render, const char *path, const Arguments *arg
   if (render->many && arguments->values[RENDER_SERVE].given) return report_usage("--serve goes with one image");
   if (render->many && render->denoised.outputs.count) return report_usage("--denoise goes with one image");
   if (render->many) {
-    render->frames.films = render->film_plan.path ? &render->film_plan : NULL;
-    status = frames_load(&render->frames, render->context, &render->job, arguments);
-    if (status < 0) status = frames_check_names(&render->frames, &render->outputs);
-    if (status < 0) status = check_metering(&render->outputs, arguments);
+    status = load_frames(render, arguments);
     if (status >= 0) return status;
   }
   status = needs_check_render_scene(render, arguments);

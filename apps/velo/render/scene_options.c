@@ -90,6 +90,28 @@ static int choose_times(const OptionValue *v, vlLoadDef *load) {
   return -1;
 }
 
+/* What is added to the scene. */
+static void choose_completion(const char *path, const Arguments *arguments, bool model, vlCompleteDef *complete) {
+  const OptionValue *v = arguments->values;
+  if (v[RENDER_RESOLUTION].given) {
+    complete->width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
+    complete->height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
+  }
+  if (v[RENDER_ENVIRONMENT].given) choose_environment(v[RENDER_ENVIRONMENT].text, complete);
+  if (v[RENDER_ENVIRONMENT_ROTATION].given)
+    complete->rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
+  if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete->strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
+  complete->ground = v[RENDER_GROUND].given;
+  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has. */
+  complete->backdrop = model && !v[RENDER_NO_GROUND].given && (!v[RENDER_CHANNELS].given || arguments->channels_later);
+  complete->open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
+  if (v[RENDER_FRAMING].given) complete->framing = (vlFraming)v[RENDER_FRAMING].integer;
+  if (v[RENDER_UP].given)
+    choose_up((int)v[RENDER_UP].integer, complete);
+  else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
+    choose_up(2, complete);
+}
+
 int scene_open(vlContext *context, const char *path, const Arguments *arguments, vlScene **scene,
                SceneOpening *opening) {
   const OptionValue *v = arguments->values;
@@ -119,24 +141,7 @@ int scene_open(vlContext *context, const char *path, const Arguments *arguments,
   vl_scene_info(*scene, &info);
   opening->model = scene_is_model(path);
   opening->lamps = info.lights > 0 && opening->model;
-  if (v[RENDER_RESOLUTION].given) {
-    complete.width = (uint32_t)v[RENDER_RESOLUTION].integers[0];
-    complete.height = (uint32_t)v[RENDER_RESOLUTION].integers[1];
-  }
-  if (v[RENDER_ENVIRONMENT].given) choose_environment(v[RENDER_ENVIRONMENT].text, &complete);
-  if (v[RENDER_ENVIRONMENT_ROTATION].given)
-    complete.rotation = v[RENDER_ENVIRONMENT_ROTATION].number * 3.14159265358979323846 / 180.0;
-  if (v[RENDER_ENVIRONMENT_STRENGTH].given) complete.strength = (float)v[RENDER_ENVIRONMENT_STRENGTH].number;
-  complete.ground = v[RENDER_GROUND].given;
-  /* Ground truth is of the file alone. A film that is continued keeps the ground that it has. */
-  complete.backdrop =
-      opening->model && !v[RENDER_NO_GROUND].given && (!v[RENDER_CHANNELS].given || arguments->channels_later);
-  complete.open_walls = !v[RENDER_WALLS].given || v[RENDER_WALLS].integer == 0;
-  if (v[RENDER_FRAMING].given) complete.framing = (vlFraming)v[RENDER_FRAMING].integer;
-  if (v[RENDER_UP].given)
-    choose_up((int)v[RENDER_UP].integer, &complete);
-  else if (text_ends_with(path, ".stl") || text_ends_with(path, ".stl.gz"))
-    choose_up(2, &complete);
+  choose_completion(path, arguments, opening->model, &complete);
   opening->environment = complete.environment;
   if (opening->environment == VL_ENVIRONMENT_AUTO)
     opening->environment = defs->light_missing ? VL_ENVIRONMENT_STUDIO : VL_ENVIRONMENT_NONE;

@@ -245,10 +245,60 @@ static void json_chosen(Json *json, const vlSceneDefs *defs) {
   }
 }
 
+static void json_defs(Json *json, const vlSceneDefs *defs) {
+  double eye[3];
+  json_begin(json, "camera", '{');
+  json_bool(json, "missing", defs->camera_missing);
+  json_text(json, "projection", vl_projection_name(defs->camera.projection));
+  eye_of(&defs->camera, eye);
+  json_box(json, "eye", eye);
+  json_end(json, '}');
+  json_begin(json, "film", '{');
+  json_integer(json, "width", defs->film.width);
+  json_integer(json, "height", defs->film.height);
+  json_begin(json, "crop", '[');
+  for (int i = 0; i < 4; i++) json_integer(json, NULL, defs->film.crop[i]);
+  json_end(json, ']');
+  json_integer(json, "spp", defs->render.spp);
+  json_text(json, "tracer", kind_name("tracers", (int)defs->render.tracer));
+  json_integer(json, "max_depth", defs->render.max_depth);
+  json_end(json, '}');
+}
+
+static void json_lights(Json *json, const Facts *f) {
+  uint32_t n = vl_scene_light_count(f->scene);
+  json_integer(json, "light_count", n);
+  json_begin(json, "lights", '[');
+  for (uint32_t i = 0; i < n && i < LIGHTS_JSON; i++) {
+    vlLightInfo l;
+    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
+    json_begin(json, NULL, '{');
+    json_text(json, "kind", l.kind);
+    json_number(json, "power", l.power);
+    json_bool(json, "image", l.image);
+    if (l.faces) json_integer(json, "faces", (int64_t)l.faces);
+    json_place(json, &l.source);
+    json_end(json, '}');
+  }
+  json_end(json, ']');
+}
+
+static void json_unused(Json *json, const Facts *f) {
+  json_begin(json, "unused", '[');
+  for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
+    const vlFinding *u = vl_check_finding(f->check, i);
+    if (u->kind != VL_FINDING_UNUSED) continue;
+    json_begin(json, NULL, '{');
+    json_text(json, "message", u->message);
+    json_place(json, &u->source);
+    json_end(json, '}');
+  }
+  json_end(json, ']');
+}
+
 static void print_json(const Facts *f) {
   Json json = {.out = stdout};
   const vlSceneDefs *defs = vl_scene_defs(f->scene);
-  double eye[3];
   json_begin(&json, NULL, '{');
   json_text(&json, "file", f->path);
   const struct {
@@ -265,51 +315,13 @@ static void print_json(const Facts *f) {
     json_box(&json, NULL, f->high);
   }
   json_end(&json, ']');
-  json_begin(&json, "camera", '{');
-  json_bool(&json, "missing", defs->camera_missing);
-  json_text(&json, "projection", vl_projection_name(defs->camera.projection));
-  eye_of(&defs->camera, eye);
-  json_box(&json, "eye", eye);
-  json_end(&json, '}');
-  json_begin(&json, "film", '{');
-  json_integer(&json, "width", defs->film.width);
-  json_integer(&json, "height", defs->film.height);
-  json_begin(&json, "crop", '[');
-  for (int i = 0; i < 4; i++) json_integer(&json, NULL, defs->film.crop[i]);
-  json_end(&json, ']');
-  json_integer(&json, "spp", defs->render.spp);
-  json_text(&json, "tracer", kind_name("tracers", (int)defs->render.tracer));
-  json_integer(&json, "max_depth", defs->render.max_depth);
-  json_end(&json, '}');
+  json_defs(&json, defs);
   json_chosen(&json, defs);
   json_kinds(&json, f);
   info_json_choices(&json, f->scene);
   info_json_names(&json, f->scene);
-  uint32_t n = vl_scene_light_count(f->scene);
-  json_integer(&json, "light_count", n);
-  json_begin(&json, "lights", '[');
-  for (uint32_t i = 0; i < n && i < LIGHTS_JSON; i++) {
-    vlLightInfo l;
-    if (vl_scene_light_info(f->scene, i, &l) != VL_OK) continue;
-    json_begin(&json, NULL, '{');
-    json_text(&json, "kind", l.kind);
-    json_number(&json, "power", l.power);
-    json_bool(&json, "image", l.image);
-    if (l.faces) json_integer(&json, "faces", (int64_t)l.faces);
-    json_place(&json, &l.source);
-    json_end(&json, '}');
-  }
-  json_end(&json, ']');
-  json_begin(&json, "unused", '[');
-  for (uint32_t i = 0; i < vl_check_count(f->check); i++) {
-    const vlFinding *u = vl_check_finding(f->check, i);
-    if (u->kind != VL_FINDING_UNUSED) continue;
-    json_begin(&json, NULL, '{');
-    json_text(&json, "message", u->message);
-    json_place(&json, &u->source);
-    json_end(&json, '}');
-  }
-  json_end(&json, ']');
+  json_lights(&json, f);
+  json_unused(&json, f);
   json_end(&json, '}');
   putchar('\n');
 }

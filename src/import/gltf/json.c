@@ -21,23 +21,25 @@ static void format_message(const vlGltfPlace *place, const char *format, va_list
   vsnprintf(text + n, size - n, format, args);
 }
 
-bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...) {
+static void fail(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, va_list args) {
   char text[512];
+  format_message(place, format, args, text, sizeof text);
+  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
+}
+
+bool vl_gltf_fail_code(vlGltf *g, vlResult code, const vlGltfPlace *place, const char *format, ...) {
   va_list args;
   va_start(args, format);
-  format_message(place, format, args, text, sizeof text);
+  fail(g, code, place, format, args);
   va_end(args);
-  vl_scene_fail(g->scene, code, (vlSource){g->path, 0, 0}, "%s", text);
   return false;
 }
 
 bool vl_gltf_fail(vlGltf *g, const vlGltfPlace *place, const char *format, ...) {
-  char text[512];
   va_list args;
   va_start(args, format);
-  format_message(place, format, args, text, sizeof text);
+  fail(g, VL_ERROR_SCENE, place, format, args);
   va_end(args);
-  vl_scene_fail(g->scene, VL_ERROR_SCENE, (vlSource){g->path, 0, 0}, "%s", text);
   return false;
 }
 

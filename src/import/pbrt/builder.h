@@ -300,6 +300,9 @@ bool vl_import_note_mesh(vlImport *import, const char *path, vlSource source, co
 bool vl_import_read_meshes(vlImport *import); /* reads all noted mesh files */
 /* Adds a shape. The scene takes ownership of the def's arrays. */
 bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeLink *link);
+/* The same between two media that are not those of the current state. */
+bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, const char *inside,
+                                 const char *outside);
 bool vl_import_curve(vlDict *dict, vlShapeDef *def, const vlShapeLink *link);
 bool vl_import_flush_curves(vlImport *import); /* called before any other shape, and at the end */
 void vl_import_free_curves(vlImport *import);

@@ -199,10 +199,6 @@ bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, si
   return false;
 }
 
-vlParam *vl_dict_texture(vlDict *dict, const char *name) {
-  return find_counted(dict, name, VL_PARAM_TEXTURE, 1);
-}
-
 bool vl_dict_done(vlDict *dict) {
   vlImport *import = dict->import;
   if (import->scene->error.code != VL_OK) return false;

@@ -54,13 +54,7 @@ static bool flush(vlImport *import, vlMeshRun *run) {
   memset(&run->normals, 0, sizeof run->normals);
   memset(&run->uvs, 0, sizeof run->uvs);
   memset(&run->indices, 0, sizeof run->indices);
-  vlGraphicsState now = import->state;
-  import->state.inside = run->inside;
-  import->state.outside = run->outside;
-  bool fine = vl_import_add_shape(import, d, &run->link) &&
-              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, d->source);
-  import->state = now;
-  return fine;
+  return vl_import_add_shape_between(import, d, &run->link, run->inside, run->outside);
 }
 
 bool vl_import_flush_meshes(vlImport *import) {

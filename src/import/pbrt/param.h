@@ -88,8 +88,6 @@ bool vl_dict_floats(vlDict *dict, const char *name, size_t count,
                     double *value); /* exactly count numbers, at most 16 */
 /* *value becomes the index of the string among the names. */
 bool vl_dict_choice(vlDict *dict, const char *name, const char *const *names, size_t count, int *value);
-/* The texture's name; null when the parameter is not a texture. */
-vlParam *vl_dict_texture(vlDict *dict, const char *name);
 
 /* Reports every parameter that was not read as an error. Returns false after an error. */
 bool vl_dict_done(vlDict *dict);

@@ -167,6 +167,17 @@ bool vl_import_add_shape(vlImport *import, const vlShapeDef *def, const vlShapeL
   return true;
 }
 
+bool vl_import_add_shape_between(vlImport *import, const vlShapeDef *def, const vlShapeLink *link, const char *inside,
+                                 const char *outside) {
+  vlGraphicsState now = import->state;
+  import->state.inside = inside;
+  import->state.outside = outside;
+  bool fine = vl_import_add_shape(import, def, link) &&
+              vl_import_note_media(import, 's', (uint32_t)import->scene->shapes.count - 1, def->source);
+  import->state = now;
+  return fine;
+}
+
 static bool read_displacement(vlDict *dict, vlShapeDef *def, vlShapeLink *link) {
   vlImport *import = dict->import;
   vlParam *p = vl_dict_find(dict, "displacement", VL_BIT_TEXTURE);

@@ -170,6 +170,8 @@ typedef struct vlVolumeRows {
   VL_ROW uint32_t medium[VL_ROW_SIZE]; /* medium at the ray's origin; VL_NONE: vacuum */
 } vlVolumeRows;
 
+/* How a ray ends: values of vlVolumeScratch.event. */
+enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
 typedef struct vlVolumeScratch {
   vlPaths scattered;    /* paths that scatter in media */
   vlVolumeRows a, b, c; /* data of vlTraceScratch.rays, of its vertices and of `scattered` */
@@ -245,8 +247,24 @@ typedef struct vlTracing {
   vlTraceBatch *batch;
   const vlSamplerKernels *sampler;
   const vlBsdfKernels *bsdf;
-  bool from_light; /* the paths are light paths */
+  struct vlLightBatch *light; /* the paths are light paths; null: camera paths */
 } vlTracing;
+
+/* What a tracer does at each bounce with the paths of t->s. */
+typedef struct vlBounceSteps {
+  /* The n rays have arrived at t->s->hits. Adds the lights that they hit. False: all paths end. May be null. */
+  bool (*arrive)(vlTracing *t, uint32_t n, uint32_t depth);
+  /* Samples lights and new directions of those of the n paths that scatter in media. Returns the number of paths that
+   * go on, which volume.kept lists. Null: paths do not meet media. */
+  uint32_t (*in_media)(vlTracing *t, uint32_t n, uint32_t depth);
+  /* The same for n shaded vertices of t->s->at. The rays that go on are in t->s->rays. */
+  uint32_t (*on_surfaces)(vlTracing *t, uint32_t n, uint32_t depth);
+} vlBounceSteps;
+/* The bounces of all tracers: traces n paths from t->s->rays on, for at most `most` bounces. */
+void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps);
+static inline uint32_t vl_bounce_dimension(uint32_t depth) {
+  return VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
+}
 
 /* ---- stages ------------------------------------------------------------------------------------------------------ */
 
@@ -387,13 +405,15 @@ typedef struct vlPoint {
 #define VL_REFIND 0x1p-21
 #define VL_REFIND_LEAST 1e-37
 
+/* The start of a ray segment past t by a margin. It is larger than t_min even if t_min and margin are 0. */
+static inline float vl_past(float t, float margin, float t_min) {
+  return vl_max(t, t_min) + vl_max(margin, VL_MIN_POSITIVE);
+}
 /* Returns the start of a ray segment just past a surface point. The margin comes from the bound of the point's error,
  * and from that of distances from the ray's origin (as in vl_offset_end). The result is larger than t_min. */
 static inline float vl_past_crossing(float t, vlVec3 g, float offset, vlVec3 d, float t_min) {
   float error = 2.0f * (offset + 2.0f * VL_GAMMA(5) * vl_abs(t) * vl_abs_dot(g, d));
-  float margin = error / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + VL_GAMMA(8) * vl_abs(t);
-  return vl_max(t, t_min) +
-         vl_max(margin, VL_MIN_POSITIVE); /* the result is larger than t_min even if t_min and margin are 0 */
+  return vl_past(t, error / vl_max(vl_abs(vl_dot(g, d)), 0.01f) + VL_GAMMA(8) * vl_abs(t), t_min);
 }
 static inline float vl_past_surface(const vlPoint *at, vlVec3 d, float t_min) {
   return vl_past_crossing(at->t, at->g, at->offset, d, t_min);
@@ -410,6 +430,17 @@ static inline vlPoint vl_point_at(const vlWorld *world, vlVec3 o, vlVec3 d, uint
 /* Emitted radiance in 4 channels: the light's colour times, if the light has an image, its value at (s, t). */
 void vl_emitted_at(const vlWorld *world, const vlEmitted *emitted, const float lambda[4], float s, float t, bool sky,
                    float out[4]);
+/* A colour as a spectrum at four wavelengths (pbrt book 10.4.1). albedo: the colour is clamped to 1; else it may be
+ * brighter than 1. vl_upsample_rows does the same operations for many lanes. */
+static inline void vl_upsample(const vlRgbTable *table, bool albedo, const float rgb[3], const float lambda[4],
+                               float out[4]) {
+  float c[3] = {rgb[0], rgb[1], rgb[2]};
+  for (int k = 0; albedo && k < 3; k++) c[k] = c[k] > 1.0f ? 1.0f : c[k];
+  float m = vl_max(c[0], vl_max(c[1], c[2]));
+  float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
+  vlSigmoid s = vl_rgb_table_lookup(table, c[0] * inv, c[1] * inv, c[2] * inv);
+  for (int k = 0; k < 4; k++) out[k] = scale * vl_sigmoid(s, lambda[k]);
+}
 /* A light that a ray has hit. pdf: density of sampling it, per solid angle, from the ray's origin in the ray's
  * direction; 0 after a specular lobe. */
 typedef struct vlHitLight {
@@ -425,10 +456,18 @@ typedef struct vlSkyHits {
 } vlSkyHits;
 void vl_hit_sky(const vlWorld *world, const vlPaths *p, const uint32_t *lanes, uint32_t count, size_t k,
                 vlSkyHits *out);
+void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded, float (*rgb)[VL_SKY_BLOCK],
+                      float (*lambda)[VL_SKY_BLOCK], float (*value)[VL_SKY_BLOCK]);
 /* vl_hit_infinite: infinite light k of the world as seen by ray i. vl_hit_emission: the emissive surface at hit i;
  * returns false if the surface does not emit on this side. */
 vlHitLight vl_hit_infinite(const vlWorld *world, const vlPaths *p, uint32_t i, size_t k);
 bool vl_hit_emission(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i, vlHitLight *met);
+/* Calls `add` for each light that the n rays hit: for the infinite lights of rays that hit nothing (shape VL_NONE),
+ * with the light's `at` unset, and for emissive surfaces. event: how the rays end (vlVolumeScratch); null: without
+ * media. */
+typedef void vlAddLight(vlTracing *t, const vlPaths *rays, uint32_t i, const vlHitLight *met, bool sky);
+void vl_stage_lights_hit(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits, const uint8_t *event,
+                         vlAddLight *add);
 /* uv of the emission's image at a point of an area light that a ray has hit. */
 vlVec2 vl_emission_uv(const vlWorld *world, const vlWorldLight *light, const vlPoint *at);
 /* Radiance of an infinite light for a ray from o in direction d that hits nothing, and the density of sampling it. */

@@ -176,15 +176,7 @@ static uint32_t gather_hits(const vlWorld *world, uint32_t n, vlTraceScratch *s,
   for (uint32_t i = 0; i < n; i++) {
     if (h->shape[i] == VL_NONE) continue;
     uint32_t k = count++;
-    b->ox[k] = a->ox[i];
-    b->oy[k] = a->oy[i];
-    b->oz[k] = a->oz[i];
-    b->dx[k] = a->dx[i];
-    b->dy[k] = a->dy[i];
-    b->dz[k] = a->dz[i];
-    b->cone[k] = a->cone[i];
-    b->spread[k] = a->spread[i];
-    b->lane[k] = i;
+    vl_path_copy(a, i, b, k);
     g->shape[k] = h->shape[i];
     g->prim[k] = h->prim[i];
     g->instance[k] = h->instance[i];

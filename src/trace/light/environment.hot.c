@@ -59,25 +59,21 @@ static void read_colors(const vlEnvironment *env, const vlMipmap *mip, float sca
   }
 }
 
-/* Converts colours to radiance at the lanes' wavelengths, with the same operations as vl_emitted_at. */
-static void upsample(const vlRgbTable *table, const vlSpectral *illuminant, uint32_t padded, Block *restrict b) {
-  const float *p = table->coefficients, *dense = illuminant->dense;
+/* Multiplies the radiance by the illuminant. */
+static void illuminate(const vlSpectral *illuminant, uint32_t padded, Block *restrict b) {
+  const float *dense = illuminant->dense;
   float factor = illuminant->scale;
   /* must vectorise */
   VL_SIMD
   for (uint32_t k = 0; k < padded; k++) {
-    float red = b->rgb[0][k], green = b->rgb[1][k], blue = b->rgb[2][k];
-    float scale = 2.0f * vl_max(red, vl_max(green, blue)), inv = scale > 0.0f ? 1.0f / scale : 0.0f;
-    vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
-    vlSigmoid sigmoid = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
-    float l0 = b->lambda[0][k], l1 = b->lambda[1][k], l2 = b->lambda[2][k], l3 = b->lambda[3][k];
-    b->radiance[0][k] = scale * vl_sigmoid(sigmoid, l0) * (factor * vl_dense_at(dense, l0));
-    b->radiance[1][k] = scale * vl_sigmoid(sigmoid, l1) * (factor * vl_dense_at(dense, l1));
-    b->radiance[2][k] = scale * vl_sigmoid(sigmoid, l2) * (factor * vl_dense_at(dense, l2));
-    b->radiance[3][k] = scale * vl_sigmoid(sigmoid, l3) * (factor * vl_dense_at(dense, l3));
+    b->radiance[0][k] *= factor * vl_dense_at(dense, b->lambda[0][k]);
+    b->radiance[1][k] *= factor * vl_dense_at(dense, b->lambda[1][k]);
+    b->radiance[2][k] *= factor * vl_dense_at(dense, b->lambda[2][k]);
+    b->radiance[3][k] *= factor * vl_dense_at(dense, b->lambda[3][k]);
   }
 }
 
+/* With the same operations as vl_emitted_at. */
 static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmitted *e, const vlPaths *paths,
                      uint32_t padded, Block *b) {
   read_colors(env, world->images.items[e->image].mipmap, e->image_scale, padded, b);
@@ -88,7 +84,8 @@ static void radiance(const vlWorld *world, const vlEnvironment *env, const vlEmi
   }
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < padded; k++) b->lambda[c][k] = paths->lambda[c][b->lane[k]];
-  upsample(vl_rgb_table(e->space), &e->spectrum, padded, b);
+  vl_upsample_rows(vl_rgb_table(e->space), false, padded, b->rgb, b->lambda, b->radiance);
+  illuminate(&e->spectrum, padded, b);
 }
 
 /* ---- light samples ----------------------------------------------------------------------------------------------- */

@@ -35,10 +35,8 @@ void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[
     for (int c = 0; c < 4; c++) out[c] = c < 3 ? rgb[c] * e->spectrum.scale : 0.0f;
     return;
   }
-  float scale = 2.0f * vl_max(rgb[0], vl_max(rgb[1], rgb[2])), inv = scale > 0.0f ? 1.0f / scale : 0.0f;
-  vlSigmoid sigmoid = vl_rgb_table_lookup(vl_rgb_table(e->space), rgb[0] * inv, rgb[1] * inv, rgb[2] * inv);
-  for (int c = 0; c < 4; c++)
-    out[c] = scale * vl_sigmoid(sigmoid, lambda[c]) * vl_spectral_at(&e->spectrum, c, lambda[c]);
+  vl_upsample(vl_rgb_table(e->space), false, rgb, lambda, out);
+  for (int c = 0; c < 4; c++) out[c] *= vl_spectral_at(&e->spectrum, c, lambda[c]);
 }
 
 /* ---- the sky ----------------------------------------------------------------------------------------------------- */

@@ -47,7 +47,7 @@ static inline uint32_t vl_volume_key(const vlTracing *t, const vlPaths *p, uint3
  * and for light paths, a channel is chosen at random per path, because a light path and the camera path that it meets
  * must choose independently. */
 static inline int vl_volume_hero(const vlTracing *t, const vlPaths *p, uint32_t i) {
-  if (!vl_volume_rgb(t)) return t->from_light ? (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 4) : 0;
+  if (!vl_volume_rgb(t)) return t->light ? (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 4) : 0;
   return (int)(vl_volume_key(t, p, i, 0, VL_KEY_HERO) % 3);
 }
 

@@ -74,7 +74,7 @@ static inline float exponential(float u) {
 
 /* The sum of the coefficients of each lane's hero channel. */
 static void find_heroes(const vlTracing *t, const vlFlights *f, Segments *k) {
-  bool first = !vl_volume_rgb(t) && !t->from_light; /* the hero of every path is channel 0 */
+  bool first = !vl_volume_rgb(t) && !t->light; /* the hero of every path is channel 0 */
   for (uint32_t i = 0; i < k->padded; i++) {
     int h = first || i >= f->n ? 0 : vl_volume_hero(t, f->paths, f->path[i]);
     k->hero[i] = k->a[h][i] + k->s[h][i];

@@ -7,8 +7,6 @@
 
 /* A shadow ray ends at this share of the way to its light. */
 #define VL_SHADOW_END (1.0f - 0x1p-21f)
-/* How a ray ends: values of vlVolumeScratch.event. */
-enum { VL_ON_SURFACE, VL_IN_SKY, VL_IN_MEDIUM, VL_AT_END };
 /* Keeps odds above 0, so that a weight of at most 1e20 times a radiance of up to 1e18 is finite. */
 static inline float vl_some_odds(float odds) {
   return vl_max(odds, 1e-20f);
@@ -84,10 +82,7 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n);
 uint32_t vl_volume_phase_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
 /* Sets the initial media of the n rays. medium: by lane; null: all paths start in the camera's medium. */
 void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium);
-/* vl_volume_sorted copies volume.a to volume.b for the n sorted lanes. After scattering on surfaces, vl_volume_go_on
- * copies the `count` lanes in s->order back to volume.a. Both do nothing if the world has neither media nor subsurface
- * materials. */
-void vl_volume_sorted(vlTracing *t, uint32_t n);
+/* After scattering on surfaces: copies volume.b of the `count` vertices in s->order to volume.a. */
 void vl_volume_go_on(vlTracing *t, uint32_t count);
 /* Appends the first `count` paths of volume.kept to the n rays. Returns their new number. */
 uint32_t vl_volume_append(vlTracing *t, uint32_t count, uint32_t n);

@@ -26,7 +26,7 @@ void vl_volume_permute(const vlVolumeRows *a, vlVolumeRows *b, const uint32_t *o
 /* A path with only the hero wavelength uses the hero's density, if the hero samples its flights. */
 void vl_volume_normalise(const vlTracing *t, vlPaths *p, vlVolumeRows *v, uint32_t i) {
   float u[4];
-  bool alone = !t->from_light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
+  bool alone = !t->light && !vl_volume_rgb(t) && p->lambda[1][i] == p->lambda[0][i];
   for (int c = 0; c < 4; c++) u[c] = v->u[alone ? 0 : c][i];
   float inv = 1.0f / vl_flight_mean(u, vl_volume_rgb(t) ? 3 : 4);
   for (int c = 0; c < 4; c++) {
@@ -41,7 +41,7 @@ void vl_volume_normalise_all(const vlTracing *t, vlPaths *p, vlVolumeRows *v, ui
     return;
   }
   uint32_t padded = VL_PAD(n);
-  int heroes = !t->from_light;
+  int heroes = !t->light;
   /* must vectorise */
   VL_SIMD for (uint32_t i = 0; i < padded; i++) {
     float first = p->lambda[0][i], second = p->lambda[1][i];
@@ -146,7 +146,7 @@ static void aim_flights(const vlTracing *t, vlTravel *k, const uint32_t *medium)
 }
 
 /* Ends lane i of a block and stores what its flights have changed besides the rows of the paths. */
-static void arrive(vlTracing *t, const vlTravel *k, uint32_t first, uint32_t i, uint32_t event) {
+static void end_flight(vlTracing *t, const vlTravel *k, uint32_t first, uint32_t i, uint32_t event) {
   const vlFlights *f = &k->f;
   const float given[4] = {f->given[0][i], f->given[1][i], f->given[2][i], f->given[3][i]};
   for (int c = 0; t->world->by_channel && c < 3; c++) t->s->passed[c][t->s->rays.lane[first + i]] = f->passed[c][i];
@@ -166,9 +166,9 @@ static void travel_block(vlTracing *t, vlTravel *k, uint32_t first, bool emissio
     for (uint32_t j = 0; j < k->count; j++) {
       uint32_t i = k->open[j];
       if (k->f.end[i] != VL_FLIGHT_PASSED) {
-        arrive(t, k, first, i, k->f.end[i] == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END);
+        end_flight(t, k, first, i, k->f.end[i] == VL_FLIGHT_SCATTERED ? VL_IN_MEDIUM : VL_AT_END);
       } else if (!vl_meets_interface(t->world, &k->x, i)) {
-        arrive(t, k, first, i, k->x.shape[i] != VL_NONE ? VL_ON_SURFACE : VL_IN_SKY);
+        end_flight(t, k, first, i, k->x.shape[i] != VL_NONE ? VL_ON_SURFACE : VL_IN_SKY);
       } else {
         medium[i] = vl_travel_pass(t, k, i, medium[i]);
         k->open[on++] = i;
@@ -178,13 +178,13 @@ static void travel_block(vlTracing *t, vlTravel *k, uint32_t first, bool emissio
     vl_travel_closest(t, k);
     t->batch->bounce_rays += on;
   }
-  for (uint32_t j = 0; j < k->count; j++) arrive(t, k, first, k->open[j], VL_AT_END);
+  for (uint32_t j = 0; j < k->count; j++) end_flight(t, k, first, k->open[j], VL_AT_END);
 }
 
 void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
   vlTraceScratch *s = t->s;
   vlPaths *p = &s->rays;
-  bool camera = depth == 0 && !t->from_light;
+  bool camera = depth == 0 && !t->light;
   const float *t_min = camera ? t->batch->t_min : NULL, *t_max = camera ? t->batch->t_max : NULL;
   vl_closest_hits(t, n, camera, p, &s->hits);
   if (!camera) t->batch->bounce_rays += n;
@@ -207,43 +207,10 @@ void vl_volume_travel(vlTracing *t, uint32_t n, uint32_t depth, bool emission) {
 
 /* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
 
-/* light_pdf: density of light sampling; 0 if light sampling could not make this path. */
-static void add_light(vlTracing *t, uint32_t i, const float radiance[4], float light_pdf) {
-  const vlPaths *p = &t->s->rays;
-  float inv = vl_volume_inverse_density(t, i, light_pdf);
-  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * radiance[c] * inv;
-}
-
-/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
-static void add_sky(vlTracing *t, const uint32_t *lanes, uint32_t count) {
-  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
-    vlSkyHits met;
-    vl_hit_sky(t->world, &t->s->rays, lanes, count, k, &met);
-    for (uint32_t j = 0; j < count; j++) {
-      const float radiance[4] = {met.radiance[0][j], met.radiance[1][j], met.radiance[2][j], met.radiance[3][j]};
-      add_light(t, lanes[j], radiance, met.pdf[j]);
-    }
-  }
-}
-
-static void add_emission(vlTracing *t, uint32_t i) {
-  vlHitLight met;
-  if (vl_hit_emission(t->world, &t->s->rays, &t->s->hits, i, &met)) add_light(t, i, met.radiance, met.pdf);
-}
-
-static void emission(vlTracing *t, uint32_t n) {
-  const vlHits *h = &t->s->hits;
-  uint32_t missed[VL_SKY_BLOCK], count = 0;
-  for (uint32_t i = 0; i < n; i++) {
-    uint8_t event = t->s->volume->event[i];
-    if (event == VL_IN_SKY) missed[count++] = i;
-    if (event == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, i);
-    if (count == VL_SKY_BLOCK) {
-      add_sky(t, missed, count);
-      count = 0;
-    }
-  }
-  add_sky(t, missed, count);
+static void add_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+  (void)sky;
+  float inv = vl_volume_inverse_density(t, i, met->pdf);
+  for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * inv;
 }
 
 /* ---- scattering in media ----------------------------------------------------------------------------------------- */
@@ -330,7 +297,7 @@ uint32_t vl_volume_gather(vlTracing *t, uint32_t n) {
 /* Scatters the rays in media and writes the new rays to volume.scattered. Returns the number of paths that go
  * on; volume.kept lists them. */
 static uint32_t scatter_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
-  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, count = vl_volume_gather(t, n);
+  uint32_t dimension = vl_bounce_dimension(depth), count = vl_volume_gather(t, n);
   if (count == 0) return 0;
   if (t->batch->recorder) vl_record_scattering(t, &t->s->volume->scattered, count);
   phase_light(t, count, depth, dimension);
@@ -406,15 +373,9 @@ static void surface_light(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
   vl_volume_shadows(t, p, count, depth);
 }
 
-void vl_volume_sorted(vlTracing *t, uint32_t n) {
-  vlVolumeScratch *v = t->s->volume;
-  if (t->world->media.count || t->world->has_subsurface) vl_volume_permute(&v->a, &v->b, t->s->order, n);
-}
-
 void vl_volume_go_on(vlTracing *t, uint32_t count) {
   vlTraceScratch *s = t->s;
   vlVolumeScratch *v = s->volume;
-  if (!t->world->media.count && !t->world->has_subsurface) return;
   vl_volume_permute(&v->b, &v->a, s->order, count);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k];
@@ -428,15 +389,10 @@ void vl_volume_go_on(vlTracing *t, uint32_t count) {
 
 static uint32_t scatter_on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  vlVolumeScratch *v = s->volume;
-  uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
-  if (n == 0) return 0;
-  vl_volume_sorted(t, n);
-  vl_stage_shade(t, n, &s->at);
+  uint32_t dimension = vl_bounce_dimension(depth);
   if (t->def->fit) vl_fit_surfaces(t, n);
   vl_stage_regularize(t, n, &s->at);
-  vl_volume_normalise_all(t, &s->at.paths, &v->b, n);
+  vl_volume_normalise_all(t, &s->at.paths, &s->volume->b, n);
   if (t->batch->recorder) vl_record_shaded(t, n, &s->at);
   surface_light(t, n, depth, dimension);
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
@@ -465,16 +421,15 @@ void vl_volume_start(vlTracing *t, uint32_t n, const uint32_t *medium) {
   }
 }
 
+static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTraceScratch *s = t->s;
+  vl_stage_lights_hit(t, n, &s->rays, &s->hits, s->volume->event, add_light);
+  if (t->batch->recorder) vl_volume_record_travel(t, n, depth);
+  return true;
+}
+
 void vl_volume_tracer(vlTracing *t) {
-  uint32_t n = t->batch->n;
-  vl_volume_start(t, n, NULL);
-  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
-    vl_volume_travel(t, n, depth, depth < t->def->max_depth);
-    emission(t, n);
-    if (t->batch->recorder) vl_volume_record_travel(t, n, depth);
-    if (depth >= t->def->max_depth) break;
-    uint32_t inside = scatter_in_media(t, n, depth);
-    n = scatter_on_surfaces(t, n, depth);
-    n = vl_volume_append(t, inside, n);
-  }
+  static const vlBounceSteps steps = {arrive, scatter_in_media, scatter_on_surfaces};
+  vl_volume_start(t, t->batch->n, NULL);
+  vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
 }

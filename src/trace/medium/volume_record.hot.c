@@ -3,15 +3,14 @@
 #include "trace/medium/volume.h"
 #include "trace/tracer/record.h"
 
-static void record_met(vlTracing *t, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
-  const vlPaths *p = &t->s->rays;
+static void record_met(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
   float inv = vl_volume_inverse_density(t, i, met->pdf);
-  vlPathContribution c = {.event = event,
+  vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
                           .light_pdf = met->pdf,
                           .bsdf_pdf = p->pdf[i],
                           .weight = inv / vl_volume_inverse_density(t, i, 0.0f),
                           .target = {p->dx[i], p->dy[i], p->dz[i]}};
-  if (event == VL_PATH_LIGHT_HIT) {
+  if (!sky) {
     c.target[0] = met->at.p.x;
     c.target[1] = met->at.p.y;
     c.target[2] = met->at.p.z;
@@ -49,18 +48,8 @@ void vl_volume_record_travel(vlTracing *t, uint32_t n, uint32_t depth) {
     float sum = 0.0f;
     for (int c = 0; c < 4; c++) sum += from_medium.radiance[c] = v->given[c][i];
     if (sum != 0.0f) vl_record_light(t, p->lane[i], &from_medium);
-    vlHitLight met;
-    if (v->event[i] == VL_ON_SURFACE && t->world->shapes.items[h->shape[i]].first_light != VL_NONE &&
-        vl_hit_emission(t->world, p, h, i, &met))
-      record_met(t, i, VL_PATH_LIGHT_HIT, &met);
-    for (size_t k = 0; v->event[i] == VL_IN_SKY && k < t->world->infinite_lights.count; k++) {
-      vlSkyHits sky;
-      vl_hit_sky(t->world, p, &i, 1, k, &sky);
-      met = (vlHitLight){.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[0]};
-      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][0];
-      record_met(t, i, VL_PATH_LIGHT_SKY, &met);
-    }
   }
+  vl_stage_lights_hit(t, n, p, h, v->event, record_met);
   if (depth >= t->def->max_depth) vl_record_depth(t, n, p);
 }
 

@@ -10,22 +10,10 @@
 /* ---- lights that rays hit ---------------------------------------------------------------------------------------- */
 
 /* Adds the light's radiance with the weight of multiple importance sampling. */
-static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met) {
+static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+  (void)sky;
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
   for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met->radiance[c] * weight;
-}
-
-/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
-static void add_sky(vlTracing *t, const vlPaths *p, const uint32_t *lanes, uint32_t count) {
-  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
-    vlSkyHits met;
-    vl_hit_sky(t->world, p, lanes, count, k, &met);
-    for (uint32_t j = 0; j < count; j++) {
-      uint32_t i = lanes[j];
-      float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met.pdf[j]);
-      for (int c = 0; c < 4; c++) t->batch->radiance[c][p->lane[i]] += p->beta[c][i] * met.radiance[c][j] * weight;
-    }
-  }
 }
 
 vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, uint32_t i) {
@@ -33,24 +21,8 @@ vlPoint vl_hit_point(const vlWorld *world, const vlPaths *p, const vlHits *h, ui
   return vl_point_at_time(world, vl_path_time(p, i), o, d, h->shape[i], h->prim[i], h->instance[i], h->t[i]);
 }
 
-static void add_emission(vlTracing *t, const vlPaths *p, const vlHits *h, uint32_t i) {
-  vlHitLight met;
-  if (vl_hit_emission(t->world, p, h, i, &met)) add_hit_light(t, p, i, &met);
-}
-
-void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h) {
-  uint32_t missed[VL_SKY_BLOCK], count = 0;
-  for (uint32_t i = 0; i < n; i++) {
-    if (h->shape[i] == VL_NONE)
-      missed[count++] = i;
-    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_emission(t, p, h, i);
-    if (count == VL_SKY_BLOCK) {
-      add_sky(t, p, missed, count);
-      count = 0;
-    }
-  }
-  add_sky(t, p, missed, count);
+void vl_stage_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
+  vl_stage_lights_hit(t, n, rays, hits, NULL, add_hit_light);
 }
 
 /* ---- hits -------------------------------------------------------------------------------------------------------- */
@@ -128,7 +100,9 @@ static void pass_interfaces(vlTracing *t, const vlPaths *p, vlHits *h, uint32_t 
     if (world->materials.items[world->shapes.items[h->shape[i]].material].kind != VL_MATERIAL_INTERFACE) return;
     if (step == 1024) h->shape[i] = VL_NONE; /* a bound; no ray crosses so many interfaces */
     if (h->shape[i] == VL_NONE) return;
-    if (world->shapes.items[h->shape[i]].first_light != VL_NONE) add_emission(t, p, h, i);
+    vlHitLight met;
+    if (world->shapes.items[h->shape[i]].first_light != VL_NONE && vl_hit_emission(world, p, h, i, &met))
+      add_hit_light(t, p, i, &met, false);
     vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
     vlPoint at = vl_hit_point(world, p, h, i);
     t_min = vl_past_surface(&at, d, t_min);

@@ -3,7 +3,7 @@
  * paths that have entered a subsurface material, before volume.hot.c traces them further:
  *
  *   rays, those refracted -> probes: segments through the solid near the entry -> all surfaces of the material on them,
- * one of each chosen -> exits in a: vlSurface, light samples, new directions -> a, with the other paths
+ * one of each chosen -> exits: vlSurface, light samples, new directions -> rays, with the other paths
  *
  * Half of the probes are parallel to the normal; the others are parallel to one of two tangents. The hero wavelength's
  * profile samples a probe's distance from the entry point. The density of an exit point is the sum over all three
@@ -128,13 +128,12 @@ static void aim_probes(vlTracing *t, uint32_t n, uint32_t dimension) {
  * counted once. The plane through the point gives the distance. The point itself is less exact: that of a small
  * triangle far from o has a large error within the triangle's plane. The margin holds the error along the normal, which
  * is at->offset and 32 roundings of the distance: of the corners relative to o, of the normal's products, of the
- * quotient. */
-static float past_crossing(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
+ * quotient. (vl_past_crossing allows for less.) */
+static float past_on_probe(const vlPoint *at, vlVec3 o, vlVec3 d, float t_min) {
   const float least = 0.01f; /* of the cosine: a bound of the margin */
   float cosine = vl_dot(at->g, d), steep = vl_abs(cosine);
   float t = steep > least ? vl_dot(vl_sub(at->p, o), at->g) / cosine : at->t;
-  float margin = (2.0f * at->offset + 0x1p-19f * vl_abs(at->t)) / vl_max(steep, least);
-  return vl_max(t, t_min) + vl_max(margin, VL_MIN_POSITIVE); /* more than t_min even if t_min and margin are 0 */
+  return vl_past(t, (2.0f * at->offset + 0x1p-19f * vl_abs(at->t)) / vl_max(steep, least), t_min);
 }
 
 /* Records one crossing of probe j, whose ids are in s->at.hits. Returns false if it was the last crossing. */
@@ -156,7 +155,7 @@ static bool note_crossing(vlTracing *t, uint32_t j, uint32_t depth) {
       x->hits.t[j] = h->t[j];
     }
   }
-  x->t_min[j] = past_crossing(&at, o, d, x->t_min[j]);
+  x->t_min[j] = past_on_probe(&at, o, d, x->t_min[j]);
   return x->t_min[j] < x->length[j];
 }
 

@@ -213,45 +213,19 @@ static Upsampling upsampling_of(const vlTextureRun *r, const vlTextureNode *node
                       vl_rgb_table(node->space), node->role == VL_ROLE_ILLUMINANT ? node->spectrum.dense : NULL};
 }
 
-static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, uint32_t i, float *const out[4]) {
-  float c[3] = {rgb.x, rgb.y, rgb.z};
-  if (up->albedo)
-    for (int k = 0; k < 3; k++) c[k] = c[k] > 1.0f ? 1.0f : c[k];
-  if (up->rgb_mode) {
-    for (int k = 0; k < 4; k++) out[k][i] = k < 3 ? c[k] : 0.0f;
-    return;
-  }
-  float m = vl_max(c[0], vl_max(c[1], c[2]));
-  float scale = up->albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
-  vlSigmoid s = vl_rgb_table_lookup(up->table, c[0] * inv, c[1] * inv, c[2] * inv);
-  for (int k = 0; k < 4; k++) {
-    float lambda = r->at->paths.lambda[k][i];
-    float x = scale * vl_sigmoid(s, lambda);
-    out[k][i] = up->illuminant ? x * vl_dense_at(up->illuminant, lambda) : x;
-  }
-}
-
-/* upsample for lanes from first on, with the same operations. */
-static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t count, float rgb[3][VL_LANES],
-                           uint32_t first, float *const out[4]) {
-  if (up->rgb_mode || count < VL_LANES / 4) {
-    for (uint32_t k = 0; k < count; k++) upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
-    return;
-  }
-  VL_ROW float lambda[4][VL_LANES], value[4][VL_LANES];
-  for (int c = 0; c < 4; c++)
-    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->at->paths.lambda[c][first + (k < count ? k : count - 1)];
-  const float *p = up->table->coefficients;
-  float most = up->albedo ? 1.0f : VL_INFINITY;
+void vl_upsample_rows(const vlRgbTable *table, bool albedo, uint32_t padded, float (*const rgb)[VL_SKY_BLOCK],
+                      float (*const lambda)[VL_SKY_BLOCK], float (*const value)[VL_SKY_BLOCK]) {
+  const float *p = table->coefficients;
+  float most = albedo ? 1.0f : VL_INFINITY;
   /* must vectorise */
   VL_SIMD
-  for (uint32_t k = 0; k < VL_LANES; k++) {
+  for (uint32_t k = 0; k < padded; k++) {
     float red = rgb[0][k], green = rgb[1][k], blue = rgb[2][k];
     red = red > most ? most : red;
     green = green > most ? most : green;
     blue = blue > most ? most : blue;
     float m = vl_max(red, vl_max(green, blue));
-    float scale = up->albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
+    float scale = albedo ? 1.0f : 2.0f * m, inv = scale > 0.0f ? 1.0f / scale : 0.0f;
     vlRgbPlace at = vl_rgb_place(red * inv, green * inv, blue * inv);
     vlSigmoid s = {vl_rgb_coefficient(p, 0, at), vl_rgb_coefficient(p, 1, at), vl_rgb_coefficient(p, 2, at)};
     value[0][k] = scale * vl_sigmoid(s, lambda[0][k]);
@@ -259,6 +233,30 @@ static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t
     value[2][k] = scale * vl_sigmoid(s, lambda[2][k]);
     value[3][k] = scale * vl_sigmoid(s, lambda[3][k]);
   }
+}
+
+static void upsample(const vlTextureRun *r, const Upsampling *up, vlVec3 rgb, uint32_t i, float *const out[4]) {
+  float c[3] = {rgb.x, rgb.y, rgb.z}, lambda[4], value[4];
+  if (up->rgb_mode) {
+    for (int k = 0; k < 4; k++) out[k][i] = k < 3 ? (up->albedo && c[k] > 1.0f ? 1.0f : c[k]) : 0.0f;
+    return;
+  }
+  vl_path_lambda(&r->at->paths, i, lambda);
+  vl_upsample(up->table, up->albedo, c, lambda, value);
+  for (int k = 0; k < 4; k++) out[k][i] = up->illuminant ? value[k] * vl_dense_at(up->illuminant, lambda[k]) : value[k];
+}
+
+/* upsample for lanes from first on, with the same operations. */
+static void upsample_lanes(const vlTextureRun *r, const Upsampling *up, uint32_t count, float rgb[3][VL_SKY_BLOCK],
+                           uint32_t first, float *const out[4]) {
+  if (up->rgb_mode || count < VL_LANES / 4) {
+    for (uint32_t k = 0; k < count; k++) upsample(r, up, vl_vec3(rgb[0][k], rgb[1][k], rgb[2][k]), first + k, out);
+    return;
+  }
+  VL_ROW float lambda[4][VL_SKY_BLOCK], value[4][VL_SKY_BLOCK];
+  for (int c = 0; c < 4; c++)
+    for (uint32_t k = 0; k < VL_LANES; k++) lambda[c][k] = r->at->paths.lambda[c][first + (k < count ? k : count - 1)];
+  vl_upsample_rows(up->table, up->albedo, VL_LANES, rgb, lambda, value);
   for (int c = 0; c < 4; c++)
     for (uint32_t k = 0; k < count; k++)
       out[c][first + k] = up->illuminant ? value[c][k] * vl_dense_at(up->illuminant, lambda[c][k]) : value[c][k];
@@ -274,7 +272,7 @@ static void image_spectrum(const vlTextureRun *r, const vlTextureNode *node, flo
   }
   Lookups l;
   for (uint32_t first = r->first; first < r->last; first += l.count) {
-    VL_ROW float rgb[3][VL_LANES];
+    VL_ROW float rgb[3][VL_SKY_BLOCK];
     look_up(r, node, mip, first, &l);
     for (uint32_t k = 0; k < VL_LANES; k++) {
       uint32_t j = k < l.count ? k : l.count - 1;

@@ -265,26 +265,27 @@ uint32_t vl_stage_scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dim
 
 /* ---- the path tracer --------------------------------------------------------------------------------------------- */
 
-void vl_path_tracer(vlTracing *t) {
+static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+  const vlPaths *rays = &t->s->rays;
+  const vlHits *hits = &t->s->hits;
+  vl_stage_emission(t, n, rays, hits);
+  if (!t->batch->recorder) return true;
+  vl_record_arrivals(t, n, depth, rays, hits);
+  vl_record_emission(t, n, rays, hits);
+  if (depth >= t->def->max_depth) vl_record_depth(t, n, rays);
+  return true;
+}
+
+static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  uint32_t n = t->batch->n;
-  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
-    vl_stage_hits(t, n, depth == 0, &s->rays, &s->hits);
-    if (depth == 0) vl_stage_alpha(t, &s->hits);
-    vl_stage_emission(t, n, &s->rays, &s->hits);
-    if (t->batch->recorder) {
-      vl_record_arrivals(t, n, depth, &s->rays, &s->hits);
-      vl_record_emission(t, n, &s->rays, &s->hits);
-      if (depth >= t->def->max_depth) vl_record_depth(t, n, &s->rays);
-    }
-    if (depth >= t->def->max_depth) break;
-    n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
-    if (n == 0) break;
-    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE;
-    vl_stage_shade(t, n, &s->at);
-    vl_stage_regularize(t, n, &s->at);
-    if (t->batch->recorder) vl_record_shaded(t, n, &s->at);
-    direct_light(t, n, dimension, &s->at, &s->light, &s->values, &s->shadow);
-    n = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  }
+  uint32_t dimension = vl_bounce_dimension(depth);
+  vl_stage_regularize(t, n, &s->at);
+  if (t->batch->recorder) vl_record_shaded(t, n, &s->at);
+  direct_light(t, n, dimension, &s->at, &s->light, &s->values, &s->shadow);
+  return vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
+}
+
+void vl_path_tracer(vlTracing *t) {
+  static const vlBounceSteps steps = {arrive, NULL, on_surfaces};
+  vl_trace_bounces(t, t->batch->n, t->def->max_depth, &steps);
 }

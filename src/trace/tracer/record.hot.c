@@ -106,31 +106,20 @@ void vl_record_light(vlTracing *t, uint32_t lane, const vlPathContribution *ligh
   to->vertex = path->vertex_count - 1;
 }
 
-static void record_hit(vlTracing *t, const vlPaths *p, uint32_t i, vlPathLightEvent event, const vlHitLight *met) {
+static void record_hit(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
   float weight = p->specular[i] ? 1.0f : vl_power_heuristic(p->pdf[i], met->pdf);
-  vlPathContribution c = {.event = event, .light_pdf = met->pdf, .bsdf_pdf = p->pdf[i], .weight = weight};
+  vlPathContribution c = {.event = sky ? VL_PATH_LIGHT_SKY : VL_PATH_LIGHT_HIT,
+                          .light_pdf = met->pdf,
+                          .bsdf_pdf = p->pdf[i],
+                          .weight = weight};
   vl_record_name_light(t->world, met->light, &c);
-  put3(c.target, event == VL_PATH_LIGHT_HIT ? met->at.p : vl_lane3(p->dx, p->dy, p->dz, i));
+  put3(c.target, sky ? vl_lane3(p->dx, p->dy, p->dz, i) : met->at.p);
   for (int k = 0; k < 4; k++) c.radiance[k] = p->beta[k][i] * met->radiance[k] * weight;
   vl_record_light(t, p->lane[i], &c);
 }
 
-void vl_record_emission(vlTracing *t, uint32_t n, const vlPaths *p, const vlHits *h) {
-  for (uint32_t i = 0; i < n; i++) {
-    vlHitLight met;
-    if (h->shape[i] != VL_NONE) {
-      if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE && vl_hit_emission(t->world, p, h, i, &met))
-        record_hit(t, p, i, VL_PATH_LIGHT_HIT, &met);
-      continue;
-    }
-    for (size_t k = 0; k < t->world->infinite_lights.count; k++) {
-      vlSkyHits sky;
-      vl_hit_sky(t->world, p, &i, 1, k, &sky);
-      met = (vlHitLight){.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[0]};
-      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][0];
-      record_hit(t, p, i, VL_PATH_LIGHT_SKY, &met);
-    }
-  }
+void vl_record_emission(vlTracing *t, uint32_t n, const vlPaths *rays, const vlHits *hits) {
+  vl_stage_lights_hit(t, n, rays, hits, NULL, record_hit);
 }
 
 void vl_record_direct_light(vlTracing *t, uint32_t n, uint32_t count, const vlVertices *at, const vlLightSamples *l,

@@ -1,5 +1,5 @@
-/* trace/tracer/tracers.hot.c: calls the tracer, and defines the tracers that end at the first hit: raycast and ambient
- * occlusion. The path tracer is in path.hot.c. */
+/* trace/tracer/tracers.hot.c: calls the tracer, and defines the bounces of all tracers, and the tracers that end at the
+ * first hit: raycast and ambient occlusion. The path tracer is in path.hot.c. */
 #include "math/warp.h"
 #include "trace/tracer/kinds.h"
 #include "trace/tracer/own.h"
@@ -123,6 +123,32 @@ void vl_trace_ambient_occlusion(vlTracing *t) {
       for (int c = 0; c < 4; c++) t->batch->radiance[c][s->at.paths.lane[i]] += q->radiance[c][i];
 }
 
+/* ---- bounces ----------------------------------------------------------------------------------------------------- */
+
+void vl_trace_bounces(vlTracing *t, uint32_t n, uint32_t most, const vlBounceSteps *steps) {
+  vlTraceScratch *s = t->s;
+  vlVolumeScratch *media = steps->in_media ? s->volume : NULL;
+  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
+    bool camera = depth == 0 && !t->light;
+    if (media) {
+      vl_volume_travel(t, n, depth, depth < most && !t->light);
+    } else {
+      vl_stage_hits(t, n, camera, &s->rays, &s->hits);
+      if (camera) vl_stage_alpha(t, &s->hits);
+    }
+    if (steps->arrive && !steps->arrive(t, n, depth)) break;
+    if (depth >= most) break;
+    uint32_t inside = media ? steps->in_media(t, n, depth) : 0;
+    n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
+    if (n) {
+      if (media) vl_volume_permute(&media->a, &media->b, s->order, n);
+      vl_stage_shade(t, n, &s->at);
+      n = steps->on_surfaces(t, n, depth);
+    }
+    if (media) n = vl_volume_append(t, inside, n);
+  }
+}
+
 /* ---- the others -------------------------------------------------------------------------------------------------- */
 
 void vl_trace_volpath(vlTracing *t) {
@@ -156,7 +182,7 @@ void vl_trace_light_path(vlTracing *t) {
 }
 
 static void trace(const vlWorld *world, const vlTraceDef *def, vlTraceScratch *scratch, vlTraceBatch *batch) {
-  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), false};
+  vlTracing t = {world, def, scratch, batch, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), NULL};
   start_paths(&t);
   if (def->own) {
     vl_own_tracer(&t);

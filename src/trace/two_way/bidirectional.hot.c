@@ -33,60 +33,21 @@ static float seen_weight(const vlTracing *t, const vlPaths *p, uint32_t i, uint3
   return 1.0f / (1.0f + vl_shown(way, light, area_pdf, per_square, vl_abs(vl_dot(d, at->g))) / vl_last_odds(t, lane));
 }
 
-/* distance: to the light; at: the point of an area light. */
-static void add_hit_light(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, float distance,
-                          const vlPoint *at, bool first) {
-  float weight = 1.0f;
-  if (first) {
-    weight = seen_weight(t, p, i, met->light, at);
-  } else {
-    vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
-    weight = hit_weight(t, p, i, met->pdf, vl_emission_density(t->world, t->def->two_way, met->light, d, distance, at));
-  }
-  add_radiance(t, p, i, met->radiance, weight);
+static void add_first(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+  add_radiance(t, p, i, met->radiance, seen_weight(t, p, i, met->light, sky ? NULL : &met->at));
 }
 
-/* Adds the infinite lights for rays that hit nothing, at most VL_SKY_BLOCK. */
-static void add_sky(vlTracing *t, const vlPaths *p, const uint32_t *lanes, uint32_t count, bool first) {
-  for (size_t k = 0; count > 0 && k < t->world->infinite_lights.count; k++) {
-    vlSkyHits sky;
-    vl_hit_sky(t->world, p, lanes, count, k, &sky);
-    for (uint32_t j = 0; j < count; j++) {
-      vlHitLight met = {.light = t->world->infinite_lights.items[k], .pdf = sky.pdf[j]};
-      for (int c = 0; c < 4; c++) met.radiance[c] = sky.radiance[c][j];
-      add_hit_light(t, p, lanes[j], &met, VL_INFINITY, NULL, first);
-    }
-  }
-}
-
-static void add_emission(vlTracing *t, const vlPaths *p, uint32_t i, bool first) {
-  vlHitLight met;
-  if (vl_hit_emission(t->world, p, &t->s->hits, i, &met)) add_hit_light(t, p, i, &met, met.at.t, &met.at, first);
-}
-
-/* first: for camera rays. */
-static void emission(vlTracing *t, uint32_t n, bool first) {
-  const vlHits *h = &t->s->hits;
-  uint32_t missed[VL_SKY_BLOCK], count = 0;
-  for (uint32_t i = 0; i < n; i++) {
-    uint8_t event = vl_has_media(t) ? t->s->volume->event[i] : VL_ON_SURFACE;
-    if (event != VL_IN_SKY && event != VL_ON_SURFACE) continue;
-    if (h->shape[i] == VL_NONE)
-      missed[count++] = i;
-    else if (t->world->shapes.items[h->shape[i]].first_light != VL_NONE)
-      add_emission(t, &t->s->rays, i, first);
-    if (count == VL_SKY_BLOCK) {
-      add_sky(t, &t->s->rays, missed, count, first);
-      count = 0;
-    }
-  }
-  add_sky(t, &t->s->rays, missed, count, first);
+static void add_later(vlTracing *t, const vlPaths *p, uint32_t i, const vlHitLight *met, bool sky) {
+  vlVec3 d = vl_lane3(p->dx, p->dy, p->dz, i);
+  float density = vl_emission_density(t->world, t->def->two_way, met->light, d, sky ? VL_INFINITY : met->at.t,
+                                      sky ? NULL : &met->at);
+  add_radiance(t, p, i, met->radiance, hit_weight(t, p, i, met->pdf, density));
 }
 
 /* ---- one vertex -------------------------------------------------------------------------------------------------- */
 
 /* Sets a and b: the strategies that begin on the camera's side (two_way.h). */
-static void arrive(vlTracing *t, uint32_t n, uint32_t depth) {
+static void weigh(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTwoWayRows *r = t->batch->two_way;
   const vlSurface *f = &t->s->at.surface;
   const vlPaths *p = &t->s->at.paths;
@@ -175,7 +136,7 @@ static uint32_t scatter(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimen
   const vlSurface *f = &s->at.surface;
   const vlPaths *p = &s->rays;
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  vl_volume_go_on(t, count);
+  if (vl_has_media(t)) vl_volume_go_on(t, count);
   vl_stage_reverse(t, n, &s->at, samples->wi, &r->back);
   for (uint32_t k = 0; k < count; k++) {
     uint32_t i = s->order[k], lane = p->lane[k], *smooth = &r->smooth[lane];
@@ -204,15 +165,19 @@ static void end_long(vlTracing *t, uint32_t n, uint32_t depth) {
 
 /* ---- the tracers ------------------------------------------------------------------------------------------------- */
 
-/* Scatters the sorted lanes on surfaces. Returns the number of paths that go on. */
-static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+static bool arrive(vlTracing *t, uint32_t n, uint32_t depth) {
   vlTraceScratch *s = t->s;
-  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
-  if (n == 0) return 0;
-  vl_volume_sorted(t, n);
-  vl_stage_shade(t, n, &s->at);
+  const vlTwoWay *way = t->def->two_way;
+  vl_stage_lights_hit(t, n, &s->rays, &s->hits, vl_has_media(t) ? s->volume->event : NULL,
+                      depth == 0 ? add_first : add_later);
+  if (way->apart) end_long(t, n, depth);
+  return !way->light_only;
+}
+
+static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  uint32_t dimension = vl_bounce_dimension(depth);
   if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->at.paths, &t->s->volume->b, n);
-  arrive(t, n, depth);
+  weigh(t, n, depth);
   direct_light(t, n, depth, dimension);
   if (t->def->two_way->inner.paths) vl_stage_connect(t, n, depth);
   if (t->def->two_way->merge) vl_stage_merge(t, n, depth);
@@ -221,24 +186,9 @@ static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth, uint32_t d
 
 void vl_bidirectional_tracer(vlTracing *t) {
   const vlTwoWay *way = t->def->two_way;
-  uint32_t n = t->batch->n, most = (way->apart ? 2 : 1) * t->def->max_depth;
-  bool media = vl_has_media(t);
+  const vlBounceSteps steps = {arrive, vl_has_media(t) ? vl_eye_in_media : NULL, on_surfaces};
   if (way->alone) return;
   vl_measure_camera_rays(t);
-  if (media) vl_volume_start(t, n, NULL);
-  for (uint32_t depth = 0; n > 0 && !vl_is_cancelled(t->def->cancel); depth++) {
-    if (media) {
-      vl_volume_travel(t, n, depth, depth < most);
-    } else {
-      vl_stage_hits(t, n, depth == 0, &t->s->rays, &t->s->hits);
-      if (depth == 0) vl_stage_alpha(t, &t->s->hits);
-    }
-    emission(t, n, depth == 0);
-    if (way->light_only || depth >= most) break;
-    if (way->apart) end_long(t, n, depth);
-    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0;
-    if (media) inside = vl_eye_in_media(t, n, depth, dimension);
-    n = on_surfaces(t, n, depth, dimension);
-    if (media) n = vl_volume_append(t, inside, n);
-  }
+  if (vl_has_media(t)) vl_volume_start(t, t->batch->n, NULL);
+  vl_trace_bounces(t, t->batch->n, (way->apart ? 2 : 1) * t->def->max_depth, &steps);
 }

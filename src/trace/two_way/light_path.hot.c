@@ -4,9 +4,6 @@
 #include "math/warp.h"
 #include "trace/two_way/stages.h"
 
-/* Longer paths carry almost nothing, and would need memory for their photons. */
-enum { LIGHT_BOUNCES = 255 };
-
 void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, const float wi[3][VL_ROW_SIZE],
                       vlBsdfValues *back) {
   const vlShade *sh = &at->shade;
@@ -211,7 +208,7 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   const vlPaths *p = &s->rays;
   const vlBsdfSamples *samples = &s->samples;
   uint32_t count = vl_stage_scatter(t, n, depth + 1, dimension, &s->at, &s->samples, s->order, &s->rays);
-  vl_volume_go_on(t, count);
+  if (vl_has_media(t)) vl_volume_go_on(t, count);
   vl_stage_reverse(t, n, &s->at, samples->wi, &r->back);
   float merged = t->def->two_way->merged, connect = t->def->two_way->connect;
   for (uint32_t k = 0; k < count; k++) {
@@ -229,13 +226,11 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   return count;
 }
 
-static uint32_t on_surfaces(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                            uint32_t dimension, bool last) {
-  vlTraceScratch *s = t->s;
-  n = vl_stage_sort(t->world, n, &s->rays, &s->hits, s->order, &s->at);
-  if (n == 0) return 0;
-  vl_volume_sorted(t, n);
-  vl_stage_shade(t, n, &s->at);
+static uint32_t on_surfaces(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTwoWayRows *r = t->batch->two_way;
+  vlLightBatch *b = t->light;
+  uint32_t dimension = vl_bounce_dimension(depth);
+  bool last = depth + 1 == vl_light_bounces(t->def);
   if (vl_has_media(t)) vl_volume_normalise_all(t, &t->s->at.paths, &t->s->volume->b, n);
   arrive(t, r, n, depth);
   if (t->def->two_way->merge) leave_photons(t, r, b, n, depth);
@@ -253,24 +248,15 @@ void vl_light_tracer(const vlWorld *world, const vlTraceDef *def, vlTraceScratch
   __builtin_memset(&rest, 0, sizeof rest);
   rest.n = batch->n;
   rest.eyes = batch->eyes;
+  rest.two_way = r;
   for (int c = 0; c < 4; c++) rest.radiance[c] = r->rows[c];
-  vlTracing t = {world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), true};
+  vlTracing t = {world, &own, scratch, &rest, vl_sampler_kernels(def->isa), vl_bsdf_kernels(def->isa), batch};
   vl_passed_start(&t, batch->n);
-  uint32_t n = set_out(&t, r, batch), most = def->max_depth < LIGHT_BOUNCES ? def->max_depth : LIGHT_BOUNCES;
-  bool media = vl_has_media(&t);
-  if (media) vl_volume_start(&t, n, scratch->volume->shadow_medium);
+  uint32_t n = set_out(&t, r, batch);
+  const vlBounceSteps steps = {NULL, vl_has_media(&t) ? vl_light_in_media : NULL, on_surfaces};
+  if (vl_has_media(&t)) vl_volume_start(&t, n, scratch->volume->shadow_medium);
   vl_show_lights(&t, r, batch, n);
-  for (uint32_t depth = 0; n > 0 && depth < most && !vl_is_cancelled(def->cancel); depth++) {
-    if (media)
-      vl_volume_travel(&t, n, depth, false);
-    else
-      vl_stage_hits(&t, n, false, &scratch->rays, &scratch->hits);
-    uint32_t dimension = VL_DIM_BOUNCE + depth * VL_DIM_STRIDE, inside = 0;
-    bool last = depth + 1 == most;
-    if (media) inside = vl_light_in_media(&t, r, batch, n, depth, dimension, last);
-    n = on_surfaces(&t, r, batch, n, depth, dimension, last);
-    if (media) n = vl_volume_append(&t, inside, n);
-  }
+  if (def->max_depth) vl_trace_bounces(&t, n, vl_light_bounces(def), &steps);
   batch->bounce_rays += rest.bounce_rays;
   batch->shadow_rays += rest.shadow_rays;
 }

@@ -113,12 +113,15 @@ void vl_push_connection(vlTracing *t, const vlPaths *p, const vlVolumeRows *rows
 void vl_join_channels(vlTracing *t, const vlPaths *p, uint32_t i, const float eye[3], uint32_t light, uint32_t count);
 void vl_light_media(const vlWorld *world, const float eye[3], uint32_t *medium);
 
-/* Process the paths that scatter in media (volume.scattered) and sample their new directions. vl_eye_in_media is for
- * camera paths, which sample lights and merge. vl_light_in_media is for light paths, which store photons and connect
- * to the camera. Both return the number of paths that go on, and volume.kept lists them. last: no path goes on. */
-uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension);
-uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                           uint32_t dimension, bool last);
+/* Light paths have at most so many bounces: longer ones carry almost nothing, and would need memory for their
+ * photons. */
+static inline uint32_t vl_light_bounces(const vlTraceDef *def) {
+  return def->max_depth < 255 ? def->max_depth : 255;
+}
+/* vlBounceSteps.in_media. vl_eye_in_media is for camera paths, which sample lights and merge. vl_light_in_media is for
+ * light paths, which store photons and connect to the camera. */
+uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth);
+uint32_t vl_light_in_media(vlTracing *t, uint32_t n, uint32_t depth);
 /* Traces the `count` shadow rays of light samples and adds the radiance that arrives, with weight own / (own + odds *
  * others). */
 void vl_two_way_shadows(vlTracing *t, const vlPaths *p, uint32_t count, uint32_t depth);

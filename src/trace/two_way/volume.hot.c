@@ -85,7 +85,8 @@ static uint32_t scatter(vlTracing *t, vlTwoWayRows *r, uint32_t n, uint32_t dept
   return count;
 }
 
-uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth, uint32_t dimension) {
+uint32_t vl_eye_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+  uint32_t dimension = vl_bounce_dimension(depth);
   n = vl_volume_gather(t, n);
   if (n == 0) return 0;
   arrive(t, n, depth);
@@ -222,8 +223,11 @@ static void show(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uin
   vl_two_way_splats(t, r, b, p, count, depth);
 }
 
-uint32_t vl_light_in_media(vlTracing *t, vlTwoWayRows *r, vlLightBatch *b, uint32_t n, uint32_t depth,
-                           uint32_t dimension, bool last) {
+uint32_t vl_light_in_media(vlTracing *t, uint32_t n, uint32_t depth) {
+  vlTwoWayRows *r = t->batch->two_way;
+  vlLightBatch *b = t->light;
+  uint32_t dimension = vl_bounce_dimension(depth);
+  bool last = depth + 1 == vl_light_bounces(t->def);
   n = vl_volume_gather(t, n);
   if (n == 0) return 0;
   arrive_from_light(t, r, n, depth);

@@ -112,9 +112,12 @@ def test_auto():
     samples = [m.spp for m in messages if isinstance(m, Frame) and m.scale == 1]
     late = samples[next((i for i, n in enumerate(samples) if n >= 32), len(samples)):]
     check("no_later_frame_of_few_samples", all(n >= second[0] for n in late), samples, second)
-    check_same_image(page, "auto")
     told = ask(page, "paths", type="paths", x=3, y=4)
     check("its_paths_are_not_recorded", told["type"] == "refused" and "bidirectional" in told["message"], told)
+    # velo hangs up on a page that answers no ping for 30 s, as this one would while the commands run: another one goes on.
+    page.close()
+    check_same_image(Page(view), "auto")
+    page = Page(view)
 
     move(page, [0.3, 1.1, 3.2])
     page.wait_frame(lambda f: f.change == page.change)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "import/gltf/gltf.h"
 #include "import/labels.h"
 #include "velo/light.h"
@@ -146,45 +147,29 @@ static const json_t *extension(const Reader *r, const char *name) {
   return vl_gltf_extension(r->json, name);
 }
 
-static bool read_specular(const Reader *r) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_specular");
-  const json_t *json = extension(r, "KHR_materials_specular");
-  vlPrincipledDef *p = &r->def->principled;
+static bool read_specular(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p) {
   float color[4] = {1, 1, 1, 1};
-  if (!json) return true;
   return channel(r, at, json, "specularFactor", "specularTexture", 3, 1.0f, &p->specular) &&
          read_color(r, at, json, "specularColorFactor", 3, color) &&
          color_input(r, at, json, "specularColorTexture", color, false, &p->specular_color);
 }
 
-static bool read_coat(const Reader *r) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_clearcoat");
-  const json_t *json = extension(r, "KHR_materials_clearcoat");
-  vlPrincipledDef *p = &r->def->principled;
-  if (!json) return true;
+static bool read_coat(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p) {
   return channel(r, at, json, "clearcoatFactor", "clearcoatTexture", 0, 0.0f, &p->clearcoat) &&
          channel(r, at, json, "clearcoatRoughnessFactor", "clearcoatRoughnessTexture", 1, 0.0f,
                  &p->clearcoat_roughness) &&
          normal_input(r, at, json, "clearcoatNormalTexture", &p->clearcoat_normal, &p->clearcoat_normal_scale);
 }
 
-static bool read_sheen(const Reader *r) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_sheen");
-  const json_t *json = extension(r, "KHR_materials_sheen");
-  vlPrincipledDef *p = &r->def->principled;
+static bool read_sheen(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p) {
   float color[4] = {0, 0, 0, 1};
-  if (!json) return true;
   return read_color(r, at, json, "sheenColorFactor", 3, color) &&
          color_input(r, at, json, "sheenColorTexture", color, false, &p->sheen_color) &&
          channel(r, at, json, "sheenRoughnessFactor", "sheenRoughnessTexture", 3, 0.0f, &p->sheen_roughness);
 }
 
-static bool read_iridescence(const Reader *r) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_iridescence");
-  const json_t *json = extension(r, "KHR_materials_iridescence");
-  vlPrincipledDef *p = &r->def->principled;
+static bool read_iridescence(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p) {
   float least = 100, most = 400;
-  if (!json) return true;
   if (!channel(r, at, json, "iridescenceFactor", "iridescenceTexture", 0, 0.0f, &p->iridescence) ||
       !vl_gltf_float(r->g, at, json, "iridescenceIor", &p->iridescence_ior) ||
       !vl_gltf_float(r->g, at, json, "iridescenceThicknessMinimum", &least) ||
@@ -197,12 +182,8 @@ static bool read_iridescence(const Reader *r) {
   return vl_gltf_texture(r->g, at, json, "iridescenceThicknessTexture", &use, &p->iridescence_thickness.texture);
 }
 
-static bool read_anisotropy(const Reader *r) {
-  const vlGltfPlace *at = VL_GLTF_KEY(r->at, "extensions.KHR_materials_anisotropy");
-  const json_t *json = extension(r, "KHR_materials_anisotropy");
-  vlPrincipledDef *p = &r->def->principled;
+static bool read_anisotropy(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p) {
   float rotation = 0;
-  if (!json) return true;
   if (!channel(r, at, json, "anisotropyStrength", "anisotropyTexture", 2, 0.0f, &p->anisotropy) ||
       !vl_gltf_float(r->g, at, json, "anisotropyRotation", &rotation))
     return false;
@@ -210,6 +191,25 @@ static bool read_anisotropy(const Reader *r) {
   if (p->anisotropy.texture.index || p->anisotropy.value > 0.0f) r->result->needs_tangents = true;
   return !p->anisotropy.texture.index ||
          vl_gltf_angle_texture(r->g, p->anisotropy.texture, rotation, &p->anisotropy_rotation);
+}
+
+/* The extensions that add one layer each; their functions are called where the material has the extension. */
+static const struct {
+  const char *key;
+  bool (*read)(const Reader *r, const vlGltfPlace *at, const json_t *json, vlPrincipledDef *p);
+} layers[] = {{"extensions.KHR_materials_specular", read_specular},
+              {"extensions.KHR_materials_clearcoat", read_coat},
+              {"extensions.KHR_materials_sheen", read_sheen},
+              {"extensions.KHR_materials_iridescence", read_iridescence},
+              {"extensions.KHR_materials_anisotropy", read_anisotropy}};
+
+/* Glossy materials have their own specular layer. */
+static bool read_layers(const Reader *r, bool glossy) {
+  for (size_t i = glossy ? 1 : 0; i < VL_LENGTH(layers); i++) {
+    const json_t *json = extension(r, layers[i].key + strlen("extensions."));
+    if (json && !layers[i].read(r, VL_GLTF_KEY(r->at, layers[i].key), json, &r->def->principled)) return false;
+  }
+  return true;
 }
 
 /* Reads the transmission of thin surfaces and solids. */
@@ -292,9 +292,7 @@ static bool read_material(const Reader *r) {
   const json_t *glossy = extension(r, "KHR_materials_pbrSpecularGlossiness");
   if (!(glossy ? read_specular_glossiness(r, glossy, base) : read_metallic_roughness(r, base))) return false;
   if (!normal_input(r, r->at, r->json, "normalTexture", &p->normal, &p->normal_scale)) return false;
-  if (!read_transmission(r) || (!glossy && !read_specular(r)) || !read_coat(r) || !read_sheen(r) ||
-      !read_iridescence(r) || !read_anisotropy(r) || !read_emission(r))
-    return false;
+  if (!read_transmission(r) || !read_layers(r, glossy != NULL) || !read_emission(r)) return false;
   bool passes = p->transmission.texture.index || p->transmission.value > 0.0f ||
                 p->diffuse_transmission.texture.index || p->diffuse_transmission.value > 0.0f;
   if (passes) r->result->double_sided = true; /* light inside the solid must hit the back side of the surface */

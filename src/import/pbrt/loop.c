@@ -201,19 +201,24 @@ static uint32_t number_edges(const Level *l, uint32_t *odd) {
   return count;
 }
 
+/* The position of vertex i after one subdivision, or after infinitely many. */
+static void weigh(const Level *l, uint32_t i, bool limit, float *p) {
+  if (l->start[i] == NONE) {
+    memcpy(p, &l->p[3 * (size_t)i], 3 * sizeof *p);
+  } else if (l->border[i]) {
+    weight_border(l, i, limit ? 1.0f / 5.0f : 1.0f / 8.0f, p);
+  } else {
+    uint32_t n = valence(l, i);
+    weight_ring(l, i, n, limit ? 1.0f / ((float)n + 3.0f / (8.0f * beta(n))) : beta(n), p);
+  }
+}
+
 static void move_vertices(const Level *l, Level *c) {
   for (uint32_t i = 0; i < l->vertices; i++) {
     float *p = &c->p[3 * (size_t)i];
     c->border[i] = l->border[i];
     c->start[i] = l->start[i] == NONE ? NONE : 4 * l->start[i] + corner(l, l->start[i], i);
-    if (l->start[i] == NONE) {
-      memcpy(p, &l->p[3 * (size_t)i], 3 * sizeof *p);
-    } else if (l->border[i]) {
-      weight_border(l, i, 1.0f / 8.0f, p);
-    } else {
-      uint32_t n = valence(l, i);
-      weight_ring(l, i, n, beta(n), p);
-    }
+    weigh(l, i, false, p);
   }
 }
 
@@ -282,15 +287,7 @@ static bool refine(vlContext *context, Level *l) {
 
 static void push_to_limit(const Level *l, float *limit) {
   for (uint32_t i = 0; i < l->vertices; i++) {
-    float *p = &limit[3 * (size_t)i];
-    if (l->start[i] == NONE) {
-      memcpy(p, &l->p[3 * (size_t)i], 3 * sizeof *p);
-    } else if (l->border[i]) {
-      weight_border(l, i, 1.0f / 5.0f, p);
-    } else {
-      uint32_t n = valence(l, i);
-      weight_ring(l, i, n, 1.0f / ((float)n + 3.0f / (8.0f * beta(n))), p);
-    }
+    weigh(l, i, true, &limit[3 * (size_t)i]);
   }
 }
 

@@ -12,7 +12,6 @@
 #include "cli/manual.h"
 #include "cli/report.h"
 #include "cli/signals.h"
-#include "velo/velo.h"
 
 /* The git commit of the source; empty when unknown. Written by cmake/commit.cmake. */
 extern const char velo_commit[];

@@ -4,6 +4,7 @@
 #define VELO_TEXTURE_H
 
 #include "velo/image.h"
+#include "velo/lookup.h"
 #include "velo/spectrum.h"
 
 #ifdef __cplusplus
@@ -37,19 +38,6 @@ enum {
   VL_TEXTURE_FLOAT_ONLY = 1, /**< there is no colour texture of the kind */
   VL_TEXTURE_COLOR_ONLY = 2  /**< there is no float texture of the kind */
 };
-/** The value of an image outside the unit square. REPEAT: the image is repeated. BLACK: 0. CLAMP: the value of the
- * nearest edge. OCTAHEDRAL: the wrapping of an octahedral map. MIRROR: the image is repeated and mirrored. */
-typedef enum vlWrap { VL_WRAP_REPEAT, VL_WRAP_BLACK, VL_WRAP_CLAMP, VL_WRAP_OCTAHEDRAL, VL_WRAP_MIRROR } vlWrap;
-/** Interpolation of images. */
-typedef enum vlTextureFilter {
-  VL_FILTER_POINT,     /**< nearest texel of the level that fits the footprint */
-  VL_FILTER_BILINEAR,  /**< between four texels of the finer level */
-  VL_FILTER_TRILINEAR, /**< bilinear on two levels, and linear between them */
-  VL_FILTER_EWA        /**< treated as trilinear; the taps follow the longer axis of the footprint */
-} vlTextureFilter;
-/** The map from a surface point to (s, t) (pbrt book 10.2). */
-typedef enum vlMapping { VL_MAPPING_UV, VL_MAPPING_SPHERICAL, VL_MAPPING_CYLINDRICAL, VL_MAPPING_PLANAR } vlMapping;
-
 /** A texture: a number or a spectrum for each point of a surface. */
 struct vlTextureDef {
   uint32_t cookie;

@@ -24,6 +24,7 @@
 #include "velo/image.h"
 #include "velo/light.h"
 #include "velo/load.h"
+#include "velo/lookup.h"
 #include "velo/material.h"
 #include "velo/medium.h"
 #include "velo/own.h"

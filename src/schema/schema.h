@@ -52,6 +52,8 @@
   static const vlKindRow kind##_row = {.parameters = kind##_parameters,                                         \
                                        .parameter_count = sizeof kind##_parameters / sizeof *kind##_parameters, \
                                        __VA_ARGS__};
+/* Initialises the parameters of a row with an array. */
+#define VL_ROW_PARAMETERS(array) .parameters = (array), .parameter_count = sizeof(array) / sizeof *(array)
 /* Defines the row of a kind without parameters. */
 #define VL_KIND_ROW_EMPTY(kind, ...) static const vlKindRow kind##_row = {__VA_ARGS__};
 

@@ -10,6 +10,7 @@
 #include "base/array.h"
 #include "base/cancel.h"
 #include "color/color.h"
+#include "texture/node.h"
 #include "velo/world.h"
 #include "world/accel/accel.h"
 #include "world/light/environment_lookup.h"
@@ -17,7 +18,6 @@
 #include "world/material/measured.h"
 #include "world/medium/medium.h"
 #include "world/part.h"
-#include "world/texture/texture.h"
 
 /* ---- shapes ------------------------------------------------------------------------------------------------------ */
 

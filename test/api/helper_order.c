@@ -10,8 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "velo/focus.h"
+#include "velo/load.h"
+#include "velo/render.h"
 #include "velo/schema.h"
-#include "velo/velo.h"
 
 enum { WORKERS = 3 };
 

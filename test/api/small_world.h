@@ -4,7 +4,11 @@
 
 #include <string.h>
 
-#include "velo/velo.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/render.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 
 enum { SMALL_WIDTH = 40, SMALL_HEIGHT = 30 };
 

@@ -11,6 +11,8 @@
 #include <time.h>
 
 #include "api/small_world.h"
+#include "velo/channels.h"
+#include "velo/load.h"
 
 /* Runs loops on the calling thread and makes the request before task `at` of loop `loop`. */
 typedef struct Runner {

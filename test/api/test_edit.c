@@ -12,6 +12,9 @@
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "velo/channels.h"
+#include "velo/edit.h"
+#include "velo/medium.h"
 
 enum { SIDE = 60, PIXELS = SMALL_WIDTH * SMALL_HEIGHT };
 

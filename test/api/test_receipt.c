@@ -14,7 +14,8 @@
 
 #include "base/digest.h"
 #include "failing_allocator.h"
-#include "velo/velo.h"
+#include "velo/receipt.h"
+#include "velo/render.h"
 
 typedef struct Fixture {
   vlContext *context;

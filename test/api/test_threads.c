@@ -9,6 +9,8 @@
 #include <pthread.h>
 
 #include "api/small_world.h"
+#include "velo/channels.h"
+#include "velo/edit.h"
 
 typedef struct Job {
   vlContext *context;

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/drawing.h"
 
 static vlContext *context;
 

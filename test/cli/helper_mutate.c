@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "velo/velo.h"
+#include "velo/image.h"
 
 enum { MOST = 256 };
 

@@ -3,7 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "velo/velo.h"
+#include "velo/film.h"
+#include "velo/trace.h"
 
 static void ahead(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {
   (void)user;

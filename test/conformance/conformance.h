@@ -17,8 +17,10 @@
 
 #include <cmocka.h>
 
+#include "velo/load.h"
+#include "velo/render.h"
 #include "velo/schema.h"
-#include "velo/velo.h"
+#include "velo/trace.h"
 
 #define PI 3.14159265358979323846
 

@@ -6,7 +6,11 @@
 #define TEST_CONFORMANCE_HOSTILE_H
 
 #include "parameters.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/medium.h"
 #include "velo/setting.h"
+#include "velo/shape.h"
 
 /* ---- defs -------------------------------------------------------------------------------------------------------- */
 

@@ -6,6 +6,7 @@
 #define TEST_CONFORMANCE_LIGHTS_H
 
 #include "conformance.h"
+#include "velo/light.h"
 
 /* Radiance times solid angle that arrives at a point of the floor y = 0. */
 typedef struct LightKnown {

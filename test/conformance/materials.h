@@ -5,6 +5,7 @@
 #define TEST_CONFORMANCE_MATERIALS_H
 
 #include "conformance.h"
+#include "velo/material.h"
 
 typedef struct MaterialVariant {
   const char *parameters; /* null ends the list */

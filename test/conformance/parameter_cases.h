@@ -1,17 +1,15 @@
-/* test/api/parameter_cases.h: what test_parameters.c must know beyond the rows. */
-#ifndef TEST_API_PARAMETER_CASES_H
-#define TEST_API_PARAMETER_CASES_H
+/* conformance/parameter_cases.h: what the laws of parameters must know beyond the rows. Cases of textures are with
+ * their kinds: src/texture/NAME.case.c. */
+#ifndef TEST_CONFORMANCE_PARAMETER_CASES_H
+#define TEST_CONFORMANCE_PARAMETER_CASES_H
 
 #include <stddef.h>
 
-/* parameter null: `base` holds parameters of all scenes of the kind, separated by semicolons. Otherwise: value is the
- * parameter as in a file, instead of a value from its row; base replaces the kind's; no_effect says why the parameter
- * changes nothing, and it is then checked that it does not. kind null: of all kinds of the family. */
-typedef struct ParameterCase {
-  const char *family, *kind, *parameter;
-  const char *base, *value, *no_effect;
-  const char *directive; /* the name in the file, where it is not the kind's */
-} ParameterCase;
+#include "schema/parameter.case.h"
+#include "texture/texture.case.h"
+
+#define TEXTURE_CASE(NAME, name) &name##_texture,
+static const TextureCase *const texture_cases[] = {VL_TEXTURE_KINDS(TEXTURE_CASE)};
 
 #define CELLS "\"integer nx\" 2;\"integer ny\" 2;\"integer nz\" 2;\"point3 p0\" [-1 -1 -1];\"point3 p1\" [1 1 1]"
 #define EIGHT "[1 .5 .2 1 .7 .1 .4 .9]"
@@ -97,58 +95,6 @@ static const ParameterCase parameter_cases[] = {
     {.family = "textures", .parameter = "mapping", .value = "\"string mapping\" \"spherical\""},
     {.family = "textures", .parameter = "v1", .base = "\"string mapping\" \"planar\""},
     {.family = "textures", .parameter = "v2", .base = "\"string mapping\" \"planar\""},
-    {.family = "textures", .kind = "imagemap", .base = "\"string filename\" \"a.pfm\""},
-    {.family = "textures", .kind = "imagemap", .parameter = "filename", .value = "\"string filename\" \"b.pfm\""},
-    {.family = "textures",
-     .kind = "imagemap",
-     .parameter = "encoding",
-     .base = "\"string filename\" \"a.tga\"",
-     .value = "\"string encoding\" \"linear\""},
-    {.family = "textures", .kind = "imagemap", .parameter = "maxanisotropy", .no_effect = "ignored"},
-    {.family = "textures",
-     .kind = "imagemap",
-     .parameter = "wrap",
-     .base = "\"string filename\" \"a.pfm\";\"float uscale\" 3.3;\"float vscale\" 2.7"},
-    {.family = "textures", .kind = "checkerboard", .base = "\"float uscale\" 4;\"float vscale\" 3"},
-    {.family = "textures",
-     .kind = "checkerboard",
-     .parameter = "dimension",
-     .base = "\"rgb tex1\" [.9 .8 .7]",
-     .value = "\"integer dimension\" 3"},
-    {.family = "textures",
-     .kind = "checkerboard",
-     .parameter = "mapping",
-     .base = "\"rgb tex1\" [.9 .8 .7]",
-     .value = "\"string mapping\" \"planar\""},
-    {.family = "textures",
-     .kind = "dots",
-     .parameter = "mapping",
-     .base = "\"rgb inside\" [.9 .8 .7]",
-     .value = "\"string mapping\" \"planar\" \"vector3 v1\" [9 0 0] \"vector3 v2\" [0 9 0]"},
-    {.family = "textures",
-     .kind = "dots",
-     .parameter = "v1",
-     .base = "\"string mapping\" \"planar\";\"vector3 v2\" [0 9 0]",
-     .value = "\"vector3 v1\" [9 0 0]"},
-    {.family = "textures",
-     .kind = "dots",
-     .parameter = "v2",
-     .base = "\"string mapping\" \"planar\";\"vector3 v1\" [9 0 0]",
-     .value = "\"vector3 v2\" [0 9 0]"},
-    {.family = "textures", .kind = "dots", .base = "\"float uscale\" 8;\"float vscale\" 8"},
-    {.family = "textures",
-     .kind = "imagemap",
-     .parameter = "mapping",
-     .base = "\"string filename\" \"a.pfm\"",
-     .value = "\"string mapping\" \"spherical\""},
-    {.family = "textures",
-     .kind = "imagemap",
-     .parameter = "v1",
-     .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""},
-    {.family = "textures",
-     .kind = "imagemap",
-     .parameter = "v2",
-     .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""},
     /* footprints leave out the octaves that a pixel averages */
     {.family = "textures", .parameter = "octaves", .value = "\"integer octaves\" 2"},
     /* lights */

@@ -8,6 +8,8 @@
 
 #include "conformance.h"
 #include "parameter_cases.h"
+#include "velo/check.h"
+#include "velo/export.h"
 
 enum { VALUES = 3 };
 
@@ -17,9 +19,23 @@ static bool same_name(const char *a, const char *b) {
   return a == b || (a && b && strcmp(a, b) == 0);
 }
 
+/* The case of a parameter that is in the case of its kind; null: there is none. */
+static const ParameterCase *own_case(const char *family, const char *kind, const char *parameter) {
+  const vlKindFamily *textures = vl_kind_family_find("textures");
+  if (!kind || strcmp(family, "textures") != 0) return NULL;
+  for (uint32_t k = 0; k < textures->kind_count; k++) {
+    if (!same_name(textures->rows[k]->name, kind)) continue;
+    const ParameterCase *list = texture_cases[k]->parameters;
+    for (int i = 0; i < PARAMETER_CASES && (list[i].base || list[i].value || list[i].no_effect); i++)
+      if (same_name(list[i].parameter, parameter)) return &list[i];
+  }
+  return NULL;
+}
+
 /* The case of a parameter, or, for null, of the kind as a whole. A case of the kind comes before one of the family. */
 static const ParameterCase *find_case(const char *family, const char *kind, const char *parameter) {
-  const ParameterCase *found = NULL;
+  const ParameterCase *found = own_case(family, kind, parameter);
+  if (found) return found;
   for (size_t i = 0; i < sizeof parameter_cases / sizeof *parameter_cases; i++) {
     const ParameterCase *c = &parameter_cases[i];
     if (strcmp(c->family, family) != 0 || !same_name(c->parameter, parameter)) continue;

@@ -6,6 +6,7 @@
 
 #include "conformance.h"
 #include "lights.h"
+#include "velo/shape.h"
 
 typedef struct ShapeKnown {
   double origin[3], direction[3]; /* a ray */

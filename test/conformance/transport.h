@@ -4,6 +4,7 @@
 #define TEST_CONFORMANCE_TRANSPORT_H
 
 #include "conformance.h"
+#include "velo/medium.h"
 
 /* The mean of green over the image, each pixel a number of its own. */
 static Mean mean_image(const char *text, const char *tracer, uint32_t spp) {

@@ -9,8 +9,9 @@
 
 #include <cmocka.h>
 
+#include "velo/export.h"
+#include "velo/render.h"
 #include "velo/schema.h"
-#include "velo/velo.h"
 
 static vlContext *context;
 static char path[64];

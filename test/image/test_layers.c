@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "failing_allocator.h"
-#include "velo/velo.h"
+#include "velo/image.h"
 
 static const char file[] = VELO_BINARY_DIR "/test_layers.exr";
 

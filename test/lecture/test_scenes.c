@@ -11,7 +11,9 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/load.h"
+#include "velo/render.h"
 
 static const struct {
   const char *name;

@@ -3,6 +3,7 @@
 #define TEST_RENDER_FOG_H
 
 #include "shots.h"
+#include "velo/medium.h"
 
 static UNUSED vlMediumId add_medium(Stage *s, const vlMediumDef *def) {
   vlMediumId id = vl_scene_add_medium(s->scene, def);

@@ -7,6 +7,7 @@
 
 #include "import/gltf_writer.h"
 #include "render/shots.h"
+#include "velo/load.h"
 
 typedef enum Body { BALL, WALL, SLAB } Body; /* the slab is 1 thick */
 

@@ -6,6 +6,7 @@
 #include "render/shots.h"
 
 #include "failing_allocator.h"
+#include "velo/channels.h"
 
 typedef struct GroundTruth {
   vlWorld *world;

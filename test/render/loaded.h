@@ -10,7 +10,10 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/load.h"
+#include "velo/render.h"
+#include "velo/world.h"
 
 typedef struct Loaded {
   vlContext *context; /* two threads */

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include "fog.h"
+#include "velo/load.h"
+#include "velo/medium.h"
 
 static const double attenuation[3] = {0.8, 0.95, 1.0}; /* over a unit of depth */
 

@@ -1,6 +1,7 @@
 /* Adaptive sampling: for every tracer, a film whose blocks have different numbers of samples is filled up to the film
  * of a plain render; a threshold that every block is below stops all at the first comparison; wrong defs. */
 #include "loaded.h"
+#include "velo/render.h"
 
 #define ONE(NAME, name) +1
 enum { WIDTH = 72, HEIGHT = 40, TRACERS = VL_TRACER_KINDS(ONE) };

@@ -9,7 +9,10 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/render.h"
+#include "velo/shape.h"
 
 typedef struct Bench {
   vlContext *context;

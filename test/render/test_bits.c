@@ -2,6 +2,7 @@
  * inside rotated instances (Embree's own arithmetic differs there), mixes, interfaces, dispersion, bump maps, a lens.
  */
 #include "render/shots.h"
+#include "velo/texture.h"
 
 static void fill(Stage *s) {
   add_sky(s, 0.3f);

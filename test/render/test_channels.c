@@ -1,6 +1,7 @@
 /* Ground truth: the channels agree with each other and with the camera, ids are those of a ray cast by the test, planes
  * have the exact depth, and the bits do not depend on threads, instruction set or crop. */
 #include "render/ground_truths.h"
+#include "velo/channels.h"
 
 /* Builds the world of the stage and computes all channels. */
 static GroundTruth ground_truth_take(Stage *s, const uint32_t crop[4], uint32_t channels) {

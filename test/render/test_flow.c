@@ -1,5 +1,6 @@
 /* Optical flow between two cameras against known geometry; boxes against counted pixels. */
 #include "render/ground_truths.h"
+#include "velo/boxes.h"
 
 static GroundTruth ground_truth_take(Stage *s, const vlCameraDef *other, uint32_t channels) {
   GroundTruth t = ground_truth_begin(s);

@@ -1,6 +1,8 @@
 /* Surface derivatives, seen in images: bump maps against normals of surfaces displaced by a formula; image textures at
  * grazing angles: detail finer than a pixel becomes grey, coarser detail keeps its contrast. */
 #include "render/shots.h"
+#include "velo/channels.h"
+#include "velo/texture.h"
 
 /* ---- bump maps --------------------------------------------------------------------------------------------------- */
 

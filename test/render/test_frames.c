@@ -7,7 +7,8 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/load.h"
+#include "velo/render.h"
 
 static vlContext *context;
 static vlWorld *world;

@@ -1,6 +1,8 @@
 /* test_gltf_convert.c: glTF converted to pbrt gives nearly the same image: spheres of dielectrics and metals, a wall
  * with an emissive image whose uvs are far from the origin. */
 #include "render/gltf_shots.h"
+#include "velo/export.h"
+#include "velo/load.h"
 
 /* Renders the images of the glTF file and of the pbrt file that is written from it. */
 static void both_ways(const Gltf *g, const char *rest, Image *own, Image *written) {

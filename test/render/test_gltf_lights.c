@@ -1,6 +1,7 @@
 /* test_gltf_lights.c: glTF's lights on a white wall against values computed by hand (candela, lux, cones), surfaces
  * with an emissive image against the same emission without one, vertex colours and coverage, uv sets of images. */
 #include "render/gltf_shots.h"
+#include "velo/load.h"
 
 #define PAPER                                                                                                  \
   "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0.5,1],\"metallicFactor\":0,\"roughnessFactor\":1}," \

@@ -1,6 +1,7 @@
 /* Cryptomatte, the modes that choose among a pixel's samples, standard errors: they agree with the image, with each
  * other and with simple scenes of known result, and their bits depend on nothing else. */
 #include "render/ground_truths.h"
+#include "velo/boxes.h"
 
 static const uint32_t MATTES = VL_CHANNEL_CRYPTO_OBJECT | VL_CHANNEL_CRYPTO_MATERIAL | VL_CHANNEL_CRYPTO_INSTANCE;
 

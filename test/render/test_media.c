@@ -1,6 +1,8 @@
 /* Participating media of known radiance: Beer's law, fully scattering media under a white sky, single scattering by
  * quadrature, emissive fog, every kind and both colour modes. Also changes that must not affect the image. */
 #include "fog.h"
+#include "velo/medium.h"
+#include "velo/texture.h"
 
 static const float eights[64] = {1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1,
                                  0, 2, 1, 1, 1, 1, 2, 0, 2, 1, 1, 2, 0, 1, 3, 1, 0, 2, 1, 1, 1, 1,

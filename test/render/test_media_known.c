@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "fog.h"
+#include "velo/medium.h"
 #include "world/nanovdb_file.h"
 
 static const float ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};

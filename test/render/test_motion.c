@@ -1,6 +1,7 @@
 /* Images of moving objects: the mean of many images at fixed times (z-test), the same bits on every instruction set, no
  * self-intersection, moving vertices against equally moving instances, the slope of an edge with a rolling shutter. */
 #include "render/shots.h"
+#include "velo/texture.h"
 
 enum { W = 24, H = 18 };
 

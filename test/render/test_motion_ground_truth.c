@@ -1,6 +1,7 @@
 /* Ground truth of moving objects: the same as in a static world with the same poses; flow leads to the point's new
  * position; the channels of a pixel agree with each other. */
 #include "render/shots.h"
+#include "velo/channels.h"
 
 enum { W = 48, H = 36, TRUTH = VL_CHANNEL_Z | VL_CHANNEL_P | VL_CHANNEL_N | VL_CHANNEL_UV | VL_CHANNEL_ID_OBJECT };
 

@@ -1,6 +1,7 @@
 /* A sample depends on the length of the sequence, not on the planned number of samples. So a film that is continued,
  * rendered in parts, or rendered for a given time equals the film of a single render. */
 #include "loaded.h"
+#include "velo/render.h"
 
 #define ONE(NAME, name) +1
 enum { SIDE = 24, TRACERS = VL_TRACER_KINDS(ONE), SAMPLERS = VL_SAMPLER_KINDS(ONE) };

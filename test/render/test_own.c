@@ -8,6 +8,11 @@
 
 #include "api/small_world.h"
 #include "render/own_pinhole.h"
+#include "velo/camera_file.h"
+#include "velo/channels.h"
+#include "velo/film.h"
+#include "velo/paths.h"
+#include "velo/trace.h"
 
 /* ---- an own camera that is velo's perspective camera ---------------------------------------------------------------
  */

@@ -5,6 +5,8 @@
 
 #include "api/small_world.h"
 #include "failing_allocator.h"
+#include "velo/film.h"
+#include "velo/trace.h"
 
 enum { WIDTH = 8, HEIGHT = 6, WIDER = 30 * WIDTH }; /* wider: several batches in a pass */
 

@@ -5,6 +5,7 @@
 #include "api/small_world.h"
 #include "render/own_pinhole.h"
 #include "render/own_view.h"
+#include "velo/medium.h"
 
 /* Equidistant, 20 pixels per radian; it has no rays beyond 0.7 radians. */
 static void fisheye_rays(void *user, const vlOwnFilmPoints *points, const vlOwnRays *rays) {

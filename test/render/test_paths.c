@@ -5,6 +5,7 @@
 
 #include "loaded.h"
 #include "render/shots.h"
+#include "velo/paths.h"
 
 enum { SIDE = 24, COUNT = 8 };
 

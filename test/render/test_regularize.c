@@ -1,6 +1,7 @@
 /* test_regularize.c: regularisation of scattered paths (vlBuildDef.regularize). Surfaces seen directly and in mirrors
  * are bit-identical; surfaces met after scattering are, to the bit, those of the larger alpha. */
 #include "render/shots.h"
+#include "velo/medium.h"
 
 enum { DIELECTRIC, CONDUCTOR, COAT, COATED_METAL, WALKED_COAT, PRINCIPLED, KINDS };
 

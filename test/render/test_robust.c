@@ -2,6 +2,7 @@
 #include <time.h>
 
 #include "render/shots.h"
+#include "velo/texture.h"
 
 static double seconds(void) {
   struct timespec t;

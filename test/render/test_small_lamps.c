@@ -1,6 +1,7 @@
 /* Lamps that are smaller than a pixel, seen by the camera itself, against closed forms: radiance times solid angle. By
  * camera rays alone they are a firefly in one image of many. */
 #include "fog.h"
+#include "velo/medium.h"
 
 enum { SIZE = 32 };
 static const float RADIANCE = 1000;

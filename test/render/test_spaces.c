@@ -1,6 +1,7 @@
 /* Colour spaces of images: an EXR file's chromaticities define its values in textures, skies, area lights and
  * projection lights; without them the def's space counts. A film of the same space gives back the values. */
 #include "render/shots.h"
+#include "velo/texture.h"
 
 static const double rec2020[8] = {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290};
 static const float color[3] = {0.2f, 0.5f, 0.1f};

@@ -1,6 +1,7 @@
 /* Switches for comparisons (pbrt's disablepixeljitter, disablewavelengthjitter, disabletexturefiltering): samples at
  * the pixel's centre, the same wavelengths for all samples, textures without a footprint. */
 #include "render/shots.h"
+#include "velo/texture.h"
 
 enum { SIZE = 16 };
 

@@ -16,7 +16,8 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/choose.h"
+#include "velo/load.h"
 
 enum { SIZE = 12, SEEDS = 12, SAMPLES = 16, PARTS = 5, CHANNELS = 3 };
 static const double POWER = 0.008, BLUR = 0.01; /* BLUR: of merging */

@@ -11,7 +11,9 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/edit.h"
+#include "velo/load.h"
+#include "velo/render.h"
 
 enum { SIDE = 24, BANDS = 4 };
 

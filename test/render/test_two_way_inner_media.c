@@ -5,6 +5,7 @@
 #include "render/agreement.h"
 #include "render/fog.h"
 #include "render/lamp_room.h"
+#include "velo/medium.h"
 
 enum { SIZE = 20, FURNACE = 24 };
 

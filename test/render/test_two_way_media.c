@@ -1,6 +1,7 @@
 /* The tracers with light paths against the path tracer, in media: the same mean within both standard errors, for every
  * kind of medium, for lights inside and outside; a white furnace; the same bits for any threads. */
 #include "render/agreement.h"
+#include "velo/medium.h"
 
 enum { SIZE = 18, FINE = 72 }; /* of three bands each */
 

@@ -2,6 +2,7 @@
 #include "render/shots.h"
 
 #include "failing_allocator.h"
+#include "velo/medium.h"
 
 /* A ball of fog over a floor under a lamp, a few pixels wide. */
 static vlResult fill(vlScene *scene) {

@@ -2,6 +2,7 @@
  * standard errors; connections of inner vertices in a room whose lamp stands in a shade, with less noise; the same
  * bits for any threads. */
 #include "render/lamp_room.h"
+#include "velo/medium.h"
 
 enum { SIZE = 18, FINE = 54 };
 

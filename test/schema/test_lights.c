@@ -11,7 +11,9 @@
 
 #include "scene/scene.h"
 #include "schema/schema.h"
-#include "velo/velo.h"
+#include "velo/light.h"
+#include "velo/medium.h"
+#include "velo/shape.h"
 
 static vlContext *context;
 

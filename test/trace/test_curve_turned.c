@@ -14,7 +14,7 @@
 
 #include "trace/stages.h"
 #include "trace/surface/offset.h"
-#include "velo/velo.h"
+#include "velo/shape.h"
 
 enum { HAIRS = 12, RAYS = 20000 };
 

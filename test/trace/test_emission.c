@@ -13,7 +13,7 @@
 #include "statistics.h"
 
 #include "trace/two_way/stages.h"
-#include "velo/velo.h"
+#include "velo/shape.h"
 #include "world/light/light_kind.h"
 
 enum { TRIES = 100 * 1000, ROWS = 8, COLUMNS = 8, TESTS = 40 };

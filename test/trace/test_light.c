@@ -14,7 +14,7 @@
 #include "statistics.h"
 
 #include "trace/stages.h"
-#include "velo/velo.h"
+#include "velo/shape.h"
 #include "world/light/light_kind.h"
 
 enum { TRIES = 200 * 1000 };

@@ -14,7 +14,7 @@
 #include "statistics.h"
 
 #include "trace/two_way/stages.h"
-#include "velo/velo.h"
+#include "velo/light.h"
 #include "world/shape/moving.h"
 #include "world/shape/surface_point.h"
 

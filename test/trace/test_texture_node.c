@@ -12,8 +12,11 @@
 
 #include "statistics.h"
 
-#include "trace/texture/texture_run.h"
-#include "velo/velo.h"
+#include "texture/node_kind.h"
+#include "texture/run.hot.h"
+#include "velo/light.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 
 enum { KINDS = VL_TEXTURE_VERTEX_COLOR + 1 };
 

@@ -9,7 +9,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/material.h"
+#include "velo/shape.h"
 #include "world/accel/brute_force.h"
 #include "world/world.h"
 

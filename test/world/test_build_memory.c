@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include "render/shots.h"
+#include "velo/medium.h"
+#include "velo/texture.h"
 
 typedef struct Purse {
   long left; /* allocations that still succeed; negative: all */

@@ -13,7 +13,8 @@
 #include <cmocka.h>
 
 #include "math/double3.h"
-#include "velo/velo.h"
+#include "velo/material.h"
+#include "velo/texture.h"
 #include "world/accel/bvh.h"
 #include "world/accel/local_ray.h"
 #include "world/accel/nearest.h"

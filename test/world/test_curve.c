@@ -9,7 +9,6 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "velo/velo.h"
 #include "world/shape/surface_point.h"
 
 enum { SEGMENTS = 5, STEPS = 4000 };

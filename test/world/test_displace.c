@@ -8,7 +8,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/shape.h"
+#include "velo/texture.h"
 #include "world/world.h"
 
 typedef struct Made {

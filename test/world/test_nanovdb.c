@@ -11,7 +11,7 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "velo/velo.h"
+#include "velo/render.h"
 #include "world/medium/medium_lookup.h"
 #include "world/nanovdb_file.h"
 

@@ -9,7 +9,6 @@
 
 #include <cmocka.h>
 
-#include "velo/velo.h"
 #include "world/shape/surface_point.h"
 #include "world/world.h"
 

@@ -9,8 +9,8 @@
 /* cmocka.h needs the headers above */
 #include <cmocka.h>
 
-#include "world/texture/node_kind.h"
-#include "world/texture/texture_noise.h"
+#include "texture/kinds.h"
+#include "texture/node_kind.h"
 
 static uint32_t seed = 3;
 static double random_unit(void) {

@@ -12,6 +12,8 @@
 #include "image/header.h"
 #include "image/image.h"
 #include "render/output_names.h"
+#include "velo/load.h"
+#include "velo/render.h"
 
 const Choice dialect_choices[] = {{"velo", VL_CAMERA_DIALECT_VELO},
                                   {"opencv", VL_CAMERA_DIALECT_OPENCV},

@@ -3,7 +3,7 @@
 #define APP_CAMERA_CAMERA_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/camera_file.h"
 
 extern const Choice dialect_choices[];
 #define CAMERA_SIZE_HELP "image size for a file that does not give one"

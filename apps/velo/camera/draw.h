@@ -4,6 +4,8 @@
 #define APP_CAMERA_DRAW_H
 
 #include "image/overlay.h"
+#include "velo/drawing.h"
+#include "velo/render.h"
 
 /* Points of the scene that a camera sees. */
 typedef struct Seen {

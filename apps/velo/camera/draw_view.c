@@ -7,6 +7,7 @@
 #include "cli/vector.h"
 #include "render/denoised.h"
 #include "render/exposure.h"
+#include "velo/channels.h"
 
 static const double degree = 3.14159265358979323846 / 180.0;
 

@@ -4,7 +4,7 @@
 #define APP_CAMERA_PATHS_H
 
 #include "cli/json.h"
-#include "velo/velo.h"
+#include "velo/paths.h"
 
 /* Which paths. */
 typedef struct PathsRequest {

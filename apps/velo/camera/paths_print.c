@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "camera/paths.h"
+#include "velo/channels.h"
 
 static const char *const events[] = {"surface", "medium", "exit", "nothing"};
 static const char *const fates[] = {"on", "left", "absorbed", "roulette", "depth"};

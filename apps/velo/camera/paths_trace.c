@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "camera/paths.h"
+#include "velo/channels.h"
 
 /* A path to be put in order. */
 typedef struct Place {

@@ -1,5 +1,6 @@
 /* camera/poses.c: see string.h. */
 #include "camera/poses.h"
+#include "velo/trajectory.h"
 
 #include <math.h>
 #include <stdlib.h>

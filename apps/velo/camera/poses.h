@@ -3,7 +3,7 @@
 #ifndef APP_CAMERA_POSES_H
 #define APP_CAMERA_POSES_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
 
 /* The largest number of cameras that are drawn; of longer trajectories every n-th pose is. */
 enum { MOST_CAMERAS = 200 };

@@ -4,6 +4,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
+#include "velo/world.h"
 
 typedef struct SceneWorld {
   vlContext *context;

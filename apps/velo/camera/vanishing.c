@@ -14,6 +14,7 @@
 #include "image/image.h"
 #include "image/overlay.h"
 #include "render/output_names.h"
+#include "velo/vanishing.h"
 
 enum { V_JSON, V_FRAME, V_UP, V_OVERLAY, V_OUT, V_LINES, V_GRID, V_FROM, V_PRINCIPAL, V_SIZE, V_AXES, V_TO };
 

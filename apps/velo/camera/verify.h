@@ -3,7 +3,8 @@
 #ifndef APP_CAMERA_VERIFY_H
 #define APP_CAMERA_VERIFY_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/world.h"
 
 /* ---- verify_model.c: the independent projection ------------------------------------------------------------------ */
 

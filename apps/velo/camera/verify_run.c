@@ -8,6 +8,7 @@
 #include "camera/verify.h"
 #include "cli/report.h"
 #include "render/output_names.h"
+#include "velo/render.h"
 
 enum { TRIES = 400, ROOM = 4096, MARGIN = 3 };
 

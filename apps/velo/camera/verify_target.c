@@ -6,6 +6,8 @@
 
 #include "camera/verify.h"
 #include "cli/vector.h"
+#include "velo/light.h"
+#include "velo/shape.h"
 
 /* A marker fills the middle 6 x 6 of a white square's 10 x 10 cells: a black frame around 4 x 4 bits. */
 enum { CELLS = 10, FRAME = 2, BITS = 4, MAX_QUADS = 8192 };

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "velo/confine.h"
 
 void confine_read(Confine *confine, const char *path) {
   if (path && confine->read_count < CONFINE_MOST) confine->read[confine->read_count++] = path;

@@ -3,6 +3,7 @@
 #define APP_CLI_CONTEXT_H
 
 #include "cli/report.h"
+#include "velo/base.h"
 
 /* Creates a context whose messages are reported by `def->log`. Returns -1 on success. Otherwise it reports the
  * reason (a folder of --sandbox, the environment variable VELO_ISA, memory or threads) and returns the exit code. */

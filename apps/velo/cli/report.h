@@ -5,7 +5,7 @@
 #define APP_CLI_REPORT_H
 
 #include "cli/json.h"
-#include "velo/velo.h"
+#include "velo/base.h"
 
 /* Exit codes of velo. After SIGHUP, SIGINT, SIGUSR1, SIGUSR2, SIGTERM or SIGXCPU: 128 + signal (129, 130, 138, 140,
  * 143, 152). */

@@ -2,7 +2,7 @@
 #ifndef APP_FILM_BLOCKS_H
 #define APP_FILM_BLOCKS_H
 
-#include "velo/velo.h"
+#include "velo/film.h"
 
 /* A list of ranges of samples. */
 typedef struct RangeList {

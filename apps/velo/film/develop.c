@@ -12,6 +12,7 @@
 #include "render/output_names.h"
 #include "render/outputs.h"
 #include "render/receipt.h"
+#include "velo/film.h"
 
 enum { DEVELOP_OUTPUT, DEVELOP_VIEW, DEVELOP_EXPOSURE, DEVELOP_HALF };
 

@@ -6,6 +6,7 @@
 #include "cli/report.h"
 #include "image/image.h"
 #include "render/output_names.h"
+#include "velo/film.h"
 
 enum { MERGE_OUTPUT, MERGE_OVERWRITE };
 

@@ -3,7 +3,8 @@
 #ifndef APP_IMAGE_CHECK_H
 #define APP_IMAGE_CHECK_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/image.h"
 
 /* The rules; errors are relative. */
 enum {

@@ -3,6 +3,7 @@
 
 #include "cli/vector.h"
 #include "image/check.h"
+#include "velo/channels.h"
 
 /* Computes the world point that the pixel shows. For a pixel without a hit, it is a distant point on the ray. */
 static bool find_point(const Check *c, bool hit, double p[3]) {

@@ -6,6 +6,7 @@
 
 #include "cli/report.h"
 #include "image/check.h"
+#include "velo/channels.h"
 
 static const char *const types[3] = {"CryptoObject", "CryptoMaterial", "CryptoInstance"};
 

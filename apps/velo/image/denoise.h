@@ -3,7 +3,7 @@
 #define APP_IMAGE_DENOISE_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/denoise.h"
 
 extern const Choice denoiser_choices[];
 /* Reports the statistics of denoising. */

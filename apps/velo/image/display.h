@@ -2,7 +2,7 @@
 #ifndef APP_IMAGE_DISPLAY_H
 #define APP_IMAGE_DISPLAY_H
 
-#include "velo/velo.h"
+#include "velo/image.h"
 
 /* Like vl_image_view, but first converts the image to Rec.709 if its chromaticities attribute names another colour
  * space. alpha: the image is R G B A, premultiplied, and the result has its alpha; otherwise alpha is ignored. The

@@ -2,7 +2,8 @@
 #ifndef APP_IMAGE_HEADER_H
 #define APP_IMAGE_HEADER_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/image.h"
 
 /* Makes the camera. x0, y0: position of the image's first pixel in the uncropped image. optics: the camera's lens of
  * many elements, or null; the caller destroys it after the camera. Returns -1, or the exit code after reporting the

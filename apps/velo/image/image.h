@@ -2,7 +2,7 @@
 #ifndef APP_IMAGE_IMAGE_H
 #define APP_IMAGE_IMAGE_H
 
-#include "velo/velo.h"
+#include "velo/image.h"
 
 /* Makes a context and reads an image. Returns -1, or the exit code after reporting the error. */
 int image_context(vlContext **context);

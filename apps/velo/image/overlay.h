@@ -3,7 +3,8 @@
 #ifndef APP_IMAGE_OVERLAY_H
 #define APP_IMAGE_OVERLAY_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
+#include "velo/image.h"
 
 typedef struct Overlay {
   uint32_t width, height;

@@ -4,6 +4,7 @@
 #define APP_RENDER_AGAIN_H
 
 #include "render/receipt.h"
+#include "velo/receipt.h"
 
 typedef struct Again {
   const char *path; /* path of the image; null: --again is not given */

@@ -4,6 +4,7 @@
 #define APP_RENDER_ATTRIBUTES_H
 
 #include "render/job.h"
+#include "velo/image.h"
 
 vlResult attributes_set(vlImage *image, const Job *job, uint32_t spp);
 /* Adds the camera of the second view with the prefix "right.". */

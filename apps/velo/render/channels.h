@@ -4,6 +4,7 @@
 #define APP_RENDER_CHANNELS_H
 
 #include "render/job.h"
+#include "velo/boxes.h"
 
 enum { CHANNEL_LAYERS = 4 };
 

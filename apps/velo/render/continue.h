@@ -5,6 +5,7 @@
 
 #include "render/film_claim.h"
 #include "render/receipt.h"
+#include "velo/film.h"
 
 typedef struct Continue {
   const char *path; /* path of the film; null: a render from the beginning */

@@ -4,6 +4,8 @@
 
 #include "render/job.h"
 #include "render/outputs.h"
+#include "velo/denoise.h"
+#include "velo/render.h"
 
 typedef struct Denoised {
   Outputs outputs; /* count 0: --denoise is not given */

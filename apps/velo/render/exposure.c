@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "velo/channels.h"
 
 int exposure_parse(const OptionValue *value, float *ev, bool *meter) {
   *ev = 0;

@@ -3,7 +3,7 @@
 #define APP_RENDER_EXPOSURE_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/render.h"
 
 /* Reads --exposure: a number of stops to *ev, or "auto", which sets *meter. Returns -1, or the exit code after
  * reporting the error. */

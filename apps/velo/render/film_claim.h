@@ -4,7 +4,7 @@
 #define APP_RENDER_FILM_CLAIM_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/film.h"
 
 typedef struct FilmClaim {
   char path[4096]; /* of the film file; empty: none */

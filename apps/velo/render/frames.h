@@ -7,6 +7,7 @@
 #include "render/film_keeper.h"
 #include "render/job.h"
 #include "render/outputs.h"
+#include "velo/trajectory.h"
 
 /* A camera relative to a frame, before the frame's pose is applied. */
 typedef struct FrameCamera {

@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/signals.h"
 #include "cli/vector.h"
+#include "velo/channels.h"
 
 static const char *const names[] = {"Albedo.R",
                                     "Albedo.G",

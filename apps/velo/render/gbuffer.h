@@ -3,6 +3,7 @@
 #define APP_RENDER_GBUFFER_H
 
 #include "render/job.h"
+#include "velo/render.h"
 
 /* Makes the image after the render into `film`, whose def had `errors` set. Positions and normals are in the coordinate
  * system that the scene's gbuffer film names. Returns STATUS_OK or the exit code. */

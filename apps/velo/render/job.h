@@ -3,7 +3,7 @@
 #define APP_RENDER_JOB_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/render.h"
 
 /* Options of `velo render`, indices into Arguments.values. */
 enum {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/report.h"
+#include "velo/focus.h"
 
 /* Parses "X,Y", decimal numbers. */
 static bool read_point(const char *text, double point[2]) {

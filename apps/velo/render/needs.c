@@ -8,6 +8,7 @@
 #include "render/animate.h"
 #include "render/lens_options.h"
 #include "render/shard.h"
+#include "velo/check.h"
 
 typedef enum Need {
   NEED_NOTHING,

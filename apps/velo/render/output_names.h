@@ -4,6 +4,7 @@
 #define APP_RENDER_OUTPUT_NAMES_H
 
 #include "render/outputs.h"
+#include "velo/base.h"
 
 typedef struct OutputName {
   char *path;

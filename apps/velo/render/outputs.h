@@ -4,7 +4,7 @@
 #ifndef APP_RENDER_OUTPUTS_H
 #define APP_RENDER_OUTPUTS_H
 
-#include "velo/velo.h"
+#include "velo/image.h"
 
 enum { MAX_OUTPUTS = 32 };
 

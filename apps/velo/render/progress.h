@@ -3,7 +3,7 @@
 #ifndef APP_RENDER_PROGRESS_H
 #define APP_RENDER_PROGRESS_H
 
-#include "velo/velo.h"
+#include "velo/render.h"
 
 typedef struct Progress {
   double time_limit; /* seconds; 0: none */

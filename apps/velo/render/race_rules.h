@@ -6,6 +6,7 @@
 #include <stddef.h>
 
 #include "render/job.h"
+#include "velo/choose.h"
 
 /* By default there is a race from this number of samples per pixel on. */
 enum { RACE_LEAST_SAMPLES = 32 };

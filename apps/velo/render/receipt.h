@@ -4,6 +4,7 @@
 
 #include "render/job.h"
 #include "render/scene_options.h"
+#include "velo/receipt.h"
 
 /* The name of the attribute. */
 #define RECEIPT_ATTRIBUTE "velo.receipt"

@@ -3,7 +3,7 @@
 #define APP_RENDER_RECEIPT_REPEAT_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/receipt.h"
 
 /* Parses the words after "velo render". `path` (of the receipt's file) is for messages; the receipt owns the texts of
  * `arguments`. A command with an option that does not change the image is refused, so that a file cannot decide where

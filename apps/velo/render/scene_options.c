@@ -12,6 +12,7 @@
 #include "cli/text.h"
 #include "render/job.h"
 #include "render/turn.h"
+#include "velo/check.h"
 
 bool scene_is_model(const char *path) {
   return !text_ends_with(path, ".pbrt") && !text_ends_with(path, ".pbrt.gz");

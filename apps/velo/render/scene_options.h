@@ -4,7 +4,8 @@
 #define APP_RENDER_SCENE_OPTIONS_H
 
 #include "cli/options.h"
-#include "velo/velo.h"
+#include "velo/load.h"
+#include "velo/render.h"
 
 /* How a scene was loaded and completed. */
 typedef struct SceneOpening {

@@ -2,7 +2,7 @@
 #ifndef APP_RENDER_TURN_H
 #define APP_RENDER_TURN_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
 
 /* Turns a camera about the axis `up` through the middle of the scene's bounds. automatic: the camera was made
  * for the scene; then it keeps a distance at which every angle shows all of the scene. */

@@ -9,6 +9,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
+#include "velo/check.h"
 
 enum { CHECK_JSON, CHECK_NO_IMAGES, CHECK_ALL, CHECK_PERMISSIVE, CHECK_SEARCH, CHECK_SANDBOX };
 enum { SHOWN = 10 }; /* findings printed per kind without --all */

@@ -10,6 +10,7 @@
 #include "render/output_names.h"
 #include "scene/scene.h"
 #include "velo/export.h"
+#include "velo/render.h"
 
 enum {
   CONVERT_STRICT,

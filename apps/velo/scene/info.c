@@ -13,6 +13,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
+#include "velo/check.h"
 
 int scene_context(vlContext **context, const Arguments *arguments, vlLogFn *log, void *log_user) {
   vlContextDef def = vl_default_context_def();

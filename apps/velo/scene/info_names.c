@@ -3,6 +3,7 @@
 
 #include "cli/text.h"
 #include "scene/scene.h"
+#include "velo/check.h"
 
 enum { NAMES = 20 }; /* most names listed as text */
 

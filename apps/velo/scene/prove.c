@@ -8,6 +8,7 @@
 #include "cli/report.h"
 #include "cli/text.h"
 #include "scene/scene.h"
+#include "velo/channels.h"
 
 enum { SIDE = 256, SPP = 64, MOST = 64 }; /* pixels of the longer side; samples; materials printed */
 

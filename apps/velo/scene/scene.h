@@ -4,7 +4,7 @@
 
 #include "cli/options.h"
 #include "cli/report.h"
-#include "velo/velo.h"
+#include "velo/load.h"
 
 /* The option of all scene commands that restricts the location of a scene's files. */
 #define SCENE_SANDBOX_OPTION(id)                                                                                  \

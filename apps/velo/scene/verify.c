@@ -15,6 +15,7 @@
 #include "render/lens_options.h"
 #include "render/needs.h"
 #include "velo/edit.h"
+#include "velo/shape.h"
 
 /* Options of this command, behind those of `velo render`, of which it has some. */
 enum { VERIFY_RAYS = RENDER_OPTIONS, VERIFY_JSON, VERIFY_REFERENCE, VERIFY_OPTIONS };

@@ -6,6 +6,7 @@
 #include "render/job.h"
 #include "render/scene_options.h"
 #include "scene/verify_statistics.h"
+#include "velo/light.h"
 
 /* Replicates of each run: images with different seeds. Samples per pixel of the second look, relative to the first. */
 enum { VERIFY_REPLICATES = 32, VERIFY_SECOND = 4 };

@@ -5,7 +5,9 @@
 
 #include "scene/verify.h"
 #include "velo/edit.h"
+#include "velo/material.h"
 #include "velo/schema.h"
+#include "velo/shape.h"
 
 void verify_note(Verify *v, const char *format, ...) {
   va_list arguments;

@@ -6,6 +6,7 @@
 #include "cli/signals.h"
 #include "cli/vector.h"
 #include "scene/verify.h"
+#include "velo/channels.h"
 #include "velo/edit.h"
 
 enum { BLOCK = 8, LEAST_PIXELS = 8, MOST_SPP = 4096, LEAST_MET = 100 };

@@ -4,6 +4,7 @@
 #define APP_VIEW_CAMERA_EDIT_H
 
 #include "cli/json.h"
+#include "velo/camera.h"
 #include "view/camera_pose.h"
 #include "view/message.h"
 

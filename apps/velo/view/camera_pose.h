@@ -3,7 +3,7 @@
 #ifndef APP_VIEW_CAMERA_POSE_H
 #define APP_VIEW_CAMERA_POSE_H
 
-#include "velo/velo.h"
+#include "velo/camera.h"
 
 /* What the spellings refer to that the def does not use. */
 typedef struct CameraUnits {

@@ -3,6 +3,7 @@
 #ifndef APP_VIEW_ENGINE_H
 #define APP_VIEW_ENGINE_H
 
+#include "velo/film.h"
 #include "view/model.h"
 #include "view/server.h"
 

@@ -9,6 +9,7 @@
 #include "render/channels.h"
 #include "render/lens_options.h"
 #include "render/receipt.h"
+#include "velo/camera_file.h"
 #include "view/engine_parts.h"
 
 /* The texts of the command's options, as long as it is used. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "velo/channels.h"
 #include "view/engine_status.h"
 #include "view/lecture.h"
 

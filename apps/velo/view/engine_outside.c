@@ -6,6 +6,7 @@
 
 #include "camera/poses.h"
 #include "image/display.h"
+#include "velo/drawing.h"
 #include "view/engine_status.h"
 
 enum { LARGEST_SIDE = 800, OUTSIDE_SPP = 2 };

@@ -1,6 +1,8 @@
 /* view/engine_overlay.c: what the page draws over the image: vanishing points, horizon, boxes of objects. */
 #include <stdlib.h>
 
+#include "velo/boxes.h"
+#include "velo/vanishing.h"
 #include "view/engine_status.h"
 
 enum { MOST_BOXES = 500 };

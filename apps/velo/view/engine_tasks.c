@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "velo/channels.h"
+#include "velo/focus.h"
 #include "view/engine_status.h"
 
 void engine_refuse(Engine *e, const Task *task, const char *why) {

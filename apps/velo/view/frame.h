@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "velo/velo.h"
+#include "velo/image.h"
+#include "velo/spectrum.h"
 
 typedef enum FrameFormat { FRAME_HALF, FRAME_FLOAT } FrameFormat;
 

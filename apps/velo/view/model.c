@@ -8,6 +8,7 @@
 #include "camera/poses.h"
 #include "cli/report.h"
 #include "render/exposure.h"
+#include "velo/channels.h"
 #include "view/lecture.h"
 #include "view/view.h"
 

@@ -1,5 +1,7 @@
 /* view/state.c: see state.h. */
 #include "view/state.h"
+#include "velo/camera_file.h"
+#include "velo/channels.h"
 
 bool json_text_begin(JsonText *json, const char *type) {
   *json = (JsonText){.text = NULL};

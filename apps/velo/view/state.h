@@ -2,6 +2,7 @@
 #ifndef APP_VIEW_STATE_H
 #define APP_VIEW_STATE_H
 
+#include "velo/world.h"
 #include "view/camera_edit.h"
 
 typedef struct ViewState {

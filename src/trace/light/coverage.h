@@ -3,7 +3,7 @@
 #define TRACE_LIGHT_COVERAGE_H
 
 #include "math/vec.h"
-#include "world/texture/texture_lookup.h"
+#include "texture/lookup.h"
 
 /* The light's alpha at p, in [0, 1]. It is the share of the radiance that leaves the shape at p, and the probability
  * that a ray hits the shape at p. n: geometric normal; u, v: surface parameters, not used for triangles; weights:

@@ -2,12 +2,12 @@
  * densities (pbrt book 12; 3rd edition 16.1.2). The code is scalar because each lane has its own light. */
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "texture/lookup.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
 #include "velo/shape.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
-#include "world/texture/texture_lookup.h"
 
 static float choice_of(const vlTwoWay *way, uint32_t light) {
   return way->choice[light + 1] - way->choice[light];

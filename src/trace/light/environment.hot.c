@@ -2,9 +2,8 @@
  * rays that hit nothing. Each lane reads a few cache lines of large tables, so the work is divided into loops, and
  * each loop prefetches the memory that the next loop reads. */
 #include "math/octahedral.h"
+#include "texture/lookup.h"
 #include "trace/light/kinds.h"
-#include "velo/texture.h"
-#include "world/texture/texture_lookup.h"
 
 enum { BLOCK = VL_SKY_BLOCK };
 

@@ -1,9 +1,8 @@
 /* trace/light/goniometric.hot.c: goniometric lights: point lights whose intensity is multiplied by an image over
  * directions (pbrt book 12.2.3), in the equal-area octahedral map (3.8.3). */
 #include "math/octahedral.h"
+#include "texture/lookup.h"
 #include "trace/light/kinds.h"
-#include "velo/texture.h"
-#include "world/texture/texture_lookup.h"
 
 /* The image's factor for light that leaves along d (world space). */
 static float image_factor(const vlWorld *world, const vlWorldLight *light, vlVec3 d) {

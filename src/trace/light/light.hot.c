@@ -3,14 +3,13 @@
  * diverge. */
 #include "math/octahedral.h"
 #include "math/warp.h"
+#include "texture/lookup.h"
 #include "trace/light/area.h"
 #include "trace/light/coverage.h"
 #include "trace/light/kinds.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
 #include "world/light/portal.h"
 #include "world/shape/surface_point.h"
-#include "world/texture/texture_lookup.h"
 
 void vl_emitted_at(const vlWorld *world, const vlEmitted *e, const float lambda[4], float s, float t, bool sky,
                    float out[4]) {

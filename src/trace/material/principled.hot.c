@@ -28,7 +28,7 @@ static vlVec3 mapped(const vlTextureRun *r, const vlTextureNode *node, float sca
 }
 
 static bool is_map(const vlTextureRun *r, int32_t node) {
-  return node >= 0 && r->world->nodes.items[node].kind == VL_NODE_IMAGE &&
+  return node >= 0 && r->world->nodes.items[node].image >= 0 &&
          r->world->images.items[r->world->nodes.items[node].image].mipmap->channels >= 3;
 }
 

@@ -3,7 +3,7 @@
 #ifndef TRACE_MATERIAL_ROWS_H
 #define TRACE_MATERIAL_ROWS_H
 
-#include "trace/texture/texture_run.h"
+#include "texture/run.hot.h"
 
 /* Evaluates a spectrum texture at the four wavelengths. */
 static inline void vl_rows_spectrum(vlTextureRun *r, int32_t node, float rows[][VL_ROW_SIZE]) {

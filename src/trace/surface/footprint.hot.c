@@ -1,6 +1,6 @@
 /* trace/surface/footprint.hot.c: the footprint of a pixel on a surface. The cone around a ray intersects the surface in
  * an ellipse, as wide as the cone across the plane of incidence and longer along it at grazing angles. Its two axes in
- * uv select the filtering of images (world/texture/texture_lookup.h). */
+ * uv select the filtering of images (texture/lookup.h). */
 #include "trace/stages.h"
 
 void vl_stage_footprints(uint32_t n, const vlPaths *paths, vlSurface *f) {

@@ -1,8 +1,8 @@
 /* trace/tracer/record.hot.c: see record.h. */
 #include "trace/tracer/record.h"
+#include "texture/node_kind.h"
 #include "velo/texture.h"
 #include "world/light/light_kind.h"
-#include "world/texture/node_kind.h"
 
 static vlPathRecorder *recorder(const vlTracing *t) {
   return t->batch->recorder;

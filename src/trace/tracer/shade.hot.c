@@ -2,7 +2,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "trace/texture/texture_run.h"
+#include "texture/run.hot.h"
 
 /* ---- sorting ----------------------------------------------------------------------------------------------------- */
 

@@ -8,9 +8,8 @@
 #include <string.h>
 
 #include "base/context.h"
+#include "texture/lookup.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
-#include "world/texture/texture_lookup.h"
 
 static bool texel_emits(const vlMipmap *mip, const vlTextureNode *node, uint32_t x, uint32_t y) {
   uint32_t n = mip->channels < 3 ? 1 : 3;

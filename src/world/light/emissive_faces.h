@@ -3,7 +3,7 @@
 #ifndef WORLD_LIGHT_EMISSIVE_FACES_H
 #define WORLD_LIGHT_EMISSIVE_FACES_H
 
-#include "velo/texture.h"
+#include "velo/lookup.h"
 #include "world/world.h"
 
 typedef struct vlEmissiveFaces {

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "base/error.h"
-#include "velo/texture.h"
 #include "world/light/lights.h"
 
 _Static_assert(VL_ENVIRONMENT_CELLS <= VL_GUIDES && VL_GUIDES <= 65536, "cells are found from a guide of 16 bits");

@@ -8,10 +8,9 @@
 #include "math/double3.h"
 #include "math/elementary.h"
 #include "math/transform.h"
+#include "texture/lookup.h"
 #include "velo/light.h"
-#include "velo/texture.h"
 #include "world/light/lights.h"
-#include "world/texture/texture_lookup.h"
 
 /* Sets the rotation from world to light directions. `order` and `sign` permute and flip the axes of the light. */
 static bool set_frame(const vlLightDef *def, const int order[3], const float sign[3], vlWorldLight *light) {

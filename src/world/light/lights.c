@@ -11,11 +11,11 @@
 #include "math/transform.h"
 #include "scene/scene.h"
 #include "schema/schema.h"
+#include "texture/lookup.h"
 #include "velo/light.h"
 #include "world/light/light_kind.h"
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
-#include "world/texture/texture_lookup.h"
 
 vlResult vl_light_color(vlWorld *world, const vlSpectrum *color, float factor, vlEmitted *e, vlError *error) {
   vlResult r = vl_spectral_compile(world, color, VL_ROLE_ILLUMINANT, &e->spectrum, error);

@@ -3,8 +3,8 @@
 #define WORLD_LIGHT_LIGHTS_H
 
 #include "scene/scene.h"
+#include "texture/lookup.h"
 #include "velo/light.h"
-#include "world/texture/texture_lookup.h"
 #include "world/world.h"
 
 /* Compiles a colour as a spectrum of luminance 1, times the scale of the colour itself, times factor. */

@@ -9,10 +9,9 @@
 #include "math/elementary.h"
 #include "math/octahedral.h"
 #include "scene/scene.h"
+#include "texture/lookup.h"
 #include "velo/light.h"
-#include "velo/texture.h"
 #include "world/light/lights.h"
-#include "world/texture/texture_lookup.h"
 
 enum { MAX_CELLS = 1024 };
 static const double least_share = 0.02; /* share of the mean light that every cell gets */

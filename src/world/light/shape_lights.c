@@ -5,15 +5,14 @@
 #include "base/error.h"
 #include "math/transform.h"
 #include "scene/scene.h"
+#include "texture/lookup.h"
+#include "texture/node_kind.h"
 #include "velo/light.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
 #include "world/light/emissive_faces.h"
 #include "world/light/light_kind.h"
 #include "world/light/lights.h"
 #include "world/shape/surface_point.h"
-#include "world/texture/node_kind.h"
-#include "world/texture/texture_lookup.h"
 
 static float mean_image_luminance(const vlMipmap *mip) {
   uint32_t last = mip->level_count - 1;

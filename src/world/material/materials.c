@@ -6,8 +6,8 @@
 
 #include "math/ggx.h"
 #include "schema/schema.h"
+#include "texture/node_kind.h"
 #include "world/material/compile.h"
-#include "world/texture/node_kind.h"
 
 vlResult vl_material_fail(const vlMaterialBuild *b, const char *what) {
   const vlMaterialDef *def = b->def;

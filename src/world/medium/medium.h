@@ -4,7 +4,7 @@
 #ifndef WORLD_MEDIUM_MEDIUM_H
 #define WORLD_MEDIUM_MEDIUM_H
 
-#include "world/texture/texture.h"
+#include "texture/node.h"
 
 /* A dense grid: values at the centres of equal cells of a box, x fastest, `per` floats per cell. values is null if
  * there is no grid. */

@@ -1,13 +1,11 @@
-/* trace/texture/texture_run.h: textures evaluated node by node over a run of lanes; private to the hot files of trace.
- */
-#ifndef TRACE_TEXTURE_TEXTURE_RUN_H
-#define TRACE_TEXTURE_TEXTURE_RUN_H
+/* texture/run.hot.h: textures evaluated node by node over a run of lanes; private to hot files. */
+#ifndef TEXTURE_RUN_HOT_H
+#define TEXTURE_RUN_HOT_H
 
 #include <stddef.h>
 
+#include "texture/lookup.h"
 #include "trace/stages.h"
-#include "world/texture/node_kind.h"
-#include "world/texture/texture_node.h"
 
 /* A run of lanes and a stack of scratch rows for nested textures. */
 typedef struct vlTextureRun {
@@ -25,7 +23,7 @@ typedef struct vlTextureRun {
 void vl_texture_float(vlTextureRun *r, int32_t node, float *out);
 void vl_texture_spectrum(vlTextureRun *r, int32_t node, float *const out[4]);
 /* Takes a scratch row, of which only lanes [first, last) exist; the caller frees it by restoring r->top. The stack
- * cannot overflow: world/texture/textures.c limits nesting. */
+ * cannot overflow: texture/compile.c limits nesting. */
 static inline float *vl_texture_row(vlTextureRun *r) {
   uint32_t row = r->top < VL_TEXTURE_ROWS - 1 ? r->top++ : r->top;
   float *stack = (float *)(void *)((char *)r->s + offsetof(vlTraceScratch, textures)); /* within the scratch memory */
@@ -93,7 +91,7 @@ static inline vlTexturePoint vl_texture_point_of(const vlTextureRun *r, const vl
     at.p = vl_add(at.p, vl_vec3(r->shift_x[i], r->shift_y[i], r->shift_z[i]));
   }
   if (vl_texture_needs_corner(node)) vl_texture_lane_corner(r, node, i, &at);
-  if (node->kind == VL_NODE_IMAGE) vl_texture_lane_axes(r, node, i, &at);
+  if (node->image >= 0) vl_texture_lane_axes(r, node, i, &at);
   return at;
 }
 

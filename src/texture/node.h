@@ -1,8 +1,8 @@
-/* world/texture/texture.h: compiled textures: a flat list of nodes. A node refers to its inputs by index, and these
- * indices are always lower than its own. Spectra are compiled for their role: an RGB colour gives different spectra as
- * an albedo and as an illuminant. */
-#ifndef WORLD_TEXTURE_TEXTURE_H
-#define WORLD_TEXTURE_TEXTURE_H
+/* texture/node.h: compiled textures: a flat list of nodes. A node refers to its inputs by index, and these indices are
+ * always lower than its own. Spectra are compiled for their role: an RGB colour gives different spectra as an albedo
+ * and as an illuminant. */
+#ifndef TEXTURE_NODE_H
+#define TEXTURE_NODE_H
 
 #include "base/file_stamp.h"
 #include "color/color.h"
@@ -36,11 +36,11 @@ static inline float vl_spectral_at(const vlSpectral *s, int channel, float lambd
 }
 
 /* Limits per texture, which bound the nesting of textures: the number of scratch rows for evaluation over a batch
- * (trace/texture/texture.hot.c), and the number of nodes visited (a shared input counts each time it is evaluated). */
+ * (texture/batch.hot.c), and the number of nodes visited (a shared input counts each time it is evaluated). */
 enum { VL_NODE_ROWS = 64, VL_NODE_VISITS = 4096 };
 
 typedef struct vlTextureNode {
-  uint32_t kind; /* vlNodeKind (world/texture/node_kind.h) */
+  uint32_t kind; /* vlNodeKind (texture/node_kind.h) */
   bool is_spectrum;
   uint8_t rows; /* number of scratch rows for evaluation of the node and its inputs */
   uint16_t visits;
@@ -52,9 +52,10 @@ typedef struct vlTextureNode {
   float direction[3];
   uint32_t dimension, octaves;
   float omega, variation; /* parameters of noise textures */
-  int32_t image;
-  uint32_t wrap, wrap_t; /* vlWrap */
-  uint32_t filter;       /* vlTextureFilter */
+  float own[4];           /* numbers that one kind alone has, set by its vl_node_set_ function */
+  int32_t image;          /* index in world->images; -1: the node has no image */
+  uint32_t wrap, wrap_t;  /* vlWrap */
+  uint32_t filter;        /* vlTextureFilter */
   float scale;
   bool invert;
   /* plain: tint, bias, cutoff and vertex colours have no effect. channel: the channel that a float texture reads; -1:

@@ -1,11 +1,10 @@
-/* world/texture/texture_lookup.h: texture coordinates and filtered image lookup at one point. The functions are inline
- * and take values. The batch evaluator in trace and the single-point evaluator share it through texture_node.h. pbrt
- * book 10.2-10.4. */
-#ifndef WORLD_TEXTURE_TEXTURE_LOOKUP_H
-#define WORLD_TEXTURE_TEXTURE_LOOKUP_H
+/* texture/lookup.h: texture coordinates and filtered image lookup at one point. The functions are inline and take
+ * values. Both evaluators use them through kinds.h. pbrt book 10.2-10.4. */
+#ifndef TEXTURE_LOOKUP_H
+#define TEXTURE_LOOKUP_H
 
+#include "velo/lookup.h"
 #include "velo/shape.h"
-#include "velo/texture.h"
 #include "world/world.h"
 
 /* A point at which a texture is evaluated: uv, position and normal in world space, and the footprint. The footprint has

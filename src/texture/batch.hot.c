@@ -1,8 +1,9 @@
-/* trace/texture/texture.hot.c: evaluation of textures over a run of lanes that share a material: floats, and spectra at
- * each lane's four wavelengths. A node's inputs are evaluated to rows of a stack, then combined by the functions of
- * world/texture/texture_node.h. Undefined values are NaN: the film drops and counts such samples
- * (vlRenderStats.not_finite). */
-#include "trace/texture/texture_run.h"
+/* texture/batch.hot.c: evaluation of textures over a run of lanes that share a material: floats, and spectra at each
+ * lane's four wavelengths. A node's inputs are evaluated to rows of a stack, then combined by the functions of
+ * texture/kinds.h. Undefined values are NaN: the film drops and counts such samples (vlRenderStats.not_finite). */
+#include "texture/kinds.h"
+#include "texture/node_kind.h"
+#include "texture/run.hot.h"
 
 /* ---- point functions over a run ---------------------------------------------------------------------------------- */
 
@@ -87,30 +88,29 @@ static const float *amount_share(vlTextureRun *r, const vlTextureNode *node) {
   vl_texture_float(r, node->amount, share);
   return share;
 }
-#define POINT_SHARE(NAME, name)                                                  \
-  static const float *name##_share(vlTextureRun *r, const vlTextureNode *node) { \
-    float *share = vl_texture_row(r);                                            \
-    each_lane(r, node, vl_node_##name, share);                                   \
-    return share;                                                                \
-  }
-VL_SHARE_NODES(POINT_SHARE)
+static inline __attribute__((always_inline)) const float *point_share(vlTextureRun *r, const vlTextureNode *node,
+                                                                      PointFloat *f) {
+  float *share = vl_texture_row(r);
+  each_lane(r, node, f, share);
+  return share;
+}
 
 /* Cases of the switches below. */
-#define NODE_CASE(NAME, name) case VL_NODE_##NAME:
-#define FLOAT_CASE(NAME, name)               \
-  case VL_NODE_##NAME:                       \
-    each_lane(r, node, vl_node_##name, out); \
+#define NODE_CASE(kind, value, set) case kind:
+#define FLOAT_CASE(kind, value, set) \
+  case kind:                         \
+    each_lane(r, node, value, out);  \
     break;
-#define MIX_FLOATS_CASE(NAME, name)                  \
-  case VL_NODE_##NAME:                               \
-    mix_floats(r, node, name##_share(r, node), out); \
+#define MIX_FLOATS_CASE(kind, value, set)                  \
+  case kind:                                               \
+    mix_floats(r, node, point_share(r, node, value), out); \
     break;
-#define COLOR_CASE(NAME, name)                \
-  case VL_NODE_##NAME:                        \
-    each_color(r, node, vl_node_##name, out); \
+#define COLOR_CASE(kind, value, set) \
+  case kind:                         \
+    each_color(r, node, value, out); \
     break;
-#define MIX_SPECTRA_CASE(NAME, name) \
-  case VL_NODE_##NAME: mix_spectra(r, node, name##_share(r, node), out); break;
+#define MIX_SPECTRA_CASE(kind, value, set) \
+  case kind: mix_spectra(r, node, point_share(r, node, value), out); break;
 
 /* ---- floats ------------------------------------------------------------------------------------------------------ */
 

@@ -1,6 +1,6 @@
-/* world/texture/node_kind.h: the kinds of nodes of compiled textures. */
-#ifndef WORLD_TEXTURE_NODE_KIND_H
-#define WORLD_TEXTURE_NODE_KIND_H
+/* texture/node_kind.h: the kinds of nodes of compiled textures. */
+#ifndef TEXTURE_NODE_KIND_H
+#define TEXTURE_NODE_KIND_H
 
 #include "velo/texture.h"
 

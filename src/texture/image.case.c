@@ -1,0 +1,31 @@
+/* texture/image.case.c: what tests know of the texture image. */
+#include "texture/texture.case.h"
+
+const TextureCase image_texture = {
+    .variants =
+        {
+            {.parameters = "\"string filename\" \"quarters.pfm\"",
+             .low = .2,
+             .high = .8,
+             .known = {{.25, .25, {.6, .6, .6}},
+                       {.75, .25, {.8, .8, .8}},
+                       {.25, .75, {.2, .2, .2}},
+                       {.75, .75, {.4, .4, .4}}},
+             .known_count = 4},
+            {.parameters = "\"string filename\" \"quarters.pfm\" \"bool invert\" true \"float scale\" .5 \"string "
+                           "filter\" \"point\"",
+             .low = .6,
+             .high = .9,
+             .known = {{.25, .25, {.7, .7, .7}}, {.75, .75, {.8, .8, .8}}},
+             .known_count = 2},
+        },
+    .parameters =
+        {{.base = "\"string filename\" \"a.pfm\""},
+         {.parameter = "filename", .value = "\"string filename\" \"b.pfm\""},
+         {.parameter = "encoding", .base = "\"string filename\" \"a.tga\"", .value = "\"string encoding\" \"linear\""},
+         {.parameter = "maxanisotropy", .no_effect = "ignored"},
+         {.parameter = "wrap", .base = "\"string filename\" \"a.pfm\";\"float uscale\" 3.3;\"float vscale\" 2.7"},
+         {.parameter = "mapping", .base = "\"string filename\" \"a.pfm\"", .value = "\"string mapping\" \"spherical\""},
+         {.parameter = "v1", .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""},
+         {.parameter = "v2", .base = "\"string mapping\" \"planar\";\"string filename\" \"a.pfm\""}},
+};

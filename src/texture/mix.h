@@ -1,0 +1,12 @@
+/* texture/mix.h: the value of two inputs that a share mixes. */
+#ifndef TEXTURE_MIX_H
+#define TEXTURE_MIX_H
+
+#include "texture/lookup.h"
+
+/* share: weight of the second input. Also of the other kinds that mix two inputs (VL_SHARE_NODES). */
+static inline float vl_node_mix(float a, float b, float share) {
+  return (1 - share) * a + share * b;
+}
+
+#endif

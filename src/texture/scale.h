@@ -1,0 +1,11 @@
+/* texture/scale.h: the value of a scaled texture. */
+#ifndef TEXTURE_SCALE_H
+#define TEXTURE_SCALE_H
+
+#include "texture/lookup.h"
+
+static inline float vl_node_scale(float a, float amount) {
+  return a * amount;
+}
+
+#endif

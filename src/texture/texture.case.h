@@ -1,0 +1,36 @@
+/* texture/texture.case.h: what the tests of textures must know of a kind beyond its row: its values at points of a
+ * square with texture coordinates 0 to 1 (test/conformance/textures.h), and cases of its parameters. */
+#ifndef TEXTURE_TEXTURE_CASE_H
+#define TEXTURE_TEXTURE_CASE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "schema/parameter.case.h"
+#include "velo/texture.h"
+
+typedef struct TextureKnown {
+  double u, v;
+  double rgb[3];
+} TextureKnown;
+
+typedef struct TextureVariant {
+  const char *parameters; /* null ends the list */
+  double low, high;       /* of all values */
+  bool even;              /* the same value everywhere */
+  TextureKnown known[5];
+  uint32_t known_count;
+} TextureVariant;
+
+enum { TEXTURE_VARIANTS = 3 };
+typedef struct TextureCase {
+  TextureVariant variants[TEXTURE_VARIANTS];
+  ParameterCase parameters[PARAMETER_CASES];
+} TextureCase;
+
+/* Declares the case of each kind, which is in the file of the kind: texture/NAME.case.c. */
+#define TEXTURE_CASE(NAME, name) extern const TextureCase name##_texture;
+VL_TEXTURE_KINDS(TEXTURE_CASE)
+#undef TEXTURE_CASE
+
+#endif

@@ -51,6 +51,12 @@ bool append_names(PyObject *list, const vlParameter *rows, size_t count) {
   return true;
 }
 
+static void put_lower(const char *text, char *lower, size_t size) {
+  size_t i = 0;
+  for (; text[i] && i + 1 < size; i++) lower[i] = text[i] >= 'A' && text[i] <= 'Z' ? (char)(text[i] + 32) : text[i];
+  lower[i] = 0;
+}
+
 bool append_settings(PyObject *list, vlSettingGroup group) {
   const vlKindRow *rows = vl_settings(group);
   return append_names(list, rows->parameters, rows->parameter_count);
@@ -70,29 +76,23 @@ int find_choice(const char *const *choices, const char *what, PyObject *value) {
 }
 
 int find_kind(const vlKindFamily *family, const char *thing, PyObject *name) {
+  enum { MOST_KINDS = 64, MOST_LETTERS = 32 };
+  char lower[MOST_KINDS][MOST_LETTERS];
+  const char *choices[MOST_KINDS + 1] = {NULL};
   PyObject *bytes = NULL;
   const char *text = name_text(name, &bytes);
-  if (!text) {
-    Py_XDECREF(bytes);
-    char what[64];
-    PyOS_snprintf(what, sizeof what, "the kind of a %s", thing);
-    return raise_value(what, name, "a name, a str"), -1;
-  }
   int found = -1;
-  for (uint32_t k = 0; k < family->kind_count && found < 0; k++) {
+  for (uint32_t k = 0; text && k < family->kind_count && found < 0; k++) {
     const vlKindRow *row = family->rows[k];
-    if (same_word(family->constants[k], text) || (row->name && same_word(row->name, text)) ||
-        (row->alias && same_word(row->alias, text)))
-      found = (int)k;
+    if ((row->name && same_word(row->name, text)) || (row->alias && same_word(row->alias, text))) found = (int)k;
   }
-  if (found < 0) {
-    PyObject *names = PyList_New(0);
-    for (uint32_t k = 0; names && k < family->kind_count; k++)
-      if (!append_text(names, family->constants[k])) Py_CLEAR(names);
-    raise_unknown(thing, text, names);
+  Py_XDECREF(bytes);
+  if (found >= 0) return found;
+  for (uint32_t k = 0; k < family->kind_count && k < MOST_KINDS; k++) {
+    put_lower(family->constants[k], lower[k], MOST_LETTERS);
+    choices[k] = lower[k];
   }
-  Py_DECREF(bytes);
-  return found;
+  return find_choice(choices, thing, name);
 }
 
 /* How well a name fits a row: 0 not, 4 best. "lens_tilt_x" is lens.lens_tilt_x rather than lens.tilt_x. */

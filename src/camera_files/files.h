@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "camera/parts.h"
 #include "velo/camera_file.h"
+#include "velo/setting.h"
 
 /* The position of each value of a tree in the file, as line << 32 | column. A value precedes the values that it
  * contains. */
@@ -73,6 +74,8 @@ vlResult vl_camera_usda(const vlCameraFile *file, const char *text, size_t size,
 
 /* Reads a required number. If it is missing, the error names the nearest key. */
 vlResult vl_camera_field(const vlCameraFile *file, const json_t *object, const char *key, const json_t **value);
+/* A value of the tree, for its row. */
+vlGiven vl_json_given(const json_t *item);
 vlResult vl_camera_number(const vlCameraFile *file, const json_t *object, const char *key, double *value);
 /* Reads an optional number; *value is unchanged if the key is missing. */
 vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, const char *key, double *value);

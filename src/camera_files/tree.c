@@ -7,7 +7,6 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "camera_files/files.h"
-#include "velo/setting.h"
 
 vlResult vl_camera_wrong(const vlCameraFile *file, const char *format, ...) {
   char message[400];
@@ -160,15 +159,24 @@ vlResult vl_camera_optional(const vlCameraFile *file, const json_t *object, cons
   return field ? number_of(file, object, field, key, value) : VL_OK;
 }
 
+vlGiven vl_json_given(const json_t *item) {
+  if (json_is_null(item)) return (vlGiven){.kind = VL_GIVEN_NOTHING};
+  if (json_is_boolean(item)) return (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
+  if (json_is_number(item)) return (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
+  if (json_is_string(item)) return (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
+  return (vlGiven){.kind = VL_GIVEN_OTHER};
+}
+
 vlResult vl_camera_side(const vlCameraFile *file, const json_t *object, const char *key, uint32_t *value) {
-  double number = 0.0;
-  vlResult result = vl_camera_number(file, object, key, &number);
+  const json_t *field;
+  double number;
+  vlResult result = vl_camera_field(file, object, key, &field);
   if (result != VL_OK) return result;
-  const vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = number};
+  const vlGiven given = vl_json_given(field);
   char name[120];
   char message[VL_GIVEN_MESSAGE];
   snprintf(name, sizeof name, "%s: \"%s\"", file->dialect, key);
-  if (!vl_given_check(vl_setting(VL_SETTING_CAMERA, "width"), name, &given, NULL, message))
+  if (!vl_given_check(vl_setting(VL_SETTING_CAMERA, "width"), name, &given, &number, message))
     return vl_camera_wrong_in(file, object, key, "%s", message);
   *value = (uint32_t)number;
   return VL_OK;

@@ -228,11 +228,7 @@ static vlResult read_item(const vlCameraFile *file, const json_t *item, const Fi
   static const vlParameter any = {.type = VL_PARAMETER_DOUBLE, .flags = VL_PARAMETER_UNSET};
   char name[80];
   char message[VL_GIVEN_MESSAGE];
-  vlGiven given = {.kind = VL_GIVEN_OTHER};
-  if (json_is_null(item)) given.kind = VL_GIVEN_NOTHING;
-  if (json_is_boolean(item)) given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = json_is_true(item)};
-  if (json_is_number(item)) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = json_number_value(item)};
-  if (json_is_string(item)) given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = json_string_value(item)};
+  const vlGiven given = vl_json_given(item);
   snprintf(name, sizeof name, "velo: \"%s\"", field->name);
   if (vl_given_check(field->row ? field->row : &any, name, &given, number, message)) return VL_OK;
   return vl_camera_wrong_in(file, item, NULL, "%s", message);

@@ -6,6 +6,7 @@
 
 #include "conformance.h"
 #include "velo/camera_file.h"
+#include "velo/setting.h"
 
 /* A direction at angle theta to the axis, towards +x, is this many focal lengths from the centre. */
 typedef struct ProjectionKnown {
@@ -248,6 +249,100 @@ static void check_file(const char *family, const char *kind, const vlCameraDef *
   if (differ) broken(family, kind, "its file gives other rays, %d of %d", differ, 3 * FILM_POINTS);
 }
 
+/* ---- files of scenes --------------------------------------------------------------------------------------------- */
+
+static void count_camera_loss(void *user, const char *what, uint64_t count) {
+  (void)what;
+  (void)count;
+  ++*(int *)user;
+}
+
+/* Whether two numbers are the same but for a float's rounding. */
+static bool same_number(double a, double b) {
+  return a == b || fabs(a - b) <= 2e-6 * fmax(fabs(a), fabs(b));
+}
+
+/* What two cameras differ in; null: nothing. */
+static const char *camera_difference(const vlCamera *a, const vlCamera *b) {
+  const struct {
+    const char *name;
+    double a, b;
+  } members[] = {{"lens_radius", a->lens_radius, b->lens_radius},
+                 {"focus_distance", a->focus_distance, b->focus_distance},
+                 {"shutter_open", a->shutter_open, b->shutter_open},
+                 {"shutter_close", a->shutter_close, b->shutter_close},
+                 {"exposure_time", a->exposure_time, b->exposure_time},
+                 {"near_plane", a->near_plane, b->near_plane},
+                 {"far_plane", a->far_plane, b->far_plane},
+                 {"readout", a->readout, b->readout},
+                 {"readout_direction", a->readout_direction, b->readout_direction},
+                 {"blades", a->lens.blades, b->lens.blades},
+                 {"rotation", a->lens.rotation, b->lens.rotation},
+                 {"ratio", a->lens.ratio, b->lens.ratio},
+                 {"tilt_x", a->lens.tilt[0], b->lens.tilt[0]},
+                 {"tilt_y", a->lens.tilt[1], b->lens.tilt[1]},
+                 {"motion", a->moves, b->moves}};
+  static double pixels[2 * FILM_POINTS];
+  for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+    if (!same_number(members[i].a, members[i].b)) return members[i].name;
+  film_points(pixels);
+  for (int i = 0; i < FILM_POINTS; i++) {
+    double o[2][3] = {{0}};
+    double d[2][3] = {{0}};
+    bool one = vl_camera_unproject(a, pixels[2 * i], pixels[2 * i + 1], o[0], d[0]);
+    bool two = vl_camera_unproject(b, pixels[2 * i], pixels[2 * i + 1], o[1], d[1]);
+    if (one != two) return "its domain";
+    for (int k = 0; k < 3; k++)
+      if (fabs(d[0][k] - d[1][k]) > 2e-6 || fabs(o[0][k] - o[1][k]) > 2e-5) return "its rays";
+  }
+  return NULL;
+}
+
+/* The scene with this camera as a file of a scene and read again: the same camera, or the writer says what it loses.
+ * False: it loses something. */
+static bool check_scene_file(const char *family, const char *kind, const vlCameraDef *def, const char *suffix) {
+  char path[100];
+  int losses = 0;
+  vlError error = {0};
+  vlScene *scene;
+  vlCamera made;
+  vlCamera again;
+  if (vl_camera_make(def, &made, NULL, &error) != VL_OK) return false;
+  snprintf(path, sizeof path, "%s/camera.%s", folder, suffix);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  vl_scene_defs(scene)->camera = *def;
+  vl_scene_defs(scene)->film = vl_default_film_def(def->width, def->height);
+  vl_scene_defs(scene)->camera_missing = false;
+  static const float corners[9] = {-1, -1, 0, 1, -1, 0, 0, 1, 0};
+  static const uint32_t face[3] = {0, 1, 2};
+  vlShapeDef triangle = vl_default_shape_def(VL_SHAPE_TRIANGLES);
+  triangle.vertices = 3;
+  triangle.faces = 1;
+  triangle.positions = corners;
+  triangle.indices = face;
+  vl_scene_add_shape(scene, &triangle);
+  vlSaveDef save = vl_default_save_def();
+  save.lost = count_camera_loss;
+  save.lost_user = &losses;
+  vlResult result = vl_scene_save(scene, path, &save, &error);
+  vl_scene_destroy(scene);
+  if (losses) return false;
+  if (result != VL_OK) broken(family, kind, "as .%s: %s", suffix, error.message);
+  assert_int_equal(vl_scene_create(context, &scene), VL_OK);
+  result = vl_scene_load(scene, path, NULL, &error);
+  vlCameraDef read = vl_scene_defs(scene)->camera;
+  read.width = def->width; /* glTF has no sizes of images */
+  read.height = def->height;
+  read.exposure_time *= (double)vl_scene_defs(scene)->develop.exposure; /* pbrt's is the film's */
+  if (result == VL_OK) result = vl_camera_make(&read, &again, NULL, &error);
+  if (result != VL_OK)
+    broken(family, kind, "as .%s it cannot be read: %s", suffix, error.message);
+  else if (camera_difference(&made, &again))
+    broken(family, kind, "as .%s: other %s", suffix, camera_difference(&made, &again));
+  vl_scene_destroy(scene);
+  return true;
+}
+
 static bool make_camera(const char *family, const char *kind, vlCameraDef *def, vlCamera *camera) {
   static const double axes[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   vlError error = {0};
@@ -281,6 +376,8 @@ static void laws_of_projections(void **state) {
     if (p != VL_PROJECTION_ORTHOGRAPHIC && !c->optics) check_solid_angle(name, &camera, c->solid_angle);
     check_known(name, &camera, c);
     if (!c->optics) check_file("projections", name, &def, &camera);
+    if (!c->optics) check_scene_file("projections", name, &def, "pbrt");
+    check_scene_file("projections", name, &def, "gltf");
   }
   vl_optics_destroy(optics);
   expect_no_failures();
@@ -301,6 +398,8 @@ static void laws_of_distortions(void **state) {
     if (!make_camera("distortions", c->name, &def, &camera)) continue;
     check_round_trip("distortions", c->name, &camera, 1e-8);
     check_file("distortions", c->name, &def, &camera);
+    check_scene_file("distortions", c->name, &def, "pbrt");
+    check_scene_file("distortions", c->name, &def, "gltf");
     for (int k = 0; k < 4; k++) {
       const double point[3] = {k & 1 ? 0.3 : -0.4, k & 2 ? 0.25 : -0.1, 1};
       double known[2];
@@ -314,6 +413,57 @@ static void laws_of_distortions(void **state) {
     }
   }
   for (int k = 0; k <= VL_DISTORTION_THIN_PRISM; k++) assert_true(kinds >> k & 1);
+  expect_no_failures();
+}
+
+/* ---- settings ---------------------------------------------------------------------------------------------------- */
+
+/* Puts another value than the default into a member; false: it has no number. */
+static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
+  bool limited = p->low != 0 || p->high != 0;
+  double number = p->value[0] + 0.25;
+  if (limited && number <= p->low) number = p->low + 0.25;
+  if (limited && number >= p->high) number = 0.5 * (p->low + p->high) + 0.01;
+  char message[VL_GIVEN_MESSAGE];
+  vlGiven given = {.kind = VL_GIVEN_NUMBER, .number = number};
+  if (p->type == VL_PARAMETER_COUNT) given.number = floor(number) + 5;
+  if (p->type == VL_PARAMETER_BOOL) given = (vlGiven){.kind = VL_GIVEN_FLAG, .number = p->value[0] == 0};
+  if (p->type == VL_PARAMETER_CHOICE)
+    given = (vlGiven){.kind = VL_GIVEN_TEXT, .text = p->choices[p->value[0] == 0 ? 1 : 0]};
+  if (p->type == VL_PARAMETER_DOUBLE3) {
+    double *at = (double *)(void *)((char *)def + p->offset);
+    for (int i = 0; i < 3; i++) at[i] = p->value[i] + 0.3 + 0.1 * i;
+    return true;
+  }
+  bool one = p->type == VL_PARAMETER_COUNT || p->type == VL_PARAMETER_BOOL || p->type == VL_PARAMETER_CHOICE ||
+             p->type == VL_PARAMETER_DOUBLE;
+  return one && vl_given_store(p, p->member, &given, def, message);
+}
+
+/* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is not. */
+static void settings_of_cameras(void **state) {
+  (void)state;
+  int kept[2] = {0, 0};
+  static const char *const suffixes[] = {"pbrt", "gltf"};
+  const vlKindRow *rows = vl_settings(VL_SETTING_CAMERA);
+  for (uint32_t i = 0; i < rows->parameter_count; i++) {
+    const vlParameter *p = &rows->parameters[i];
+    bool size = strcmp(p->member, "width") == 0 || strcmp(p->member, "height") == 0;
+    if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_RULE) || size) continue;
+    for (int k = 0; k < 2; k++) {
+      vlCameraDef def = vl_default_camera_def(FILM_WIDTH, FILM_HEIGHT);
+      def.eye[2] = 3;
+      if (k == 0) { /* without a lens others have no effect; glTF has none */
+        def.lens_radius = 0.02;
+        def.focus_distance = 4;
+      }
+      if (strcmp(p->member, "readout_direction") == 0) def.readout = 0.1;
+      if (strcmp(p->member, "lens.rotation") == 0) def.lens.blades = 6;
+      if (put_other_setting(p, &def)) kept[k] += check_scene_file("cameras", p->member, &def, suffixes[k]);
+    }
+  }
+  print_message("settings that files of scenes keep: pbrt %d, glTF %d\n", kept[0], kept[1]);
+  assert_true(kept[0] > 20);
   expect_no_failures();
 }
 

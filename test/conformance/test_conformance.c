@@ -41,6 +41,7 @@ int main(void) {
       cmocka_unit_test(laws_of_textures),
       cmocka_unit_test(laws_of_projections),
       cmocka_unit_test(laws_of_distortions),
+      cmocka_unit_test(settings_of_cameras),
       cmocka_unit_test(laws_of_samplers),
       cmocka_unit_test(laws_of_filters),
       cmocka_unit_test(laws_of_media),

@@ -71,6 +71,50 @@ def raises(kind, *texts):
     raise AssertionError("nothing was raised, %s was expected" % kind.__name__)
 
 
+# ---- rows of settings ----
+
+class Row:
+    """A row of `velo scene kinds settings`. infinite, optional: whether infinity, or nothing, may be right."""
+
+    def __init__(self, group, name, kind, default, text):
+        self.group, self.name, self.kind, self.choices = group, name, kind, None
+        self.infinite = default.split()[0] == "inf" or name == "focus_distance"
+        self.optional = default == "\u2013"
+        self.low, self.high, self.above, self.below = float("-inf"), float("inf"), text.startswith(">"), "excluded" in text
+        if kind == "string":
+            self.choices = text.split(", ") if text else None
+        elif text:
+            ends = text.strip("> \u2265").replace(", excluded", "").split(" to ")
+            self.low = float(ends[0])
+            self.high = float(ends[1]) if len(ends) > 1 else self.high
+        self.number = kind in ("integer", "float")
+        self.unit = default.split()[-1] if " " in default and not self.optional else ""
+
+    def holds(self, value):
+        """Whether a number is one of the row's; None where the table does not say."""
+        if value != value or (self.kind == "integer" and value != int(value) if abs(value) < 1e300 else self.kind == "integer"):
+            return False
+        if value in (float("inf"), float("-inf")):
+            return None if self.infinite and value > 0 else False
+        fits = (value > self.low if self.above else value >= self.low) and (value < self.high if self.below else value <= self.high)
+        return fits and (self.kind != "integer" or 0 <= value <= 2**32 - 1)
+
+
+def setting_rows():
+    """All settings, as the program prints them."""
+    import re
+    import subprocess
+    text = subprocess.run([VELO, "scene", "kinds", "settings"], stdout=subprocess.PIPE, text=True, check=True).stdout
+    rows, group = [], ""
+    for line in text.splitlines():
+        head = re.match(r"\*\*`(\w+)`\*\*", line)
+        group = head.group(1) if head else group
+        row = re.match(r"\| `([\w\[\]]+)` \| (\w+) \| (.*?) \| (.*?) ?\| ", line)
+        if row:
+            rows.append(Row(group, *(part.strip() for part in row.groups())))
+    return rows
+
+
 # ---- calls with values that they must refuse ----
 
 class _TooLong(BaseException):

@@ -120,28 +120,24 @@ def scene_with_film():
 
 
 VIEW = dict(camera=(FIRST.camera, OBJECT), resolution=((4, 4), ANY), crop=((0, 0, 4, 4), ANY))
-# The settings of a render: what they are. A test below compares them with velo.settings_names().
-COUNTS = ("spp", "seed", "sequence", "first_sample", "max_depth", "light_paths", "priority", "buckets")
-NUMBERS = ("time_limit", "noise", "noise_exposure", "noise_scale", "filter_radius_x", "filter_radius_y", "filter_sigma", "filter_b",
-           "filter_c", "filter_tau", "white_balance", "lambda_min", "lambda_max", "exposure")
-INFINITE = ("ao_distance", "max_component", "merge_radius")
-FLAGS = ("ao_cosine", "centred", "same_wavelengths", "sharp_textures", "share_samples", "transparent", "errors", "imitate_pbrt", "regularize")
-NAMES = ("tracer", "sampler", "noise_view", "filter", "space", "sensor", "color", "light_sampler", "bits", "accelerator")
-SETTINGS = {**{name: COUNT for name in COUNTS}, **{name: NUMBER for name in NUMBERS}, **{name: ANY for name in INFINITE},
-            **{name: FLAG for name in FLAGS}, **{name: OBJECT for name in NAMES}}
-CAMERAS = {**{name: ANY for name in (
-    "fov", "view_distance", "zoom", "pixel_size", "focal_mm", "sensor_width_mm", "fx", "fy", "skew", "cx", "cy", "screen_min_x", "screen_max_x",
-    "screen_min_y", "screen_max_y", "focus_distance", "f_number", "roll_close", "far_plane", "max_angle", "convergence")},
-    **{name: NUMBER for name in ("roll", "lens_radius", "unit_mm", "rotation", "ratio", "tilt_x", "tilt_y", "lens_tilt_x", "lens_tilt_y",
-                                 "shutter_open", "shutter_close", "readout", "exposure_time", "near_plane", "interocular")},
-    **{name: VECTOR for name in ("eye", "lookat", "up", "eye_close", "lookat_close", "up_close", "focus_point", "K", "world_from_camera",
-                                 "camera_from_world", "world_from_camera_close", "pose_times", "focus_pixel")},
-    "shape": ANY, "distortion_coefficients": ANY, "shutter": ANY, "colmap": OBJECT, "blades": COUNT, "vignetting": FLAG,
-    **{name: OBJECT for name in ("projection", "fov_axis", "readout_direction", "distortion", "stereo_mode", "stereo_eye")}}
-LOAD = {"permissive": FLAG, "strict": FLAG, "search_path": ANY, "time": ANY, "time_close": ANY, "scene": ANY, "animation": ANY,
-        "variant": ANY, "camera": ANY}
-COMPLETE = {"width": COUNT, "height": COUNT, "environment": ANY, "rotation": NUMBER, "strength": NUMBER, "up": VECTOR, "front": VECTOR,
-            "ground": FLAG, "reframe": FLAG, "framing": OBJECT, "backdrop": FLAG, "open_walls": FLAG}
+
+
+def keywords(group):
+    """The settings of a group by their rows: what they are."""
+    def kind(row):
+        if row.kind in ("point3", "vector3"):
+            return VECTOR
+        if row.number:
+            return ANY if row.optional or row.infinite else COUNT if row.kind == "integer" else NUMBER
+        return FLAG if row.kind == "bool" else OBJECT if row.choices else ANY
+    return {row.name: kind(row) for row in cases.setting_rows() if row.group == group and "[" not in row.name}
+
+
+SETTINGS, LOAD, COMPLETE = keywords("render"), keywords("load"), keywords("complete")
+# And those of cameras that no row has.
+CAMERAS = {**keywords("camera"), **{name: VECTOR for name in ("K", "world_from_camera", "camera_from_world", "world_from_camera_close",
+                                                               "pose_times", "focus_pixel")},
+           "shape": ANY, "distortion_coefficients": ANY, "shutter": ANY, "colmap": OBJECT}
 CALLBACK = (None, OBJECT)
 
 CALLS = [

@@ -133,7 +133,8 @@ def keywords(group):
     return {row.name: kind(row) for row in cases.setting_rows() if row.group == group and "[" not in row.name}
 
 
-SETTINGS, LOAD, COMPLETE = keywords("render"), keywords("load"), keywords("complete")
+SETTINGS, LOAD = keywords("render"), keywords("load")
+COMPLETE = {**keywords("complete"), "environment": ANY}  # also a path
 # And those of cameras that no row has.
 CAMERAS = {**keywords("camera"), **{name: VECTOR for name in ("K", "world_from_camera", "camera_from_world", "world_from_camera_close",
                                                                "pose_times", "focus_pixel")},
@@ -260,7 +261,7 @@ def check(call, name, label, value, refused, problems):
 
 def mentions(message, name):
     words = {"group": "scene's groups", "handle": "Handle", "instance": "Handle", "shape": "Handle", "K": "K", "camera_from_world": "camera"}
-    return name in message or words.get(name, name).rstrip("s") in message or name.replace("_", " ") in message or "kind" in message \
+    return name in message or words.get(name, name).rstrip("s") in message or name.replace("_", " ") in message or "kind" in message or (name == "kind" and "must be one of" in message) \
         or "dialect" in message or "family" in message or "array" in message or "channel" in message
 
 

@@ -17,7 +17,7 @@ void vl_machine_return_memory(void);
 void vl_machine_large_pages(void *block, size_t size);
 
 /* Gives this thread the floating-point state in which velo traces, if the processor has one: rounding to nearest,
- * denormal numbers kept (docs/decisions/0023-denormal-numbers.md). A library that was compiled with -ffast-math may
+ * denormal numbers kept (docs/decisions/0024-denormal-numbers.md). A library that was compiled with -ffast-math may
  * have left another one, which new threads inherit. Returns the state before, for vl_machine_restore_floats. */
 unsigned vl_machine_set_floats(void);
 void vl_machine_restore_floats(unsigned state);

@@ -1,5 +1,5 @@
 /* test/render/test_denormals.c: numbers below the smallest normal float are kept
- * (docs/decisions/0023-denormal-numbers.md), in whatever floating-point state the caller's threads are. */
+ * (docs/decisions/0024-denormal-numbers.md), in whatever floating-point state the caller's threads are. */
 #include "render/shots.h"
 #if defined(__SSE__)
 #include <xmmintrin.h>

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "api/small_world.h"
+#include "velo/load.h"
 
 static vlContext *make_context(void) {
   vlContext *context = NULL;

@@ -6,7 +6,9 @@
 
 #include "conformance.h"
 #include "velo/camera_file.h"
+#include "velo/export.h"
 #include "velo/setting.h"
+#include "velo/shape.h"
 
 /* A direction at angle theta to the axis, towards +x, is this many focal lengths from the centre. */
 typedef struct ProjectionKnown {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "render/shots.h"
+#include "velo/load.h"
 
 typedef enum Family { QUADRIC, MESH, NORMALS, CURVE } Family;
 

@@ -48,7 +48,7 @@ static void well_formed(void **state) {
 
 /* Every default is in range, and is known as the default. */
 static void check_defaults(const vlKindRow *row, const void *def) {
-  char message[200];
+  char message[VL_GIVEN_MESSAGE];
   for (uint32_t k = 0; k < row->parameter_count; k++) {
     const vlParameter *p = &row->parameters[k];
     if (p->flags & (VL_PARAMETER_SHORTHAND | VL_PARAMETER_REQUIRED) || p->type == VL_PARAMETER_BLOCK) continue;

@@ -20,7 +20,7 @@ void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, cons
   vl_stage_bsdf(t, n, at, wi, back);
 }
 
-void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float toward[3][VL_ROW_SIZE],
+void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float (*toward)[VL_ROW_SIZE],
                              vlBsdfValues *there, vlBsdfValues *back) {
   vl_stage_local(n, at, toward[0], toward[1], toward[2], there->wi);
   vl_stage_bsdf(t, n, at, at->shade.wo, there);

@@ -147,7 +147,7 @@ void vl_measure_camera_rays(const vlTracing *t);
 void vl_stage_reverse(const vlTracing *t, uint32_t n, const vlVertices *at, const float wi[3][VL_ROW_SIZE],
                       vlBsdfValues *back);
 /* The BSDFs for the directions `toward` (world space), and vl_stage_reverse for the way back. */
-void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float toward[3][VL_ROW_SIZE],
+void vl_stage_there_and_back(const vlTracing *t, uint32_t n, const vlVertices *at, const float (*toward)[VL_ROW_SIZE],
                              vlBsdfValues *there, vlBsdfValues *back);
 
 /* (S + H) cos / fwd of vertex i (two_way.h), from which a path goes on with this density and cosine. */

@@ -457,7 +457,7 @@ def errors_of_recipes_name_the_place():
     with open(path, "w") as file:
         json.dump({"models": [{"path": "ring.obj", "colour": 3}]}, file)
     done = run(path, "-o", work("nothing"))
-    assert done.returncode == 2 and "recipe.models[0]" in done.stderr and "'colour'" in done.stderr, done.stderr
+    assert done.returncode == 2 and "recipe.models[0]" in done.stderr and '"colour"' in done.stderr, done.stderr
     with open(path, "w") as file:
         json.dump({"models": ["nowhere.obj"]}, file)
     done = run(path, "-o", work("nothing"))

@@ -137,7 +137,8 @@ const Option render_options[] = {
      "default: the width of two pixels"},
     {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N",
      "bidirectional, merging, sppm, lightpath: number of light paths per pass of one sample per pixel; default: as "
-     "many as pixels"},
+     "many as pixels",
+     0, 1 << 24},
     {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers; another seed gives other noise"},
     {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N",

@@ -463,7 +463,7 @@ def errors_of_recipes_name_the_place():
     done = run(path, "-o", work("nothing"))
     assert done.returncode == 4 and "nowhere.obj" in done.stderr, done.stderr
     assert run(work("none.yaml"), "-o", work("nothing")).returncode == 4
-    with raises(velo.UsageError, "unknown writer 'pob'"):
+    with raises(velo.UsageError, 'unknown writer "pob"'):
         dataset.generate(recipe(), work("nothing"), writers=["pob"])
 
 

@@ -147,6 +147,7 @@ check sandbox verify plain.pbrt --sandbox . --reference ./wrong.sh
 line sandbox_says_so '^reference  *not compared: --sandbox allows no other programs'
 
 expect_code 2 no_rays verify plain.pbrt --rays 0
+expect_code 2 large_image verify plain.pbrt --resolution 4097x16
 expect_code 4 no_file verify none.pbrt
 echo 'WorldBegin Shape "spere"' >wrong.pbrt
 expect_code 3 wrong_scene verify wrong.pbrt

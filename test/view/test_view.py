@@ -609,6 +609,8 @@ def main():
     refused = subprocess.run([VELO, "view", SCENE, "--no-open", "--film", film], capture_output=True, text=True, timeout=60)
     check("film_is_kept", refused.returncode == 2 and "is a film already; --overwrite" in refused.stderr, refused.stderr)
     check("film_is_unchanged", open(film, "rb").read() == before)
+    refused = subprocess.run([VELO, "view", SCENE, "--no-open", "--light-paths", "16777217"], capture_output=True, text=True, timeout=60)
+    check("too_many_light_paths", refused.returncode == 2 and "--light-paths" in refused.stderr, refused.stderr)
     shutil.rmtree(folder)
 
 

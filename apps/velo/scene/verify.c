@@ -138,7 +138,7 @@ static const Option options[] = {
     {VERIFY_JSON, 0, "json", OPTION_FLAG, NULL, "print one JSON object to stdout"},
     {RENDER_THREADS, 't', "threads", OPTION_INTEGER, "N", "number of threads; default: one per processor core"},
     {RENDER_RESOLUTION, 0, "resolution", OPTION_SIZE, "WxH",
-     "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer side"},
+     "image size in pixels; default: that of the scene, reduced to 64 pixels on its longer side", 1, 4096},
     {RENDER_CAMERA, 0, "camera", OPTION_TEXT, "FILE", "scene or camera file that gives the camera"},
     {RENDER_FRAME, 0, "frame", OPTION_TEXT, "NAME",
      "camera to use, by name or number from 0, if the file of --camera has several"},

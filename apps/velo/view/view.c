@@ -115,7 +115,7 @@ const Option view_options[] = {
      0, 0, tracers},
     {RENDER_MAX_DEPTH, 0, "max-depth", OPTION_INTEGER, "N", "largest number of bounces of a path"},
     {RENDER_MERGE_RADIUS, 0, "merge-radius", OPTION_NUMBER, "R", "merging, sppm: radius of the first pass"},
-    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N", "number of light paths per pass"},
+    {RENDER_LIGHT_PATHS, 0, "light-paths", OPTION_INTEGER, "N", "number of light paths per pass", 0, 1 << 24},
     {RENDER_SAMPLER, 0, "sampler", OPTION_KIND, "NAME", "generator of the sample points:", 0, 0, samplers},
     {RENDER_SEED, 0, "seed", OPTION_INTEGER, "N", "seed of the random numbers"},
     {RENDER_SEQUENCE, 0, "sequence", OPTION_INTEGER, "N",

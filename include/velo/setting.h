@@ -64,10 +64,9 @@ typedef struct vlGiven {
  * 16777216; it is 0`. name: of the value, as the caller calls it. number may be null. */
 VL_API bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *given, double *number,
                            char message[VL_GIVEN_MESSAGE]);
-/** vl_given_check; a right value is put into the def. Only rows of one number, of a flag and of a choice have one; for
- * others the result is that of the check. */
-VL_API bool vl_given_store(const vlParameter *row, const char *name, const vlGiven *given, void *def,
-                           char message[VL_GIVEN_MESSAGE]);
+/** Puts the number of vl_given_check into the def. Only rows of one number, of a flag and of a choice hold one; for
+ * others it does nothing. */
+VL_API void vl_given_put(const vlParameter *row, double number, void *def);
 /** Writes that a name is not known, with the nearest of `count` names, or with all of them if none is near: `unknown
  * option "--ssp"; did you mean "--spp"?`. thing: what it is a name of ("option"). prefix: of both names ("--"). */
 VL_API void vl_unknown_name(const char *thing, const char *prefix, const char *name, const char *const *names,

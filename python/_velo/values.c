@@ -215,13 +215,6 @@ static uint32_t handle_index(const Scene *scene, PyObject *value, const char *fa
 
 /* ---- members ----------------------------------------------------------------------------------------------------- */
 
-#define PUT(Type, number)                       \
-  do {                                          \
-    Type v_ = (Type)(number);                   \
-    memcpy(place, &v_, sizeof v_);              \
-    if (second) memcpy(second, &v_, sizeof v_); \
-  } while (0)
-
 static bool set_input(const Target *t, const vlParameter *p, PyObject *value, char *place, bool spectrum) {
   const char *what = vl_setting_keyword(p);
   vlTextureId texture = {0};
@@ -252,24 +245,12 @@ bool set_parameter(const Target *t, const vlParameter *p, PyObject *value) {
   double number;
   switch (p->type) {
     case VL_PARAMETER_BOOL:
-      if (!read_row(value, what, p, &number)) return false;
-      PUT(bool, number != 0);
-      return true;
     case VL_PARAMETER_COUNT:
-      if (!read_row(value, what, p, &number)) return false;
-      PUT(uint32_t, number);
-      return true;
     case VL_PARAMETER_FLOAT:
-      if (!read_row(value, what, p, &number)) return false;
-      PUT(float, number);
-      return true;
     case VL_PARAMETER_DOUBLE:
-      if (!read_row(value, what, p, &number)) return false;
-      PUT(double, number);
-      return true;
     case VL_PARAMETER_CHOICE:
       if (!read_row(value, what, p, &number)) return false;
-      PUT(int, number);
+      vl_given_put(p, number, t->def);
       return true;
     case VL_PARAMETER_FLOAT3: {
       float three[3];

@@ -95,10 +95,9 @@ static void remove_lock(int descriptor, int folder, const char *name) {
   unlinkat(folder, name, 0);
 }
 
-/* Of a process that ends (vlUnfinishedFn). Where the file is not known to be open, its maker may be another process. */
+/* Of a process that ends (vlUnfinishedFn). */
 static void remove_held(int descriptor, const char *path) {
-  if (descriptor < 0) descriptor = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor >= 0) remove_lock(descriptor, AT_FDCWD, path);
+  remove_lock(descriptor, AT_FDCWD, path);
 }
 
 static void drop(vlFileLock *lock) {

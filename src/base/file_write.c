@@ -23,8 +23,7 @@ enum { MOST_TRIES = 1000 };
 /* Removes a temporary file (vlUnfinishedFn), unless another writer has it. */
 static void remove_temporary(int descriptor, const char *path) {
   struct stat mine, named;
-  if (descriptor < 0) descriptor = open(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor, &mine) != 0) return;
+  if (flock(descriptor, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor, &mine) != 0) return;
   if (lstat(path, &named) == 0 && mine.st_ino == named.st_ino && mine.st_dev == named.st_dev) unlink(path);
 }
 
@@ -38,7 +37,7 @@ static bool name_temporary(vlFileWriter *writer, unsigned number) {
   return writer->unfinished;
 }
 
-/* The temporary file is gone, or is the target now. */
+/* The temporary file is gone, or is the target now. errno stays. */
 static void drop_temporary(vlFileWriter *writer) {
   vl_unfinished_drop(writer->unfinished);
   writer->unfinished = NULL;
@@ -65,10 +64,8 @@ static bool give_name(vlFileWriter *writer) {
   for (unsigned i = 0; i < MOST_TRIES; i++) {
     if (!name_temporary(writer, i)) break;
     if (linkat(AT_FDCWD, self, AT_FDCWD, writer->temporary, AT_SYMLINK_FOLLOW) == 0) return true;
-    const int code = errno;
     drop_temporary(writer);
-    errno = code;
-    if (code != EEXIST) break;
+    if (errno != EEXIST) break;
   }
   writer->temporary[0] = 0;
   return false;
@@ -84,10 +81,8 @@ static bool open_temporary(vlFileWriter *writer) {
     if (!name_temporary(writer, i)) return false;
     writer->descriptor = open(writer->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (writer->descriptor < 0) {
-      const int code = errno;
       drop_temporary(writer);
-      errno = code;
-      if (code == EEXIST) continue;
+      if (errno == EEXIST) continue;
       return false;
     }
     atomic_store(&writer->unfinished->descriptor, writer->descriptor);

@@ -1,6 +1,7 @@
 /* base/unfinished.c: see unfinished.h. */
 #include "base/unfinished.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -42,8 +43,12 @@ void vl_unfinished_drop(vlUnfinished *file) {
 }
 
 void vl_unfinished_remove(vlUnfinishedList *list) {
-  for (vlUnfinished *file = atomic_load(&list->first); file; file = file->next)
-    if (change(file, FILLED, REMOVED)) file->remove(atomic_load(&file->descriptor), file->path);
+  for (vlUnfinished *file = atomic_load(&list->first); file; file = file->next) {
+    if (!change(file, FILLED, REMOVED)) continue;
+    int descriptor = atomic_load(&file->descriptor);
+    if (descriptor < 0) descriptor = open(file->path, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor >= 0) file->remove(descriptor, file->path);
+  }
 }
 
 void vl_unfinished_free(vlUnfinishedList *list) {

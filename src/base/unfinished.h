@@ -7,8 +7,8 @@
 
 #include "velo/base.h"
 
-/* Removes the file if it is this process' own. descriptor: of the file; -1: it may not be open yet, and may be another
- * process'. Calls only async-signal-safe functions; the process ends afterwards, so nothing is closed. */
+/* Removes the file if it is this process' own. descriptor: of the file; it may be another process' where it was opened
+ * only for this. Calls only async-signal-safe functions; the process ends afterwards, so nothing is closed. */
 typedef void vlUnfinishedFn(int descriptor, const char *path);
 
 typedef struct vlUnfinished {
@@ -32,7 +32,7 @@ vlUnfinishedList *vl_context_unfinished(vlContext *context);
 /* Notes a file before it is made. Null: no memory. Any thread. */
 vlUnfinished *vl_unfinished_add(vlUnfinishedList *list, const char *path, int descriptor, vlUnfinishedFn *remove);
 /* After the file is gone or has its own name, and before its descriptor is closed. Null is allowed. Where a signal
- * handler is removing the file already, it waits for the process' end. */
+ * handler is removing the file already, it waits for the process' end. errno stays. */
 void vl_unfinished_drop(vlUnfinished *file);
 /* Removes the files of the list. Async-signal-safe. */
 void vl_unfinished_remove(vlUnfinishedList *list);

@@ -248,17 +248,14 @@ static vlResult read_numbers(const vlCameraFile *file, const json_t *value, cons
 
 /* The def is unchanged if the field is missing. */
 static vlResult read_field(const vlCameraFile *file, const json_t *tree, const Field *field, vlCameraDef *def) {
-  void *at = (char *)def + field->offset;
   const json_t *value = json_object_get(tree, field->name);
   if (field->read) return field->read(file, tree, field, def);
   if (!value) return VL_OK;
-  if (field->form == NUMBERS) return read_numbers(file, value, field, at);
+  if (field->form == NUMBERS) return read_numbers(file, value, field, (double *)(void *)((char *)def + field->offset));
   double number;
   vlResult result = read_item(file, value, field, &number);
   if (result != VL_OK) return result;
-  if (field->form == COUNT) *(uint32_t *)at = (uint32_t)number;
-  if (field->form == CHOICE) *(int *)at = (int)number;
-  if (field->form == BOOL) *(bool *)at = number != 0;
+  vl_given_put(field->row, number, def);
   return VL_OK;
 }
 

@@ -204,7 +204,7 @@ bool vl_given_check(const vlParameter *row, const char *name, const vlGiven *giv
   return false;
 }
 
-static void store(const vlParameter *row, double number, char *at) {
+static void put(const vlParameter *row, double number, char *at) {
   float single = (float)number;
   uint32_t count = row->type == VL_PARAMETER_COUNT ? (uint32_t)number : 0;
   int choice = row->type == VL_PARAMETER_CHOICE ? (int)number : 0;
@@ -228,13 +228,9 @@ static void store(const vlParameter *row, double number, char *at) {
   }
 }
 
-bool vl_given_store(const vlParameter *row, const char *name, const vlGiven *given, void *def,
-                    char message[VL_GIVEN_MESSAGE]) {
-  double number;
-  if (!vl_given_check(row, name, given, &number, message)) return false;
-  store(row, number, (char *)def + row->offset);
-  if (row->second) store(row, number, (char *)def + row->second);
-  return true;
+void vl_given_put(const vlParameter *row, double number, void *def) {
+  put(row, number, (char *)def + row->offset);
+  if (row->second) put(row, number, (char *)def + row->second);
 }
 
 const char *vl_near_name(const char *name, const char *const *names, size_t count) {

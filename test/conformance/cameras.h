@@ -439,7 +439,10 @@ static bool put_other_setting(const vlParameter *p, vlCameraDef *def) {
   }
   bool one = p->type == VL_PARAMETER_COUNT || p->type == VL_PARAMETER_BOOL || p->type == VL_PARAMETER_CHOICE ||
              p->type == VL_PARAMETER_DOUBLE;
-  return one && vl_given_store(p, p->member, &given, def, message);
+  double checked;
+  if (!one || !vl_given_check(p, p->member, &given, &checked, message)) return false;
+  vl_given_put(p, checked, def);
+  return true;
 }
 
 /* Every setting of cameras, in turn, is in files of scenes, or the writer says that it is not. */

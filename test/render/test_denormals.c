@@ -8,8 +8,12 @@
 /* A ball that reflects 5e-39 of a light of 1e36. */
 static Image denormal_ball(vlColorMode color) {
   Stage s = stage_open(8, 8);
-  s.camera.eye[0] = 3, s.camera.eye[1] = 0.5, s.camera.eye[2] = 0.2, s.camera.lookat[2] = 0;
-  s.render.spp = s.render.sequence = 64, s.render.max_depth = 3;
+  s.camera.eye[0] = 3;
+  s.camera.eye[1] = 0.5;
+  s.camera.eye[2] = 0.2;
+  s.camera.lookat[2] = 0;
+  s.render.spp = s.render.sequence = 64;
+  s.render.max_depth = 3;
   s.build.color = color;
   add_sky(&s, 1e36f);
   vlShapeDef ball = vl_default_shape_def(VL_SHAPE_SPHERE);

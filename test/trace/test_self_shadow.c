@@ -387,10 +387,16 @@ static uint32_t arriving(const Scene *s, vlTraceScratch *t, bool media, statRng 
       stat_direction(rng, away);
       vlVec3 p = to_float((double[3]){s->touch[0] + distance * away[0], s->touch[1] + distance * away[1],
                                       s->touch[2] + distance * away[2]});
-      t->at.surface.px[i] = p.x, t->at.surface.py[i] = p.y, t->at.surface.pz[i] = p.z;
+      t->at.surface.px[i] = p.x;
+      t->at.surface.py[i] = p.y;
+      t->at.surface.pz[i] = p.z;
       t->at.surface.no_cosine[i] = 1;
-      t->at.surface.nx[i] = 0, t->at.surface.ny[i] = 0, t->at.surface.nz[i] = 1;
-      t->numbers.u0[i] = stat_float(rng), t->numbers.u1[i] = stat_float(rng), t->numbers.u2[i] = stat_float(rng);
+      t->at.surface.nx[i] = 0;
+      t->at.surface.ny[i] = 0;
+      t->at.surface.nz[i] = 1;
+      t->numbers.u0[i] = stat_float(rng);
+      t->numbers.u1[i] = stat_float(rng);
+      t->numbers.u2[i] = stat_float(rng);
     }
     vl_stage_lights(s->world, VL_BATCH, &t->at.paths, &t->at.surface, t->numbers.u1, t->numbers.u2, t->numbers.u0,
                     &t->light);

@@ -114,7 +114,8 @@ static vlTextureRun fill_lanes(Fixture *f, uint32_t shape, statRng *rng, vlTextu
     at->px[i] = x, at->py[i] = y, at->pz[i] = 0;
     at->gx[i] = unit.x, at->gy[i] = unit.y, at->gz[i] = unit.z;
     s->at.paths.dz[i] = -1;
-    s->at.hits.shape[i] = shape, s->at.hits.prim[i] = 0;
+    s->at.hits.shape[i] = shape;
+    s->at.hits.prim[i] = 0;
     for (int k = 0; k < 9; k++) s->corners.p[k][i] = k == 3 || k == 7 ? 1.0f : 0.0f;
   }
   return (vlTextureRun){.world = f->world, .at = &s->at, .s = s};
@@ -205,9 +206,13 @@ static void assert_light(Fixture *f, float expected) {
   vlTraceScratch *s = f->scratch;
   statRng rng = stat_rng(5);
   for (uint32_t i = 0; i < VL_BATCH; i++) {
-    s->at.surface.px[i] = s->at.surface.py[i] = 0.2f, s->at.surface.pz[i] = 1;
-    s->at.surface.nx[i] = s->at.surface.ny[i] = 0, s->at.surface.nz[i] = -1;
-    s->numbers.u0[i] = stat_float(&rng), s->numbers.u1[i] = stat_float(&rng), s->numbers.u2[i] = stat_float(&rng);
+    s->at.surface.px[i] = s->at.surface.py[i] = 0.2f;
+    s->at.surface.pz[i] = 1;
+    s->at.surface.nx[i] = s->at.surface.ny[i] = 0;
+    s->at.surface.nz[i] = -1;
+    s->numbers.u0[i] = stat_float(&rng);
+    s->numbers.u1[i] = stat_float(&rng);
+    s->numbers.u2[i] = stat_float(&rng);
   }
   vl_stage_lights(f->world, VL_BATCH, &s->at.paths, &s->at.surface, s->numbers.u0, s->numbers.u1, s->numbers.u2,
                   &s->light);
@@ -277,8 +282,12 @@ static void mix_by_vertex_color(void **state) {
     vl_scene_add_shape(f.scene, &def);
     build(&f);
     vlTraceScratch *s = f.scratch;
-    s->rays.ox[0] = 0.2f, s->rays.oy[0] = 0.3f, s->rays.oz[0] = 5, s->rays.dz[0] = -1;
-    s->hits.shape[0] = s->hits.prim[0] = 0, s->hits.instance[0] = VL_NONE;
+    s->rays.ox[0] = 0.2f;
+    s->rays.oy[0] = 0.3f;
+    s->rays.oz[0] = 5;
+    s->rays.dz[0] = -1;
+    s->hits.shape[0] = s->hits.prim[0] = 0;
+    s->hits.instance[0] = VL_NONE;
     uint32_t m = vl_hit_material(f.world, &s->rays, &s->hits, 0);
     assert_int_equal(f.world->materials.items[m].kind, second ? VL_MATERIAL_CONDUCTOR : VL_MATERIAL_DIFFUSE);
     end(&f);

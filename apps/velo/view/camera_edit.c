@@ -345,6 +345,11 @@ static vlParameter row_of(const char *setting, const char *names[PROJECTIONS + 1
   return row;
 }
 
+static vlResult refuse(vlError *error, const char *message) {
+  snprintf(error->message, sizeof error->message, "%s", message);
+  return error->code = VL_ERROR_ARGUMENT;
+}
+
 /* Checks the values of a field by its row, and finds its choice. */
 static vlResult check_field(MessageField *field, const char *setting, vlError *error) {
   char name[80];
@@ -358,10 +363,7 @@ static vlResult check_field(MessageField *field, const char *setting, vlError *e
   for (uint32_t i = 0; i < count; i++) {
     double number;
     if (field->count) given = (vlGiven){.kind = VL_GIVEN_NUMBER, .number = field->numbers[i], .factor = row.factor};
-    if (!vl_given_check(&row, name, &given, &number, message)) {
-      snprintf(error->message, sizeof error->message, "%s", message);
-      return error->code = VL_ERROR_ARGUMENT;
-    }
+    if (!vl_given_check(&row, name, &given, &number, message)) return refuse(error, message);
     field->choice = row.type == VL_PARAMETER_CHOICE ? (int)number : 0;
   }
   return VL_OK;
@@ -378,8 +380,7 @@ static vlResult refuse_name(vlError *error, const char *name) {
   char message[VL_GIVEN_MESSAGE];
   for (int i = 0; i < SETTERS; i++) names[i] = setters[i].name;
   vl_unknown_name("field of the camera", "", name, names, SETTERS, message);
-  snprintf(error->message, sizeof error->message, "%s", message);
-  return error->code = VL_ERROR_ARGUMENT;
+  return refuse(error, message);
 }
 
 static vlResult apply_fields(Edit *edit, vlError *error) {

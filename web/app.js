@@ -1,5 +1,5 @@
 // The page: joins the connection, the image, the camera and the panels.
-import { Connection } from "./socket.js";
+import { connect } from "./connection.js";
 import { parseFrame } from "./frame.js";
 import { Screen } from "./screen.js";
 import { Pointer, keyAction, tools } from "./pointer.js";
@@ -175,7 +175,8 @@ function answered(message) {
   app.waiting.delete(message.id);
 }
 
-app.connection = new Connection({
+app.connection = { send() {} }; // before the engine is there
+connect({
   text(message) {
     if (handlers[message.type]) handlers[message.type](message);
     else if (message.id) answered(message);
@@ -193,7 +194,7 @@ app.connection = new Connection({
     document.body.classList.toggle("away", !connected);
     if (!connected) byId("status").textContent = reason ? `closed: ${reason}` : "velo has ended or cannot be reached; trying again";
   },
-});
+}).then(connection => { app.connection = connection; }, error => { byId("status").textContent = error.message; });
 
 // ---- controls ----
 

@@ -144,6 +144,8 @@ def test_figure(b, language):
     b.wait("velo.live.outside.drawing && velo.live.outside.drawing.lines.length > 10 && !!velo.live.outside.image && "
            f"Math.abs(velo.live.outside.drawing.plane - {d!r}) < 1e-6 * {d!r}")
     check(language + "_outside", True)
+    foot = b.wait("velo.live.hash && document.getElementById('engine').textContent")
+    check(language + "_foot", "velo view" in foot and re.search("[0-9a-f]{64}$", foot), foot)
     shot(b, "lecture_" + language)
     return n, d
 

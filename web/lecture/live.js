@@ -1,6 +1,6 @@
 // web/lecture/live.js: velo as the renderer of the lecture's figures: one scene at a time, shown in the figure that is
 // live, with the view from outside beside it.
-import { Connection } from "../socket.js";
+import { connect, engineName, hashOf } from "../connection.js";
 import { parseFrame } from "../frame.js";
 import { Outside } from "../outside.js";
 import { Overlay } from "../overlay.js";
@@ -14,6 +14,8 @@ const WORDS = {
     image: "Drag: turn round lookat. Shift: sideways. Ctrl: look round. Arrow keys turn",
     outside: "Drag the eye: e. Drag the view plane: d. Drag elsewhere: turn. Ctrl and wheel: nearer, farther",
     status: (s) => `${s.spp} of ${s.target} samples per pixel`,
+    engine: { server: "Rendered by velo view.", browser: "Rendered by velo in this page (WebAssembly)." },
+    hash: (hash) => `SHA-256 of the image: ${hash}`,
   },
   it: {
     steered: "un'altra pagina ha il comando",
@@ -21,6 +23,8 @@ const WORDS = {
     image: "Trascinare: girare intorno a lookat. Maiusc: di lato. Ctrl: guardarsi intorno. Anche con le frecce",
     outside: "Trascinare l'osservatore: e. Il view plane: d. Altrove: girare. Ctrl e rotella: avvicinare, allontanare",
     status: (s) => `${s.spp} di ${s.target} campioni per pixel`,
+    engine: { server: "Immagini calcolate da velo view.", browser: "Immagini calcolate da velo in questa pagina (WebAssembly)." },
+    hash: (hash) => `SHA-256 dell'immagine: ${hash}`,
   },
 };
 const PLAIN = ["eye", "lookat", "up", "d", "zoom", "s", "roll", "near", "far"];
@@ -46,9 +50,10 @@ export function changedFields(before, after) {
 }
 
 export class Live {
-  // tell(text): a line about the image.
-  constructor(tell) {
+  // tell(text): a line about the image. foot(text): which engine made it, and the hash of its pixels when it is done.
+  constructor(tell, foot = () => {}) {
     this.tell = tell;
+    this.foot = foot;
     this.words = WORDS.en;
     this.figures = [];    // those of figures.js
     this.element = null;  // the figure that is live
@@ -68,16 +73,18 @@ export class Live {
     addEventListener("wheel", (event) => { // over the view from outside it scrolls the page
       if (!event.ctrlKey && event.target.closest?.(".pane.outside")) event.stopPropagation();
     }, { capture: true, passive: true });
-    this.connection = new Connection({
+    this.connection = { send() {} }; // before the engine is there
+    connect({
       text: (message) => this.receive(message),
       frame: (buffer) => this.receiveFrame(buffer),
       state: (connected, reason) => this.connected(connected, reason),
-    });
+    }).then((connection) => { this.connection = connection; }, (error) => this.connected(false, error.message));
   }
 
   use(language) {
     this.leave();
     this.words = WORDS[language];
+    this.sign();
     this.canvas.title = this.words.image;
     this.canvas.setAttribute("aria-label", this.words.image);
   }
@@ -199,9 +206,26 @@ export class Live {
     if (message.type === "state") this.receiveState(message);
     else if (message.type === "refused") this.refused(message);
     else if (message.type === "error" || message.type === "warning") this.complain(message.message);
-    else if (message.type === "status") this.tell(this.words.status(message));
+    else if (message.type === "status") this.receiveStatus(message);
     else if (message.type === "role") this.receiveRole(message);
     else if (message.id) this.answered(message);
+  }
+
+  receiveStatus(status) {
+    this.target = status.target;
+    this.tell(this.words.status(status));
+    this.sign();
+  }
+
+  // Which engine renders, with the hash of the image when it has all its samples.
+  async sign() {
+    const { frame } = this.screen, serial = frame?.serial;
+    const done = frame && frame.spp > 0 && frame.spp === this.target;
+    const hash = done ? await hashOf(this.screen.pixels.data) : null;
+    if (serial !== this.screen.frame?.serial) return; // a newer one is there
+    const words = this.words;
+    this.hash = hash;
+    this.foot(words.engine[engineName()] + (hash ? " " + words.hash(hash) : ""));
   }
 
   answered(message) {
@@ -289,6 +313,7 @@ export class Live {
     if (this.element && this.state && frame.change >= this.first) this.canvas.hidden = false;
     this.frames = (this.frames ?? 0) + 1;
     this.shown = frame.change;
+    this.sign();
   }
 
   connected(connected, reason) {

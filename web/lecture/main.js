@@ -5,7 +5,7 @@ import { openLecture } from "./page.js";
 const byId = (id) => document.getElementById(id);
 const OTHER = { en: ["it", "Italiano"], it: ["en", "English"] };
 
-const live = new Live((text) => { byId("status").textContent = text; });
+const live = new Live((text) => { byId("status").textContent = text; }, (text) => { byId("engine").textContent = text; });
 let lecture = null;
 
 // The heading that is being read, as its number and its place on the screen: both languages have the same headings.
